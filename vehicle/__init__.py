@@ -1,0 +1,1 @@
+"""A complete car on a shaker, on MuJoCo."""

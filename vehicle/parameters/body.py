@@ -1,0 +1,37 @@
+"""The trimmed body: rigid-body properties and the name of its modal superelement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehicle.parameters.hardpoints import Point
+from vehicle.parameters.quantity import quantity, validate
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrimmedBody:
+    """Mass properties about the origin of the vehicle frame; products as integrals (Izx > 0 because m x z is)."""
+
+    mass: float = quantity("kg", "mass of the trimmed body", above=0.0)
+    cog: Point = quantity("m", "centre of gravity", length=3)
+    inertia_variant: str = quantity("-", "which Ixx is used", choices=("published", "improved"))
+    ixx_published: float = quantity("kg m2", "integral of y2 + z2, as published", above=0.0)
+    ixx_improved: float = quantity("kg m2", "integral of y2 + z2, improved", above=0.0)
+    iyy: float = quantity("kg m2", "integral of x2 + z2", above=0.0)
+    izz: float = quantity("kg m2", "integral of x2 + y2", above=0.0)
+    ixy: float = quantity("kg m2", "integral of x y")
+    izx: float = quantity("kg m2", "integral of z x")
+    iyz: float = quantity("kg m2", "integral of y z")
+    superelement: str = quantity("-", "modal model: file name beside the vehicle file, or of the package")
+    flexible: bool = True
+    attachment_flexibility: bool = True
+    frequency_scale: float = quantity("-", "factor on all natural frequencies of the flexible modes", above=0.0)
+    spring_seat_mass: float = quantity("kg", "mass fixed to the body at each strut top", at_least=0.0)
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+    @property
+    def ixx(self) -> float:
+        """Ixx of the chosen variant [kg m2]."""
+        return self.ixx_published if self.inertia_variant == "published" else self.ixx_improved

@@ -1,0 +1,111 @@
+"""Fields of parameter classes: each carries its unit, its meaning and its allowed range, and is validated from them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+
+NAME_PATTERN = re.compile(r"[A-Za-z0-9_.-]+")
+
+
+def quantity(
+    unit: str,
+    meaning: str,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+    length: int | None = None,
+    choices: tuple[str, ...] | None = None,
+    default: Any = dataclasses.MISSING,
+) -> Any:
+    """Declare a field of a parameter class.
+
+    Args:
+        unit: SI unit as written in files, "-" for a pure number.
+        meaning: one line, shown in documentation and error messages.
+        above: the value (each component) must be greater than this.
+        at_least: the value (each component) must not be less than this.
+        at_most: the value (each component) must not exceed this.
+        length: number of components of a vector; None for a scalar.
+        choices: allowed words of a text field.
+        default: value where a file leaves the field out; by default it must be given.
+
+    Returns:
+        A dataclass field with the description in its metadata.
+    """
+    metadata = {
+        "unit": unit,
+        "meaning": meaning,
+        "above": above,
+        "at_least": at_least,
+        "at_most": at_most,
+        "length": length,
+        "choices": choices,
+    }
+    if default is dataclasses.MISSING:
+        return dataclasses.field(metadata=metadata)
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+def validate(instance: Any, where: str = "") -> None:
+    """Check every field of a parameter object against its description; for `__post_init__`.
+
+    Args:
+        instance: a dataclass object whose fields were made by `quantity`.
+        where: dotted path of the object, shown in messages; the class name by default.
+
+    Raises:
+        ConfigurationError: naming the field, the value found, the unit and what is allowed.
+    """
+    place = where or type(instance).__name__
+    for entry in dataclasses.fields(instance):
+        if "unit" not in entry.metadata:
+            continue
+        value = getattr(instance, entry.name)
+        _check(f"{place}.{entry.name}", value, entry.metadata)
+
+
+def _check(path: str, value: Any, metadata: Any) -> None:
+    """Check one value against the metadata of its field."""
+    if metadata["choices"] is not None:
+        if value not in metadata["choices"]:
+            raise ConfigurationError(f"{path}: found {value!r}, allowed are {', '.join(metadata['choices'])}")
+        return
+    names = (value,) if isinstance(value, str) else value
+    if isinstance(names, tuple) and names and all(isinstance(name, str) for name in names):
+        for name in names:
+            if not NAME_PATTERN.fullmatch(name):
+                raise ConfigurationError(f"{path}: found {name!r}, allowed are names of letters, digits, '_', '.', '-'")
+        return
+    if value is None:
+        return
+    if metadata["length"] is not None:
+        if not isinstance(value, tuple) or len(value) != metadata["length"]:
+            raise ConfigurationError(
+                f"{path}: found {value!r}, needed is a list of {metadata['length']} numbers [{metadata['unit']}]"
+            )
+        components = value
+    else:
+        components = (value,)
+    for component in components:
+        _check_number(path, component, metadata)
+
+
+def _check_number(path: str, number: Any, metadata: Any) -> None:
+    """Check one number against the range of its field."""
+    unit = metadata["unit"]
+    if isinstance(number, bool) or not isinstance(number, int | float):
+        raise ConfigurationError(f"{path}: found {number!r}, needed is a number [{unit}]")
+    if not math.isfinite(number):
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, needed is a finite number ({metadata['meaning']})")
+    if metadata["above"] is not None and not number > metadata["above"]:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be greater than {metadata['above']!r}")
+    if metadata["at_least"] is not None and number < metadata["at_least"]:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {metadata['at_least']!r}")
+    if metadata["at_most"] is not None and number > metadata["at_most"]:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {metadata['at_most']!r}")

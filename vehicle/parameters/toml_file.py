@@ -1,0 +1,255 @@
+"""TOML files into parameter objects and back: strict names, strict types, dotted overrides."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import re
+import tomllib
+import types
+import typing
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from vehicle.errors import ConfigurationError
+
+T = TypeVar("T")
+
+
+def read_table(path: Path) -> dict[str, Any]:
+    """Read a TOML file into nested dictionaries.
+
+    Args:
+        path: the file.
+
+    Returns:
+        The tables of the file.
+
+    Raises:
+        ConfigurationError: the file is missing, not UTF-8 or not TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise ConfigurationError(f"{path}: no such file; give the path of a parameter file (TOML)") from None
+    except UnicodeDecodeError as error:
+        raise ConfigurationError(f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigurationError(f"{path}: not a TOML file: {error}") from None
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
+    """Build a parameter object from nested dictionaries.
+
+    Args:
+        cls: a dataclass whose fields are numbers, texts, vectors (tuples), other such classes or mappings of them.
+        table: the values, named as the fields.
+        path: dotted path of this table, shown in messages.
+
+    Returns:
+        The validated object.
+
+    Raises:
+        ConfigurationError: an unknown name (with the nearest known one), a missing name or a wrong type.
+    """
+    hints = typing.get_type_hints(cls)
+    fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
+    for key in table:
+        if key not in fields:
+            raise ConfigurationError(_unknown(_join(path, key), key, fields))
+    values: dict[str, Any] = {}
+    for name, entry in fields.items():
+        if name in table:
+            values[name] = _convert(hints[name], table[name], _join(path, name))
+        elif entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING:
+            unit = entry.metadata.get("unit")
+            needed = f" [{unit}]" if unit else ""
+            raise ConfigurationError(f"{_join(path, name)}: missing; every parameter must be given{needed}")
+    try:
+        return cls(**values)
+    except ConfigurationError as error:
+        # The class only knows its own name; the user knows the path in the file.
+        message = str(error)
+        if path and message.startswith(cls.__name__ + "."):
+            message = path + message[len(cls.__name__) :]
+        elif not path and message.startswith(cls.__name__ + "."):
+            message = message[len(cls.__name__) + 1 :]
+        raise ConfigurationError(message) from None
+
+
+def override(table: dict[str, Any], assignments: Iterable[str]) -> dict[str, Any]:
+    """Replace single values of nested dictionaries by dotted paths.
+
+    Args:
+        table: as of `read_table`; not changed.
+        assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML.
+
+    Returns:
+        A new table.
+
+    Raises:
+        ConfigurationError: no '=' in the text, a value that is not TOML, or a path that does not exist.
+    """
+    result = _copy(table)
+    for assignment in assignments:
+        path, separator, text = assignment.partition("=")
+        if not separator or not path.strip():
+            raise ConfigurationError(f"--set {assignment}: needed is PATH=VALUE, as in damper.coulomb_friction=93.75")
+        keys = path.strip().split(".")
+        inner: Any = result
+        for depth, key in enumerate(keys):
+            if not isinstance(inner, dict) or key not in inner:
+                known = _paths(result)
+                near = difflib.get_close_matches(path.strip(), known, n=1, cutoff=0.0)
+                raise ConfigurationError(f"--set {assignment}: no parameter {path.strip()}; the nearest is {near[0]}")
+            if depth < len(keys) - 1:
+                inner = inner[key]
+        old = inner[keys[-1]]
+        if isinstance(old, dict):
+            inside = ", ".join(_join(path.strip(), key) for key in list(old)[:6])
+            raise ConfigurationError(f"--set {assignment}: {path.strip()} is a group; set one of {inside}")
+        inner[keys[-1]] = _value(assignment, text.strip(), old)
+    return result
+
+
+def as_table(instance: Any) -> dict[str, Any]:
+    """Nested dictionaries of a parameter object: the inverse of `build`."""
+    return {
+        entry.name: _plain(getattr(instance, entry.name))
+        for entry in dataclasses.fields(instance)
+        if getattr(instance, entry.name) is not None
+    }
+
+
+def write_text(instance: Any, header: str = "") -> str:
+    """TOML text of a parameter object, each value with its unit and meaning behind it.
+
+    Args:
+        instance: the object.
+        header: lines put on top, without the comment sign.
+
+    Returns:
+        The text; `build(type(instance), tomllib.loads(text))` gives an equal object.
+    """
+    lines = [f"# {line}".rstrip() for line in header.splitlines()]
+    _write(instance, "", lines)
+    return "\n".join(lines).strip() + "\n"
+
+
+def _write(instance: Any, path: str, lines: list[str]) -> None:
+    inner: list[tuple[str, Any]] = []
+    for entry in dataclasses.fields(instance):
+        value = getattr(instance, entry.name)
+        if dataclasses.is_dataclass(value):
+            inner.append((entry.name, value))
+        elif isinstance(value, Mapping):
+            inner.append((entry.name, value))
+        elif value is not None:
+            unit, meaning = entry.metadata.get("unit", "-"), entry.metadata.get("meaning", "")
+            lines.append(f"{entry.name} = {_literal(value)}  # [{unit}] {meaning}".rstrip())
+    for name, value in inner:
+        place = _join(path, name)
+        if dataclasses.is_dataclass(value):
+            lines.extend(["", f"[{place}]"])
+            _write(value, place, lines)
+            continue
+        if all(dataclasses.is_dataclass(member) for member in value.values()):
+            for key, member in value.items():
+                lines.extend(["", f"[{place}.{key}]"])
+                _write(member, f"{place}.{key}", lines)
+        else:
+            lines.extend(["", f"[{place}]"])
+            lines.extend(f"{key} = {_literal(member)}" for key, member in value.items())
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, tuple):
+        return "[" + ", ".join(_literal(item) for item in value) + "]"
+    return repr(value)
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return as_table(value)
+    if isinstance(value, Mapping):
+        return {key: _plain(member) for key, member in value.items()}
+    if isinstance(value, tuple):
+        return [_plain(member) for member in value]
+    return value
+
+
+def _convert(hint: Any, value: Any, path: str) -> Any:
+    """Turn a TOML value into the type of its field."""
+    origin = typing.get_origin(hint)
+    if origin in (types.UnionType, typing.Union):
+        inner = [option for option in typing.get_args(hint) if option is not type(None)]
+        return _convert(inner[0], value, path)
+    if dataclasses.is_dataclass(hint):
+        if not isinstance(value, Mapping):
+            raise ConfigurationError(f"{path}: found {value!r}, needed is a table of parameters")
+        return build(typing.cast(type[Any], hint), value, path)
+    if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
+        if not isinstance(value, Mapping):
+            raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
+        inner_hint = typing.get_args(hint)[1]
+        return types.MappingProxyType(
+            {key: _convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
+        )
+    if origin is tuple:
+        if not isinstance(value, list | tuple):
+            raise ConfigurationError(f"{path}: found {value!r}, needed is a list")
+        if typing.get_args(hint)[0] is str:
+            return tuple(_convert(str, item, path) for item in value)
+        return tuple(_number(item, path) for item in value)
+    if hint is float:
+        return _number(value, path)
+    if hint is str and not isinstance(value, str):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is a text in quotes")
+    if hint is bool and not isinstance(value, bool):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is true or false")
+    return value
+
+
+def _number(value: Any, path: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is a number")
+    return float(value)
+
+
+def _value(assignment: str, text: str, old: Any) -> Any:
+    """Parse the value of an override; a bare word stands for a text where a text is wanted."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        if isinstance(old, str) and re.fullmatch(r"[A-Za-z0-9_.-]+", text):
+            return text
+        raise ConfigurationError(f"--set {assignment}: {text!r} is not a number, a list of numbers or a text") from None
+
+
+def _unknown(path: str, key: str, known: Iterable[str]) -> str:
+    near = difflib.get_close_matches(key, list(known), n=1, cutoff=0.0)
+    nearest = f"; the nearest known name is {near[0]}" if near else ""
+    return f"{path}: unknown parameter{nearest}"
+
+
+def _paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
+    found: list[str] = []
+    for key, value in table.items():
+        place = _join(prefix, key)
+        found.extend(_paths(value, place) if isinstance(value, Mapping) else [place])
+    return found
+
+
+def _copy(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: _copy(value) if isinstance(value, Mapping) else value for key, value in table.items()}
+
+
+def _join(path: str, name: str) -> str:
+    return f"{path}.{name}" if path else name
