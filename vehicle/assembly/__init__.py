@@ -1,0 +1,1 @@
+"""Parameters and superelement into a MuJoCo model; the only room that names MJCF elements."""

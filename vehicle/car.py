@@ -1,0 +1,173 @@
+"""The car in Python: load it, run it on a signal, ask the run for what a test bench would give.
+
+    car = Car.load()
+    run = car.run(read_signal(find_input("low.csv")))
+    run["seat_rail_acc_z"]                # time history
+    run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
+    run.comfort().overall                 # comfort value of source 1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.analysis.comfort import ComfortValue, comfort_value
+from vehicle.analysis.frf import FrequencyResponse, frequency_response
+from vehicle.analysis.local_polynomial import local_polynomial_response
+from vehicle.analysis.slip import first_slip, slip_share
+from vehicle.errors import ConfigurationError
+from vehicle.excitation.signal import Signal
+from vehicle.flexbody.library import find_superelement
+from vehicle.flexbody.superelement import Superelement
+from vehicle.linear.frequency_response import matrix_response
+from vehicle.linear.matrices import CarMatrices, car_matrices
+from vehicle.linear.modes import Mode, car_modes
+from vehicle.names import AXES, acceleration_channels
+from vehicle.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.simulation.car_model import CarModel, build_model
+from vehicle.simulation.recording import Recording
+from vehicle.simulation.run import Progress, simulate
+
+SATURATED_VELOCITY = 1e-3
+"""Damper velocity [m/s] above which the smooth friction law is within 0.6 % of its limit."""
+
+
+class Car:
+    """A car on the shaker rig.
+
+    Args:
+        vehicle: parameters; those of the Ford-Focus-like car of source 1 by default.
+        folder: where the vehicle file lies, searched first for its superelement.
+    """
+
+    def __init__(self, vehicle: Vehicle | None = None, *, folder: Path | None = None) -> None:
+        self.vehicle = load_vehicle() if vehicle is None else vehicle
+        self.folder = folder
+
+    @classmethod
+    def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
+        """Read a car from a vehicle file.
+
+        Args:
+            path: TOML file; the car of source 1 by default.
+            overrides: texts like "damper.coulomb_friction=93.75".
+
+        Returns:
+            The car.
+
+        Raises:
+            ConfigurationError: the file, a name or a value is wrong.
+        """
+        file = None if path is None else Path(path)
+        return cls(load_vehicle(file, overrides), folder=None if file is None else file.parent)
+
+    @cached_property
+    def trimmed_body(self) -> Superelement:
+        """The superelement of the free trimmed body, as its file has it."""
+        return find_superelement(self.vehicle.body.superelement, self.folder)
+
+    @cached_property
+    def model(self) -> CarModel:
+        """The assembled, compiled and trimmed MuJoCo model."""
+        return build_model(self.vehicle, self.trimmed_body)
+
+    @cached_property
+    def matrices(self) -> CarMatrices:
+        """Mass, damping and stiffness matrices of the same model in its design position."""
+        return car_matrices(self.model.model, self.model.static)
+
+    def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
+        """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
+        return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest)
+
+    def matrix_frf(
+        self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str = "fr"
+    ) -> npt.NDArray[np.complex128]:
+        """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies)."""
+        return matrix_response(self.matrices, frequency, channels, wheel=wheel, stuck=_is_stuck(damper))
+
+    def run(self, signal: Signal, progress: Progress | None = None) -> Run:
+        """Simulate the car on a signal.
+
+        Args:
+            signal: displacement of one or both plates.
+            progress: called with the finished fraction now and then.
+
+        Returns:
+            The run.
+
+        Raises:
+            SimulationError: the run could not be carried through.
+        """
+        return Run(car=self, signal=signal, recording=simulate(self.model, signal, progress=progress))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Run:
+    """A finished simulation and what can be asked of it."""
+
+    car: Car
+    signal: Signal
+    recording: Recording
+
+    def __getitem__(self, channel: str) -> npt.NDArray[np.float64]:
+        """Time history of a channel; names are those of `interface.md`, units in `recording.units`."""
+        return self.recording[channel]
+
+    @property
+    def time(self) -> npt.NDArray[np.float64]:
+        """Sample times [s]."""
+        return self.recording.time
+
+    @property
+    def wheel(self) -> str:
+        """The excited wheel; the right one where both are."""
+        return self.recording.excited[0]
+
+    def frf(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> FrequencyResponse:
+        """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence.
+
+        Args:
+            channels: names; all acceleration channels by default.
+            window: None for the estimate without leakage from the whole record; a length [s] for the H1 estimate
+                of averaged Hann windows.
+
+        Returns:
+            The estimate; rows in the order of `channels`.
+
+        Raises:
+            DataError: the record is too short.
+        """
+        names = acceleration_channels() if channels is None else tuple(channels)
+        responses = np.array([self.recording[name] for name in names])
+        plate = self.recording[f"plate_{self.wheel}_displacement"]
+        step = self.recording.timestep
+        if window is None:
+            return local_polynomial_response(step, plate, responses, names=names)
+        return frequency_response(step, plate, responses, window_s=window, names=names)
+
+    def comfort(self, place: str = "seat_rail") -> ComfortValue:
+        """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""
+        xyz = np.array([self.recording[f"{place}_acc_{axis}"] for axis in AXES])
+        return comfort_value(self.recording.timestep, xyz)
+
+    def slip_share(self, wheel: str, velocity: float | None = None) -> float:
+        """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""
+        limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
+        return slip_share(self.recording[f"damper_{wheel}_velocity"], limit)
+
+    def first_slip(self, wheel: str, velocity: float = SATURATED_VELOCITY) -> float | None:
+        """First time [s] with |damper velocity| above a velocity [m/s]; None where there is none."""
+        return first_slip(self.time, self.recording[f"damper_{wheel}_velocity"], velocity)
+
+
+def _is_stuck(damper: str) -> bool:
+    if damper not in ("stuck", "sliding"):
+        raise ConfigurationError(f"damper: found {damper!r}, allowed are stuck, sliding")
+    return damper == "stuck"

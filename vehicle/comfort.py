@@ -1,0 +1,132 @@
+"""Evaluate a record of acceleration after ISO 2631-1 or BS 6841: `python -m vehicle.comfort --input FILE.csv`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Any
+
+from vehicle.errors import DataError, VehicleError
+
+INTERRUPTED = 130
+"""exit code after Ctrl-C"""
+
+
+def _parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(
+        prog="python -m vehicle.comfort",
+        description="Weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums of a record of acceleration.",
+        allow_abbrev=False,
+    )
+    parser.add_argument(
+        "--input", required=True, metavar="FILE.csv", help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g])"
+    )
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    parser.add_argument(
+        "--place",
+        default="seat",
+        metavar="NAME",
+        help="point of contact, names weightings and factors: seat (default; z Wk, x and y Wd), backrest, feet, "
+        "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841",
+    )
+    parser.add_argument(
+        "--offset",
+        choices=("refuse", "remove", "keep"),
+        default="refuse",
+        help="mean of an axis: refuse a record where it changes a weighted RMS by more than 1 %% (default), remove it "
+        "(sensor offset, gravity), or keep it (a record that starts at rest)",
+    )
+    parser.add_argument(
+        "--mtvv", choices=("linear", "exponential"), default="linear", help="running average of the MTVV"
+    )
+    parser.add_argument("--debug", action="store_true", help="show a traceback with an error")
+    return parser
+
+
+def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
+    """Read, treat the offset as asked, and evaluate."""
+    from vehicle.analysis.acceleration_record import read_acceleration
+    from vehicle.analysis.evaluation import AXES, application, evaluate
+    from vehicle.analysis.offset import OFFSET_EFFECT, offset_effect, without_offset
+
+    application(options.place)
+    record = read_acceleration(options.input)
+    mean = record.xyz.mean(axis=1)
+    xyz = without_offset(record.xyz) if options.offset == "remove" else record.xyz
+    if options.offset == "refuse":
+        for axis, effect, offset in zip(
+            AXES, offset_effect(record.time_step, record.xyz, place=options.place), mean, strict=True
+        ):
+            if effect > OFFSET_EFFECT:
+                raise DataError(
+                    f"{options.input}: the mean of column {axis!r} is {offset:g} m/s2 and changes its weighted RMS by "
+                    f"{100 * effect:.3g} %, allowed is {100 * OFFSET_EFFECT:g} %; give --offset remove if it is a "
+                    "sensor's offset or gravity, --offset keep if the record starts at rest and the mean is real"
+                )
+    result = evaluate(record.time_step, xyz, place=options.place, average=options.mtvv)
+    means = dict(zip(AXES, (float(value) for value in mean), strict=True))
+    offset = {"treatment": "removed" if options.offset == "remove" else "kept", "mean": means}
+    return {"input": options.input, "offset": offset, **result, "notices": list(record.notices)}
+
+
+def _table(result: dict[str, Any]) -> str:
+    """Return the result as text for the screen."""
+    rows = (
+        ("weighting", "weighting", ""),
+        ("weighted RMS", "weighted_rms", "m/s2"),
+        ("MTVV", "mtvv", "m/s2"),
+        ("crest factor", "crest_factor", ""),
+        ("VDV", "vdv", "m/s^1.75"),
+        ("estimated VDV", "estimated_vdv", "m/s^1.75"),
+        ("MSDV (Wf)", "msdv", "m/s^1.5"),
+    )
+    lines = [
+        f"{result['input']}: {result['duration_s']:g} s at {result['sampling_rate_hz']:g} Hz, {result['place']} "
+        f"({result['standard']})",
+        f"{'':16}{'x':>12}{'y':>12}{'z':>12}",
+    ]
+    for title, key, unit in rows:
+        cells = [result[axis][key] for axis in ("x", "y", "z")]
+        shown = ["-" if v is None else v if isinstance(v, str) else f"{v:.4g}" for v in cells]
+        lines.append(f"{title:16}" + "".join(f"{cell:>12}" for cell in shown) + f"  {unit}".rstrip())
+    sums = result["vector_sum"]
+    lines.append(f"vector sum of RMS (comfort)  {sums['weighted_rms']:.4g} m/s2")
+    if sums["health_weighted_rms"] is not None:
+        lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
+    lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
+    return "\n".join(lines)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; return its exit code (0, 2 usage, 3 bad data, 6 output, 130 interrupted)."""
+    options = _parser().parse_args(argv)
+    try:
+        result = _evaluate(options)
+        print(json.dumps(result, indent=2, allow_nan=False) if options.json else _table(result), flush=True)
+        for remark in (*result["notices"], *result["reasons"]):
+            print(f"notice: {remark}", file=sys.stderr)
+    except VehicleError as error:
+        if options.debug:
+            traceback.print_exc()
+        print(f"error: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # the reader of a pipe has gone: keep Python's own flush at exit quiet
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 6
+    except OSError as error:
+        print(f"error: standard output: cannot be written ({error.strerror}); nothing was saved", file=sys.stderr)
+        return 6
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

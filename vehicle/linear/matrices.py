@@ -1,0 +1,164 @@
+"""Mass, damping and stiffness matrices of the assembled car in its design position.
+
+M u'' + C u' + K u + sum_b j_b' f_b = sum_p (k_p z_p + c_p z_p'),   f_b' = K2 j_b u' - f_b / tau_b,   Jc u = 0
+
+with u the velocity coordinates of MuJoCo as small displacements, f_b the Maxwell branches, z_p the plates and Jc the
+ideal joints (and the dampers where they stick). K holds the geometric stiffness of gravity and preloads: it is the
+derivative of the very forces that the time simulation applies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.names import AXES, acceleration_places
+from vehicle.simulation.callbacks import installed
+from vehicle.simulation.element_rows import ElementRows
+from vehicle.simulation.elements import numeric
+from vehicle.simulation.static_trim import StaticTrim
+
+Vector = npt.NDArray[np.float64]
+
+DIFFERENCE_STEP = 1e-6
+"""Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CarMatrices:
+    """Matrices of the equation above.
+
+    Attributes:
+        mass, damping, stiffness: M, C (without the main dampers), K; (n, n).
+        constraints: Jc of the ideal joints; (k, n).
+        dampers: velocity coordinates of the damper joints, in the order of WHEELS; (2,).
+        viscous: damping constants of the dampers [N s/m]; (2,).
+        branch_rows: j_b; (b, n).
+        branch_stiffness, branch_time: K2 [N/m] and tau [s]; (b,).
+        plate_stiffness, plate_damping: k_p and c_p, force per vertical displacement and velocity; (2, n).
+        outputs: rows that turn u'' into accelerations; channel name to (n,).
+        body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
+            body name to (6, n).
+        body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
+        modal: velocity coordinates of the flexible modes.
+    """
+
+    mass: Vector
+    damping: Vector
+    stiffness: Vector
+    constraints: Vector
+    dampers: npt.NDArray[np.intp]
+    viscous: Vector
+    branch_rows: Vector
+    branch_stiffness: Vector
+    branch_time: Vector
+    plate_stiffness: Vector
+    plate_damping: Vector
+    outputs: dict[str, Vector]
+    body_rows: dict[str, Vector]
+    body_masses: dict[str, Vector]
+    modal: slice
+
+
+def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
+    """Read the matrices of a trimmed car from its model.
+
+    Args:
+        model: compiled and trimmed car (not yet prepared for stepping).
+        static: its preloads.
+
+    Returns:
+        The matrices.
+    """
+    data = mujoco.MjData(model)
+    rows = ElementRows(model, static.preload)
+    e = rows.elements
+    with installed(rows):
+        stiffness = _tangent_stiffness(model, data)
+        mujoco.mj_resetData(model, data)
+        mujoco.mj_forward(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
+    # In the design position all carriers but none are parallel to the vehicle frame, so rows are element axes.
+    row_damping = np.zeros(e.row_count)
+    row_damping[e.rows] = e.damping
+    damping = jacobian.T @ (row_damping[:, None] * jacobian)
+    damping[np.diag_indices(model.nv)] += np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
+    present = e.branch_stiffness > 0.0
+    vertical = e.rows[e.tyres][:, 2]
+    modes = e.modal_columns
+    return CarMatrices(
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
+        constraints=jacobian[e.hard_rows.ravel()],
+        dampers=e.damper_dofs,
+        viscous=rows.viscous,
+        branch_rows=jacobian[e.rows[present]],
+        branch_stiffness=e.branch_stiffness[present],
+        branch_time=e.branch_time[present],
+        plate_stiffness=e.stiffness[e.tyres, 2][:, None] * jacobian[vertical],
+        plate_damping=e.damping[e.tyres, 2][:, None] * jacobian[vertical],
+        outputs=_outputs(model, data, modes),
+        body_rows=_body_rows(model, data),
+        body_masses=_body_masses(model, data),
+        modal=modes,
+    )
+
+
+def _tangent_stiffness(model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
+    """K = -dF/du of all static forces, by central differences."""
+    stiffness = np.zeros((model.nv, model.nv))
+    for column in range(model.nv):
+        forces = []
+        for sign in (1.0, -1.0):
+            mujoco.mj_resetData(model, data)
+            step = np.zeros(model.nv)
+            step[column] = sign
+            mujoco.mj_integratePos(model, data.qpos, step, DIFFERENCE_STEP)
+            mujoco.mj_forward(model, data)
+            forces.append(data.qfrc_smooth.copy())
+        stiffness[:, column] = -(forces[0] - forces[1]) / (2.0 * DIFFERENCE_STEP)
+    return stiffness
+
+
+def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:
+    """Rows of all acceleration channels."""
+    outputs = {}
+    for place in acceleration_places():
+        jacobian = np.zeros((3, model.nv))
+        mujoco.mj_jacSite(model, data, jacobian, None, model.site(f"place/{place}").id)
+        shape = numeric(model, f"shape/place/{place}")
+        if shape is not None:
+            jacobian[:, modes] = shape.reshape(3, -1)
+        for axis, row in zip(AXES, jacobian, strict=True):
+            outputs[f"{place}_acc_{axis}"] = row
+    return outputs
+
+
+def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
+    found = {}
+    for body in range(1, model.nbody):
+        if model.body_mass[body] > 0.0 and not model.body(body).name.startswith("mode_"):
+            rows = np.zeros((6, model.nv))
+            mujoco.mj_jacBodyCom(model, data, rows[:3], rows[3:], body)
+            found[model.body(body).name] = rows
+    return found
+
+
+def _body_masses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
+    found = {}
+    for body in range(1, model.nbody):
+        if model.body_mass[body] > 0.0 and not model.body(body).name.startswith("mode_"):
+            matrix = np.zeros((6, 6))
+            matrix[:3, :3] = model.body_mass[body] * np.eye(3)
+            frame = data.ximat[body].reshape(3, 3)
+            matrix[3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
+            found[model.body(body).name] = matrix
+    return found
+
+

@@ -1,0 +1,154 @@
+"""Modes of the assembled car: constraints eliminated, Maxwell branches as states, damped eigenvalues."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg
+
+from vehicle.linear.matrices import CarMatrices
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Mode:
+    """A damped mode u(t) = Re(shape exp(s t)).
+
+    Attributes:
+        frequency: |s| / 2 pi, natural frequency [Hz].
+        damping_ratio: -Re(s) / |s| [-].
+        shape: complex displacement of the velocity coordinates; (n,).
+        energy: share of the kinetic energy by group of parts; sums to 1.
+        description: what moves.
+    """
+
+    frequency: float
+    damping_ratio: float
+    shape: npt.NDArray[np.complex128]
+    energy: dict[str, float]
+    description: str
+
+
+def free_basis(matrices: CarMatrices, *, stuck: bool) -> Vector:
+    """Orthonormal basis N of the motions that the ideal joints (and stuck dampers) allow: Jc N = 0; (n, m)."""
+    rows = [matrices.constraints]
+    if stuck:
+        lock = np.zeros((len(matrices.dampers), matrices.mass.shape[0]))
+        lock[np.arange(len(matrices.dampers)), matrices.dampers] = 1.0
+        rows.append(lock)
+    stacked = np.vstack(rows)
+    if stacked.shape[0] == 0:
+        return np.eye(matrices.mass.shape[0])
+    return np.asarray(scipy.linalg.null_space(stacked))
+
+
+def state_matrix(matrices: CarMatrices, *, stuck: bool) -> tuple[Vector, Vector]:
+    """First-order form x' = A x of the free car with x = (y, y', f_b) and u = N y.
+
+    Returns:
+        A, and the basis N.
+    """
+    basis = free_basis(matrices, stuck=stuck)
+    mass = basis.T @ matrices.mass @ basis
+    full_damping = matrices.damping.copy()
+    if not stuck:
+        full_damping[matrices.dampers, matrices.dampers] += matrices.viscous
+    damping = basis.T @ full_damping @ basis
+    stiffness = basis.T @ matrices.stiffness @ basis
+    branches = matrices.branch_rows @ basis
+    size, count = basis.shape[1], len(branches)
+    matrix = np.zeros((2 * size + count, 2 * size + count))
+    matrix[:size, size : 2 * size] = np.eye(size)
+    matrix[size : 2 * size] = -scipy.linalg.solve(mass, np.hstack([stiffness, damping, branches.T]), assume_a="pos")
+    matrix[2 * size :, size : 2 * size] = matrices.branch_stiffness[:, None] * branches
+    matrix[2 * size :, 2 * size :] = -np.diag(1.0 / matrices.branch_time)
+    return matrix, basis
+
+
+def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> list[Mode]:
+    """Modes of the car up to a frequency.
+
+    Args:
+        matrices: of the assembled car.
+        stuck: True with the dampers locked, False with their viscous part and no friction.
+        highest: highest natural frequency [Hz].
+
+    Returns:
+        Modes sorted by natural frequency; overdamped motions (real poles) are left out.
+    """
+    matrix, basis = state_matrix(matrices, stuck=stuck)
+    poles, vectors = np.linalg.eig(matrix)
+    found = []
+    size = basis.shape[1]
+    for index in np.flatnonzero(poles.imag > 1e-6):
+        frequency = float(abs(poles[index])) / (2.0 * np.pi)
+        if frequency <= highest:
+            shape = basis @ vectors[:size, index]
+            energy = _energy(matrices, shape)
+            found.append(
+                Mode(
+                    frequency=frequency,
+                    damping_ratio=float(-poles[index].real / abs(poles[index])),
+                    shape=shape,
+                    energy=energy,
+                    description=_describe(matrices, shape, energy),
+                )
+            )
+    return sorted(found, key=lambda mode: mode.frequency)
+
+
+def group_of(body: str) -> str:
+    """Group of parts that a rigid body belongs to in the energy shares."""
+    if body.startswith("main_spring_upper"):
+        return "body"
+    if body.startswith("stabilizer"):
+        return "stabilizer"
+    for wheel in ("fr", "fl"):
+        if body.endswith(f"_{wheel}"):
+            return f"wheel_{wheel}"
+    return body
+
+
+def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> dict[str, float]:
+    """Shares of the kinetic energy, v^H M v of each group."""
+    energy: dict[str, float] = {}
+    for body, rows in matrices.body_rows.items():
+        velocity = rows @ shape
+        value = float(np.real(np.vdot(velocity, matrices.body_masses[body] @ velocity)))
+        energy[group_of(body)] = energy.get(group_of(body), 0.0) + value
+    energy["flexible"] = float(np.sum(np.abs(shape[matrices.modal]) ** 2))
+    total = sum(energy.values())
+    return {name: value / total for name, value in energy.items()}
+
+
+def _describe(matrices: CarMatrices, shape: npt.NDArray[np.complex128], energy: dict[str, float]) -> str:
+    """Words for a mode: the group with the largest share and the direction in which it moves."""
+    leader = max(energy, key=lambda name: energy[name])
+    if leader == "flexible":
+        amplitudes = np.abs(shape[matrices.modal]) ** 2
+        number = int(np.argmax(amplitudes)) + 1
+        words = f"flexible body, mode {number}"
+    elif leader in ("body", "engine"):
+        words = f"{leader} {_rigid_direction(matrices, leader, shape)}"
+    elif leader.startswith("wheel"):
+        wheel = leader[-2:]
+        velocity = np.abs(matrices.body_rows[f"tyre_{wheel}"][:3] @ shape)
+        direction = ("longitudinal", "lateral", "vertical")[int(np.argmax(velocity))]
+        side = "right" if wheel == "fr" else "left"
+        words = f"{side} wheel {direction}"
+    else:
+        words = leader.replace("_", " ")
+    others = [name for name, share in sorted(energy.items(), key=lambda item: -item[1]) if share > 0.2]
+    partners = [name.replace("_", " ") for name in others if name != leader]
+    return words + (f", with {', '.join(partners)}" if partners else "")
+
+
+def _rigid_direction(matrices: CarMatrices, body: str, shape: npt.NDArray[np.complex128]) -> str:
+    """Direction of a rigid body's motion that holds most of its kinetic energy."""
+    velocity = matrices.body_rows[body] @ shape
+    weights = np.real(np.conj(velocity) * (matrices.body_masses[body] @ velocity))
+    names = ("longitudinal (x)", "lateral (y)", "heave (z)", "roll (Rx)", "pitch (Ry)", "yaw (Rz)")
+    return names[int(np.argmax(weights))]

@@ -1,0 +1,85 @@
+"""`python -m vehicle.modes`: natural frequencies, damping and description of the modes of the assembled car."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from vehicle.command_line import Parser, run_command
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = Parser(
+        prog="python -m vehicle.modes", description="Modes up to 60 Hz of the assembled car, from its matrices."
+    )
+    found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
+    found.add_argument("--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE")
+    found.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers")
+    found.add_argument("--json", action="store_true", help="print JSON")
+    found.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    debug = "--debug" in (sys.argv[1:] if arguments is None else arguments)
+    return run_command(lambda: _job(parser().parse_args(arguments)), debug=debug)
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.car import Car
+
+    car = Car.load(options.vehicle, options.overrides)
+    found = modes_table(car, options.damper)
+    print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+
+
+def modes_table(car: Any, damper: str) -> dict[str, Any]:
+    """Modes of the car and of its free body, in plain numbers and texts."""
+    body = car.model.superelement
+    trimmed = car.trimmed_body
+    return {
+        "damper": damper,
+        "inertia_variant": car.vehicle.body.inertia_variant,
+        "modes": [
+            {
+                "frequency_hz": mode.frequency,
+                "damping_ratio": mode.damping_ratio,
+                "description": mode.description,
+                "energy": mode.energy,
+            }
+            for mode in car.modes(damper)
+        ],
+        "free_body": {
+            "frequency_hz": [float(value) for value in trimmed.frequencies * car.vehicle.body.frequency_scale],
+            "description": list(trimmed.mode_names),
+            "with_spring_seats_hz": [float(value) for value in body.frequencies * car.vehicle.body.frequency_scale],
+        },
+    }
+
+
+def report(found: dict[str, Any]) -> str:
+    """The table as text."""
+    lines = [
+        f"assembled car, dampers {found['damper']}, inertia {found['inertia_variant']}",
+        f"{'Hz':>8} {'damping':>8}  {'description':<52} energy",
+    ]
+    for mode in found["modes"]:
+        shares = sorted(mode["energy"].items(), key=lambda item: -item[1])
+        text = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares if share >= 0.05)
+        lines.append(
+            f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<52} {text}"
+        )
+    free = found["free_body"]
+    lines.append("free trimmed body")
+    for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):
+        lines.append(f"{frequency:8.3f}           {name}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,163 @@
+"""`python -m vehicle.shaker`: a measured signal on the shaker, and what the test bench would give."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from vehicle.command_line import Parser, ProgressLine, run_command
+from vehicle.names import WHEEL_OF_OPTION
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = Parser(
+        prog="python -m vehicle.shaker",
+        description="Put a shaker signal under one wheel of the complete car.",
+        epilog="Exit codes: 0 all done, 2 usage, 3 bad data, 4 simulation failed, 5 something is missing, 6 output.",
+    )
+    found.add_argument("--input", required=True, metavar="FILE", help="CSV file, or the name of a shipped one: low.csv")
+    found.add_argument("--output", type=Path, metavar="DIR", help="folder of the run; runs/<input stem> by default")
+    found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
+    found.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="override one parameter, as damper.coulomb_friction=93.75; may be repeated",
+    )
+    found.add_argument(
+        "--wheel", choices=sorted(WHEEL_OF_OPTION), default="front_right", help="wheel of a plain displacement column"
+    )
+    found.add_argument("--timestep", type=float, metavar="S", help="step of the integration [s]")
+    found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
+    found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
+    found.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
+    found.add_argument("--video-duration", type=float, default=10.0, metavar="S", help="length of the excerpt [s]")
+    found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower")
+    found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
+    found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
+    found.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
+    found.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
+    found.add_argument("--road", action="store_true", help="accept levels beyond a shaker: a road, not a measurement")
+    found.add_argument("--force", action="store_true", help="replace an existing folder")
+    found.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    found.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    debug = "--debug" in (sys.argv[1:] if arguments is None else arguments)
+    return run_command(lambda: _job(parser().parse_args(arguments)), debug=debug)
+
+
+def _job(options: argparse.Namespace) -> None:
+    # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.errors import ConfigurationError
+    from vehicle.excitation.csv_file import read_signal
+    from vehicle.excitation.input_files import find_input
+    from vehicle.output_folder import check_output
+
+    source = find_input(options.input)
+    output = options.output or Path("runs") / source.stem
+    check_output(output, force=options.force, protect=source)
+    video_name = None
+    if options.video is not None:
+        from vehicle.rendering.backend import choose_backend
+
+        video_name = Path(options.video) if options.video else Path(f"{source.stem}.mp4")
+        if video_name.suffix != ".mp4":
+            raise ConfigurationError(f"--video {video_name}: a film is written as .mp4; give FILE.mp4")
+        if options.slow_motion < 1.0 or options.video_duration <= 0.0:
+            raise ConfigurationError("--slow-motion must be at least 1 and --video-duration greater than 0 s")
+        choose_backend()
+    overrides = list(options.overrides)
+    if options.timestep is not None:
+        overrides.append(f"solver.timestep={options.timestep!r}")
+
+    from vehicle.car import Car, Run
+    from vehicle.studies.shaker import ShakerOptions, shaker
+
+    car = Car.load(options.vehicle, overrides)
+    signal = read_signal(
+        source,
+        wheel=WHEEL_OF_OPTION[options.wheel],
+        interpolate=options.interpolate,
+        resample_hz=options.resample,
+        remove_mean=options.remove_mean,
+        accept_implausible=options.road,
+    )
+
+    def make_film(run: Run, path: Path) -> None:
+        from vehicle.rendering.film import film
+
+        film(
+            run,
+            path,
+            start=options.video_start,
+            duration=options.video_duration,
+            slow=options.slow_motion,
+            exaggeration=options.exaggeration,
+            progress=ProgressLine("film      ", enabled=not options.quiet),
+        )
+
+    summary = shaker(
+        car,
+        signal,
+        ShakerOptions(
+            output=output,
+            force=options.force,
+            time_format=options.time_format,
+            video=None if video_name is None else make_film,
+            video_name=video_name,
+            input_file=source,
+        ),
+        ProgressLine("simulation", enabled=not options.quiet),
+    )
+    if not options.quiet:
+        print(report(summary, output))
+
+
+def report(summary: dict[str, Any], output: Path) -> str:
+    """The summary as a page of text."""
+    share, saturated, first = summary["slip_share"], summary["friction_saturated_share"], summary["first_slip_s"]
+    lines = [
+        f"input       {summary['input']['file']}, RMS {1e3 * summary['input']['rms_m']:.4g} mm, "
+        f"{summary['input']['duration_s']:g} s, wheel {summary['input']['wheel']}",
+        f"damper      in slip for {100 * share['fr']:.2f} % (right) and {100 * share['fl']:.2f} % (left) of the time, "
+        f"|v| > {1e3 * share['slip_velocity']:g} mm/s",
+        f"            friction saturated (|v| > 1 mm/s) for {100 * saturated['fr']:.2f} % and "
+        f"{100 * saturated['fl']:.2f} %; first at {_time(first['fr'])} and {_time(first['fl'])}",
+    ]
+    for channel in (f"knuckle_{summary['input']['wheel']}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
+        strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
+        text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
+        lines.append(f"resonances  {channel}: {text or 'none'} Hz")
+    comfort = summary["comfort"]["seat_rail"]
+    rms = comfort["rms_2_50_hz"]
+    weighted = comfort["iso2631"]["vector_sum"]["weighted_rms"]
+    lines += [
+        f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz "
+        f"(x {rms['x']:.4f}, y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {weighted:.4f} m/s2",
+        f"static      tyre loads {summary['static']['tyre_load_n']['fr']:.0f} N (right) and "
+        f"{summary['static']['tyre_load_n']['fl']:.0f} N (left)",
+        f"solver      {summary['solver']['engine']}, step {1e3 * summary['solver']['timestep_s']:g} ms, "
+        f"{summary['solver']['realtime_factor']:.1f} times real time, "
+        f"energy residual {summary['solver']['energy_residual']:.1e}",
+    ]
+    lines += [f"warning     {text}" for text in summary["solver"]["warnings"]]
+    lines += [f"note        {text}" for text in summary["notices"]]
+    lines.append(f"files       {output}: {', '.join(summary['files'].values())}")
+    return "\n".join(lines)
+
+
+def _time(value: float | None) -> str:
+    return "never" if value is None else f"{value:.3f} s"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Static trim, callbacks, the stepping loop, and the matrices of the same model."""

@@ -1,0 +1,44 @@
+"""MuJoCo's process-wide callbacks, installed for one model and always removed again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import mujoco
+
+from vehicle.errors import SimulationError
+from vehicle.simulation.element_rows import ElementRows
+
+
+@contextmanager
+def installed(rows: ElementRows) -> Iterator[None]:
+    """Install the callbacks of one simulation for the time of a `with` block.
+
+    Callbacks are global to the process: they are refused while others are installed, they check which model calls
+    them, and they never outlive the block, so that no other model meets them.
+
+    Args:
+        rows: element laws of the model that will be stepped inside the block.
+
+    Raises:
+        SimulationError: other callbacks are installed already.
+    """
+    if mujoco.get_mjcb_control() is not None:
+        raise SimulationError(
+            "mjcb_control is taken by another simulation in this process; finish that one first, or use a process each"
+        )
+
+    def control(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        if model is rows.model or model._address == rows.model._address:
+            rows(model, data)
+
+    mujoco.set_mjcb_control(control)
+    mujoco.set_mjcb_act_gain(rows.actuator_gain)
+    mujoco.set_mjcb_act_bias(rows.actuator_bias)
+    try:
+        yield
+    finally:
+        mujoco.set_mjcb_control(None)
+        mujoco.set_mjcb_act_gain(None)
+        mujoco.set_mjcb_act_bias(None)

@@ -1,0 +1,88 @@
+"""A car ready to be stepped: assembled, compiled, trimmed and checked against its time step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from vehicle.assembly.spec import assemble
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.flexbody.superelement import Superelement
+from vehicle.parameters.vehicle import Vehicle
+from vehicle.simulation.callbacks import installed
+from vehicle.simulation.element_rows import UNCONDITIONAL, ElementRows
+from vehicle.simulation.static_trim import StaticTrim, joint_spring_stiffness, trim
+
+LARGEST_PHASE = 2.2
+"""Largest w h of the stiffest motion; the step of the element rows is stable up to sqrt(6) = 2.45."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CarModel:
+    """Compiled model of a car with its preloads; the model is as generated, `prepare_model` comes with a run."""
+
+    vehicle: Vehicle
+    superelement: Superelement
+    spec: mujoco.MjSpec
+    model: mujoco.MjModel
+    static: StaticTrim
+
+
+def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
+    """Assemble, compile and trim a car.
+
+    Args:
+        vehicle: parameters.
+        trimmed_body: superelement of its body.
+
+    Returns:
+        The car model.
+
+    Raises:
+        ConfigurationError: the time step is too long for the stiffest part; the message says how long it may be.
+        SimulationError: MuJoCo refuses the model, or the car is not held.
+    """
+    assembly = assemble(vehicle, trimmed_body)
+    try:
+        model = assembly.spec.compile()
+    except ValueError as error:
+        raise SimulationError(f"MuJoCo refuses the generated car: {' '.join(str(error).split())}") from None
+    static = trim(model)
+    _check_step(model, static)
+    return CarModel(
+        vehicle=vehicle, superelement=assembly.superelement, spec=assembly.spec, model=model, static=static
+    )
+
+
+def _check_step(model: mujoco.MjModel, static: StaticTrim) -> None:
+    """Refuse a step at which the explicit stiffness of the stiffest part would be unstable."""
+    data = mujoco.MjData(model)
+    rows = ElementRows(model, static.preload)
+    with installed(rows):
+        mujoco.mj_forward(model, data)
+    e = rows.elements
+    step = model.opt.timestep
+    jacobian = data.efc_J.reshape(e.row_count, model.nv)
+    explicit, averaged = np.zeros(e.row_count), np.zeros(e.row_count)
+    # Branches are averaged over three steps, which is stable whatever their stiffness.
+    total = e.stiffness
+    explicit[e.rows] = np.where(e.averaged[:, None], 0.0, total)
+    averaged[e.rows] = np.where(e.averaged[:, None], total, 0.0)
+    explicit[e.rotation_rows] = e.rotation_stiffness
+    explicit[e.springs] = e.spring_stiffness
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    mass += jacobian.T @ (UNCONDITIONAL * step**2 * averaged[:, None] * jacobian)
+    stiffness = jacobian.T @ (explicit[:, None] * jacobian)
+    stiffness[np.diag_indices(model.nv)] += joint_spring_stiffness(model)
+    factor = np.linalg.cholesky(mass)
+    reduced = np.linalg.solve(factor, np.linalg.solve(factor, stiffness).T)
+    fastest = float(np.sqrt(max(np.linalg.eigvalsh((reduced + reduced.T) / 2.0)[-1], 0.0)))
+    if fastest * step > LARGEST_PHASE:
+        raise ConfigurationError(
+            f"solver.timestep: found {step:g} s, but the stiffest part of this car vibrates at "
+            f"{fastest / (2.0 * np.pi):.0f} Hz; give at most {LARGEST_PHASE / fastest:.2g} s, "
+            "or a lower stiffness where it is a mistake"
+        )

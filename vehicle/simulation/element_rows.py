@@ -1,0 +1,212 @@
+"""The element laws as constraint rows: what `mjcb_control` writes before MuJoCo solves.
+
+MuJoCo answers a quadratic row with f = D (aref - J a). The callback rewrites each row of an element so that, with
+the explicit part f0 given to the generalised forces,
+
+    f = f0 - D J a,    f0 = preload - K r - B r' - f2,    D = B h/2 + beta K h2 + branch,
+
+r' being the rate at the middle of the past step: B (r' + h a/2) is the damping at the present time (centred, second
+order), and beta = 1/12 makes the step of a linear system fourth order in its frequencies (Fox and Goodwin, Numerov);
+stiff local springs take beta = 1/4, which is stable at any step (Newmark). The friction row of a damper is
+f = -clamp(c (v + h a)): D = c h, aref = -v/h, its limit the friction force: set-valued in effect, sticking is exact.
+
+Modal coordinates q of the flexible body enter a row at node n as J -> J +- R Phi_n, r -> r +- R Phi_n q and
+r' -> r' +- R Phi_n q', R being the rotation of the body.
+"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.simulation.elements import Elements, modal_joints, read_elements
+
+Vector = npt.NDArray[np.float64]
+
+EMPTY_ROW = 1e-9
+"""Impedance [kg] of a row without damping and stiffness: small against every mass, and not zero."""
+
+FOURTH_ORDER = 1.0 / 12.0
+UNCONDITIONAL = 1.0 / 4.0
+
+
+def prepare_model(model: mujoco.MjModel) -> None:
+    """Give springs and dampers inside joints the same centred treatment as the rows, through the armature.
+
+    (M + B h/2 + K h2/12) a = ... - K q - B q' for the modal coordinates and the stabilizer torsion.
+
+    Args:
+        model: compiled car, as generated; changed in place, once.
+    """
+    step = model.opt.timestep
+    for joint in range(model.njnt):
+        dof = model.jnt_dofadr[joint]
+        damping = float(np.ravel(model.dof_damping[dof])[0])
+        stiffness = float(np.ravel(model.jnt_stiffness[joint])[0])
+        if damping > 0.0 or stiffness > 0.0:
+            model.dof_armature[dof] += damping * step / 2 + FOURTH_ORDER * stiffness * step**2
+    # Bodies with a single slide take their mass from constants that are derived here.
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
+class ElementRows:
+    """State of the element laws of one simulation: the callback and what it remembers between steps.
+
+    Args:
+        model: compiled car; its armatures are changed by `prepare_model`.
+        preload: static force of every row in element axes [N], (rows,); zeros by default.
+    """
+
+    def __init__(self, model: mujoco.MjModel, preload: Vector | None = None) -> None:
+        self.model = model
+        self.elements = read_elements(model)
+        e = self.elements
+        self.preload = np.zeros(e.row_count) if preload is None else preload
+        self.element_preload = self.preload[e.rows]
+        self.hard_preload = self.preload[e.hard_rows]
+        self.rotation_preload = self.preload[e.rotation_rows]
+        self.spring_preload = self.preload[e.springs]
+        self.plate_velocity = np.zeros((len(e.tyres), 3))
+        self.plate_acceleration = np.zeros((len(e.tyres), 3))
+        joints = modal_joints(model)
+        first = int(model.jnt_qposadr[joints[0]]) if joints else 0
+        self.modal_positions = slice(first, first + len(joints))
+        self._read_dampers(model)
+        self._set_step(model.opt.timestep)
+        self.reset()
+
+    def _read_dampers(self, model: mujoco.MjModel) -> None:
+        """Laws of the dampers, owned by their actuators."""
+        actuators = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
+        parameters = model.actuator_biasprm[actuators, :6].T
+        self.viscous, self.smoothing, self.sliding_limit, self.static_limit, self.stribeck_velocity, self.exponent = (
+            parameters.copy()
+        )
+        self.stribeck = bool(np.any(self.static_limit != self.sliding_limit))
+
+    def _set_step(self, step: float) -> None:
+        """Constants that depend on the time step."""
+        e, h = self.elements, step
+        self.step = h
+        beta = np.where(e.averaged, UNCONDITIONAL, FOURTH_ORDER)[:, None]
+        present = e.branch_time > 0.0
+        tau = np.where(present, e.branch_time, 1.0)
+        self.decay = np.where(present, np.exp(-h / tau), 0.0)
+        # Exact response of the branch to a rate that is linear over the step: mean rate and its slope.
+        self.branch_gain = np.where(present, e.branch_stiffness * tau * -np.expm1(-h / tau), 0.0)
+        series = tau * (0.5 * h * (1.0 + np.exp(-h / tau)) + tau * np.expm1(-h / tau))
+        self.branch_slope = np.where(present, e.branch_stiffness * series, 0.0)
+        # A branch may be as stiff as the sheet metal behind a mount: its force is averaged over three steps too.
+        ahead = UNCONDITIONAL * ((self.decay - 1.0) * self.branch_slope + self.branch_gain * h)
+        branch = np.where(present, self.branch_slope + ahead, 0.0)
+        self.impedance = np.maximum(e.damping * h / 2 + beta * e.stiffness * h**2 + branch, EMPTY_ROW)
+        self.inertial = beta[e.tyres] * e.stiffness[e.tyres] * h**2
+        self.rotation_impedance = np.maximum(FOURTH_ORDER * e.rotation_stiffness * h**2, EMPTY_ROW)
+        self.spring_impedance = np.maximum(FOURTH_ORDER * e.spring_stiffness * h**2, EMPTY_ROW)
+        self.damper_impedance = np.maximum(self.viscous * h / 2, EMPTY_ROW)
+
+    def reset(self) -> None:
+        """Forget the past: no branch forces, no rates."""
+        shape = self.elements.rows.shape
+        self.branch_past = np.zeros(shape)  # part of f2 known before the acceleration of the step is
+        self.branch_force = np.zeros(shape)  # f2 at the last completed step
+        self.last_rate = np.zeros(shape)
+        self.last_time = -1.0
+        self.residual = np.zeros(shape)
+        self.rate = np.zeros(shape)
+        self.explicit = np.zeros(self.elements.row_count)
+        self.limits = self.static_limit.copy()
+
+    def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        """Rewrite the rows of `data`; installed as `mjcb_control`."""
+        e = self.elements
+        jacobian = data.efc_J.reshape(e.row_count, model.nv)
+        position, velocity = data.efc_pos, data.efc_vel
+        impedance, regulariser, reference = data.efc_D, data.efc_R, data.efc_aref
+        orientation = data.xmat
+        q_columns = e.modal_columns
+        turned_rows = e.node_rows
+        residual, rate = position[e.rows], velocity[e.rows]
+        spring_residual = position[e.springs]
+        if q_columns.stop:
+            turn = orientation[e.body].reshape(3, 3)
+            modes = q_columns.stop - q_columns.start
+            shapes = (turn @ e.node_shapes).reshape(3, -1, modes)
+            jacobian[turned_rows, q_columns] = shapes
+            q = data.qpos[self.modal_positions]
+            qd = data.qvel[q_columns]
+            position[turned_rows] += shapes @ q
+            velocity[turned_rows] += shapes @ qd
+            residual, rate = position[e.rows], velocity[e.rows]
+            ends = data.site_xpos[e.spring_sites]
+            line = ends[:, 1] - ends[:, 0]
+            line /= np.sqrt(np.einsum("ij,ij->i", line, line))[:, None]
+            columns = np.einsum("ij,ijk->ik", line @ turn, e.spring_shapes)
+            jacobian[e.springs, q_columns] = columns
+            spring_residual = spring_residual + columns @ q
+        rate[e.tyres] -= self.plate_velocity
+        frames = orientation[e.carriers].reshape(-1, 3, 3)
+        residual = np.einsum("nji,nj->ni", frames, residual)
+        rate = np.einsum("nji,nj->ni", frames, rate)
+        self._advance_branches(data.time, rate)
+        self.residual, self.rate = residual, rate
+        force = self.element_preload - e.stiffness * residual - e.damping * rate - self._branches(rate)
+        force[e.tyres] += self.inertial * self.plate_acceleration
+        explicit = self.explicit
+        explicit[e.rows] = np.einsum("nij,nj->ni", frames, force)
+        explicit[e.rotation_rows] = self.rotation_preload - e.rotation_stiffness * position[e.rotation_rows]
+        explicit[e.springs] = self.spring_preload - e.spring_stiffness * spring_residual
+        explicit[e.hard_rows] = self.hard_preload
+        # MuJoCo made the reference of the ideal joints before it knew of the modal coordinates.
+        law = data.efc_KBIP[e.hard_rows]
+        reference[e.hard_rows] = (
+            -law[..., 1] * velocity[e.hard_rows] - law[..., 0] * law[..., 2] * position[e.hard_rows]
+        )
+        impedance[e.rows] = self.impedance
+        impedance[e.rotation_rows] = self.rotation_impedance
+        impedance[e.springs] = self.spring_impedance
+        impedance[e.dampers] = self.damper_impedance
+        reference[e.rows] = 0.0
+        reference[e.rotation_rows] = 0.0
+        reference[e.springs] = 0.0
+        reference[e.dampers] = 0.0
+        sliding = data.qvel[e.damper_dofs]
+        self._friction(sliding)
+        slope = (2.0 / np.pi) * self.limits * self.smoothing
+        impedance[e.frictions] = np.maximum(slope * self.step, EMPTY_ROW)
+        reference[e.frictions] = -sliding / self.step
+        data.efc_frictionloss[e.frictions] = self.limits
+        np.divide(1.0, impedance, out=regulariser)
+        data.qfrc_applied[:] = explicit @ jacobian
+
+    def _friction(self, velocity: Vector) -> None:
+        """Friction limits at the present velocity."""
+        if self.stribeck:
+            weight = np.exp(-(np.abs(velocity / self.stribeck_velocity) ** self.exponent))
+            self.limits = self.sliding_limit + (self.static_limit - self.sliding_limit) * weight
+
+    def _advance_branches(self, time: float, rate: Vector) -> None:
+        """Carry the Maxwell branches over the step that has just been completed."""
+        if time == self.last_time:
+            return
+        if self.last_time >= 0.0:
+            acceleration = (rate - self.last_rate) / self.step
+            self.branch_force = self.branch_past + self.branch_slope * acceleration
+            self.branch_past = self.decay * self.branch_force + self.branch_gain * rate
+        self.last_rate = rate
+        self.last_time = time
+
+    def _branches(self, rate: Vector) -> Vector:
+        """Known part of the branch forces: f2 + (f2(+h) - 2 f2 + f2(-h))/4 without what the acceleration adds."""
+        curvature = (self.decay - 2.0) * self.branch_past + self.branch_gain * rate + self.branch_force
+        return np.asarray(self.branch_past + UNCONDITIONAL * curvature)
+
+    def actuator_bias(self, model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
+        """Smooth part of the damper force at the present velocity; installed as `mjcb_act_bias`."""
+        return float(-self.viscous[index] * data.actuator_velocity[index])
+
+    @staticmethod
+    def actuator_gain(model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
+        """No control acts on a damper; installed as `mjcb_act_gain`."""
+        return 0.0

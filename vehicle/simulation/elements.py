@@ -1,0 +1,180 @@
+"""The element constants of a compiled car, read back from its model and arranged for the callback."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.names import WHEELS
+
+Vector = npt.NDArray[np.float64]
+Index = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Elements:
+    """Arrays over the elements of a car; n elements with a three-axis law, g groups on flexible nodes.
+
+    Attributes:
+        names: names of the n elements.
+        rows: rows of their translations, (n, 3).
+        carriers: body whose axes the law follows, (n,).
+        stiffness, damping: K [N/m] and B [N s/m], (n, 3).
+        branch_stiffness, branch_time: Maxwell branch K2 [N/m] and tau [s], (n, 3).
+        averaged: True where the stiffness is averaged over three steps, (n,).
+        rotation_rows: rows of their rotations, (m, 3); a weld measures half the angle there.
+        rotation_stiffness: row stiffness, four times K_rot [N m/rad], (m, 1).
+        tyres: positions of the tyres in `names`, in the order of WHEELS.
+        hard_rows: rows of the ideal ball joints without a law, (k, 3).
+        springs: rows of the main springs, (2,).
+        spring_stiffness: [N/m], (2,).
+        spring_sites: lower and upper site of each main spring, (2, 2).
+        dampers: equality rows of the dampers, (2,).
+        frictions: friction rows of the dampers, (2,).
+        damper_dofs: velocity index of the damper joints, (2,).
+        modal_columns: columns of the modal coordinates.
+        node_rows: rows that touch a flexible node, (3, g).
+        node_shapes: signed shapes of these nodes, (3, g * modes), in body axes [kg^-1/2].
+        spring_shapes: shapes at the upper spring seats, (2, 3, modes).
+        body: id of the flexible body.
+        row_count: number of constraint rows.
+    """
+
+    names: tuple[str, ...]
+    rows: Index
+    carriers: Index
+    stiffness: Vector
+    damping: Vector
+    branch_stiffness: Vector
+    branch_time: Vector
+    averaged: npt.NDArray[np.bool_]
+    rotation_rows: Index
+    rotation_stiffness: Vector
+    tyres: Index
+    hard_rows: Index
+    springs: Index
+    spring_stiffness: Vector
+    spring_sites: Index
+    dampers: Index
+    frictions: Index
+    damper_dofs: Index
+    modal_columns: slice
+    node_rows: Index
+    node_shapes: Vector
+    spring_shapes: Vector
+    body: int
+    row_count: int
+
+
+def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
+    """A custom numeric field of the model, None where it does not exist."""
+    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, name)
+    if index < 0:
+        return None
+    start = model.numeric_adr[index]
+    return np.array(model.numeric_data[start : start + model.numeric_size[index]])
+
+
+def modal_joints(model: mujoco.MjModel) -> list[int]:
+    """Ids of the joints that hold the modal coordinates."""
+    found = []
+    while True:
+        index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"mode_{len(found) + 1}")
+        if index < 0:
+            return found
+        found.append(index)
+
+
+def read_elements(model: mujoco.MjModel) -> Elements:
+    """Collect the element constants from the custom fields of a compiled car.
+
+    Args:
+        model: made by `vehicle.assembly`, or loaded from its MJCF file.
+
+    Returns:
+        The arrays, in the order of the constraint rows.
+    """
+    joints = modal_joints(model)
+    first = int(model.jnt_dofadr[joints[0]]) if joints else 0
+    modes = len(joints)
+    kinds = mujoco.mjtEq
+    row = 0
+    names, rows, carriers, laws, rotation_rows, rotation_stiffness = [], [], [], [], [], []
+    hard_rows, node_rows, node_shapes = [], [], []
+    springs, spring_stiffness, spring_sites, spring_shapes, dampers = [], [], [], [], []
+    for index in range(model.neq):
+        name = model.equality(index).name
+        kind = mujoco.mjtEq(model.eq_type[index])
+        law = numeric(model, f"law/{name}")
+        shape = numeric(model, f"shape/{name}")
+        triple = np.arange(row, row + 3)
+        if kind in (kinds.mjEQ_WELD, kinds.mjEQ_CONNECT):
+            moving, carrier = (int(model.site_bodyid[site]) for site in (model.eq_obj1id[index], model.eq_obj2id[index]))
+            if shape is not None:
+                # The residual is moving less carrier: the body's own shape counts with the sign of its role.
+                sign = 1.0 if model.body(moving).name == "body" else -1.0
+                node_rows.append(triple)
+                node_shapes.append(sign * shape.reshape(3, modes))
+            if law is None:
+                hard_rows.append(triple)
+            else:
+                names.append(name)
+                rows.append(triple)
+                carriers.append(carrier)
+                laws.append(law)
+            if kind == kinds.mjEQ_WELD:
+                assert law is not None
+                rotation_rows.append(triple + 3)
+                rotation_stiffness.append(4.0 * law[12])
+            row += 6 if kind == kinds.mjEQ_WELD else 3
+        elif kind == kinds.mjEQ_TENDON:
+            assert law is not None
+            springs.append(row)
+            spring_stiffness.append(law[0])
+            spring_sites.append([model.site(f"{name}/lower").id, model.site(f"{name}/upper").id])
+            spring_shapes.append(np.zeros((3, modes)) if shape is None else shape.reshape(3, modes))
+            row += 1
+        else:
+            dampers.append(row)
+            row += 1
+    damper_joints = [model.joint(f"damper_{wheel}").id for wheel in WHEELS if _has_joint(model, f"damper_{wheel}")]
+    dofs = model.jnt_dofadr[damper_joints] if damper_joints else np.zeros(0, dtype=int)
+    table = np.array(laws).reshape(len(laws), 14)
+    return Elements(
+        names=tuple(names),
+        rows=np.array(rows, dtype=np.intp).reshape(-1, 3),
+        carriers=np.array(carriers, dtype=np.intp),
+        stiffness=table[:, 0:3].copy(),
+        damping=table[:, 3:6].copy(),
+        branch_stiffness=table[:, 6:9].copy(),
+        branch_time=table[:, 9:12].copy(),
+        averaged=table[:, 13] > 0.0,
+        rotation_rows=np.array(rotation_rows, dtype=np.intp).reshape(-1, 3),
+        rotation_stiffness=np.array(rotation_stiffness).reshape(-1, 1),
+        tyres=np.array([names.index(f"bushing/tyre_{w}") for w in WHEELS if f"bushing/tyre_{w}" in names], np.intp),
+        hard_rows=np.array(hard_rows, dtype=np.intp).reshape(-1, 3),
+        springs=np.array(springs, dtype=np.intp),
+        spring_stiffness=np.array(spring_stiffness),
+        spring_sites=np.array(spring_sites, dtype=np.intp).reshape(-1, 2),
+        dampers=np.array(dampers, dtype=np.intp),
+        # Friction rows follow the equality rows, in the order of the joints.
+        frictions=row + np.argsort(np.argsort(dofs)),
+        damper_dofs=np.array(dofs, dtype=np.intp),
+        modal_columns=slice(first, first + modes),
+        node_rows=np.array(node_rows, dtype=np.intp).reshape(-1, 3).T,
+        node_shapes=np.array(node_shapes).reshape(len(node_shapes), 3, modes).transpose(1, 0, 2).reshape(3, len(node_shapes) * modes),
+        spring_shapes=np.array(spring_shapes).reshape(len(springs), 3, modes),
+        body=_body_id(model),
+        row_count=row + len(damper_joints),
+    )
+
+
+def _has_joint(model: mujoco.MjModel, name: str) -> bool:
+    return bool(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name) >= 0)
+
+
+def _body_id(model: mujoco.MjModel) -> int:
+    return max(int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "body")), 0)

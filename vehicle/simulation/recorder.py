@@ -1,0 +1,234 @@
+"""Collects the state of every recorded step and turns it into channels and energies, a chunk at a time."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.excitation.signal import Signal
+from vehicle.names import AXES, WHEELS, acceleration_places, channel_units
+from vehicle.simulation.car_model import CarModel
+from vehicle.simulation.element_rows import ElementRows
+from vehicle.simulation.elements import numeric
+from vehicle.simulation.plate_arrays import PlateArrays
+from vehicle.simulation.recording import Energies, Recording, Statistics
+
+Vector = npt.NDArray[np.float64]
+
+CHUNK = 512
+"""Recorded samples between two flushes of the buffers, two checks of the state and two calls of the progress."""
+
+
+class Recorder:
+    """Buffers of one run.
+
+    Args:
+        car: the car that runs.
+        model, data: its prepared model and state.
+        rows: its element laws.
+        samples: number of recorded samples.
+        pose_every: samples between two stored poses.
+    """
+
+    def __init__(
+        self,
+        car: CarModel,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        rows: ElementRows,
+        *,
+        samples: int,
+        pose_every: int,
+    ) -> None:
+        self.car, self.model, self.data, self.rows = car, model, data, rows
+        self.step = model.opt.timestep
+        self.samples, self.pose_every = samples, pose_every
+        e = rows.elements
+        self.dampers = e.damper_dofs
+        self.actuators = [model.actuator(f"damper_{wheel}").id for wheel in WHEELS]
+        self.modes = e.modal_columns
+        self.gravity = np.array(model.opt.gravity)
+        self.shapes = {}
+        for place in acceleration_places():
+            shape = numeric(model, f"shape/place/{place}")
+            if shape is not None:
+                self.shapes[place] = shape.reshape(3, -1)
+        self.sensor_columns = {
+            place: slice(int(model.sensor(f"{place}_acc").adr[0]), int(model.sensor(f"{place}_acc").adr[0]) + 3)
+            for place in acceleration_places()
+        }
+        count = e.row_count
+        self.buffers = {
+            "sensors": np.zeros((CHUNK, model.nsensordata)),
+            "turn": np.zeros((CHUNK, 9)),
+            "modal_acceleration": np.zeros((CHUNK, self.modes.stop - self.modes.start)),
+            "modal_velocity": np.zeros((CHUNK, self.modes.stop - self.modes.start)),
+            "damper_velocity": np.zeros((CHUNK, len(self.dampers))),
+            "actuator": np.zeros((CHUNK, len(self.actuators))),
+            "solved": np.zeros((CHUNK, count)),
+            "explicit": np.zeros((CHUNK, count)),
+            "rate": np.zeros((CHUNK, *e.rows.shape)),
+            "branch": np.zeros((CHUNK, *e.rows.shape)),
+        }
+        self.channels = {name: np.zeros(samples) for name in channel_units()}
+        self.poses: list[Vector] = []
+        self.pose_index: list[int] = []
+        self.filled = 0
+        self.done = 0
+        self.work_in = 0.0
+        self.dissipated = 0.0
+        self.last_powers: tuple[float, float] | None = None
+        self.lowest_load = {wheel: (np.inf, 0.0) for wheel in WHEELS}
+        self.energy_at_start: float | None = None
+
+    def before_step(self) -> None:
+        """Keep what the step will overwrite: the present pose."""
+        if (self.done + self.filled) % self.pose_every == 0:
+            self.poses.append(self.data.qpos.copy())
+            self.pose_index.append(self.done + self.filled)
+
+    def after_step(self, *, moved: bool) -> None:
+        """Copy the present time's forces, rates and accelerations.
+
+        MuJoCo's velocity is that of the middle of a step: half a step of acceleration carries it to the present.
+        """
+        data, rows, buffers, row = self.data, self.rows, self.buffers, self.filled
+        half = -0.5 * self.step if moved else 0.5 * self.step
+        acceleration = data.qacc
+        buffers["sensors"][row] = data.sensordata
+        buffers["turn"][row] = data.xmat[rows.elements.body]
+        buffers["modal_acceleration"][row] = acceleration[self.modes]
+        buffers["modal_velocity"][row] = data.qvel[self.modes] + half * acceleration[self.modes]
+        buffers["damper_velocity"][row] = data.qvel[self.dampers] + half * acceleration[self.dampers]
+        buffers["actuator"][row] = data.actuator_force
+        buffers["solved"][row] = data.efc_force
+        buffers["explicit"][row] = rows.explicit
+        buffers["rate"][row] = rows.rate
+        buffers["branch"][row] = rows.branch_past
+        self.filled += 1
+        if self.energy_at_start is None or not moved:
+            energy = self._stored_energy(half)
+            if self.energy_at_start is None:
+                self.energy_at_start = energy
+            self.energy_at_end = energy
+
+    def _stored_energy(self, half: float) -> float:
+        """Kinetic, elastic and gravity energy [J] at the present time."""
+        # The armature of the integration is not a mass of the car, so the model as generated is asked.
+        model, rows = self.car.model, self.rows
+        e = rows.elements
+        data = mujoco.MjData(model)
+        data.qpos[:] = self.data.qpos if half > 0.0 else self.poses[-1]
+        data.qvel[:] = self.data.qvel + half * self.data.qacc
+        data.mocap_pos[:] = self.data.mocap_pos
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_energyPos(model, data)
+        mujoco.mj_energyVel(model, data)
+        elastic = 0.5 * np.sum(e.stiffness * rows.residual**2) - np.sum(rows.element_preload * rows.residual)
+        turned = self.data.efc_pos[e.rotation_rows]
+        elastic += 0.5 * np.sum(e.rotation_stiffness * turned**2) - np.sum(rows.rotation_preload * turned)
+        extension = (rows.spring_preload - rows.explicit[e.springs]) / e.spring_stiffness
+        elastic += np.sum(0.5 * e.spring_stiffness * extension**2 - rows.spring_preload * extension)
+        branch = self._branch_force(self.data.efc_force[None, :], rows.branch_past[None])[0]
+        present = e.branch_stiffness > 0.0
+        elastic += 0.5 * np.sum(branch[present] ** 2 / e.branch_stiffness[present])
+        return float(data.energy[0] + data.energy[1] + elastic)
+
+    def _row_acceleration(self, solved: Vector) -> Vector:
+        """Acceleration of the element rows, from f = -D J a; (chunk, n, 3)."""
+        return -self._local(solved) / self.rows.impedance
+
+    def _branch_force(self, solved: Vector, past: Vector) -> Vector:
+        """Force of the Maxwell branches; (chunk, n, 3)."""
+        return past + self.rows.branch_slope * self._row_acceleration(solved)
+
+    def _local(self, forces: Vector) -> Vector:
+        """Forces of the element rows; the car turns too little for world and element axes to differ here."""
+        return np.asarray(forces[:, self.rows.elements.rows])
+
+    def flush(self, motion: PlateArrays, index: int, every: int) -> None:
+        """Turn the buffered samples into channels and add up the energies."""
+        count, b = self.filled, {name: array[: self.filled] for name, array in self.buffers.items()}
+        here = slice(self.done, self.done + count)
+        steps = slice(index - (count - 1) * every, index + 1, every)
+        turn = b["turn"].reshape(count, 3, 3)
+        for place, columns in self.sensor_columns.items():
+            # MuJoCo counts gravity as an acceleration of the world.
+            value = b["sensors"][:, columns] + self.gravity
+            if place in self.shapes:
+                local = b["modal_acceleration"] @ self.shapes[place].T
+                value = value + np.einsum("nij,nj->ni", turn, local)
+            for axis, name in enumerate(AXES):
+                self.channels[f"{place}_acc_{name}"][here] = value[:, axis]
+        e, rows = self.rows.elements, self.rows
+        total = b["solved"] + b["explicit"]
+        damper_force = -(b["actuator"] + total[:, e.dampers] + total[:, e.frictions])
+        velocity = motion.velocity[steps]
+        tyre = total[:, e.rows[e.tyres][:, 2]]
+        for column, wheel in enumerate(WHEELS):
+            self.channels[f"damper_{wheel}_velocity"][here] = b["damper_velocity"][:, column]
+            self.channels[f"damper_{wheel}_force"][here] = damper_force[:, column]
+            self.channels[f"tyre_{wheel}_force_z"][here] = tyre[:, column]
+            self.channels[f"plate_{wheel}_displacement"][here] = motion.displacement[steps, column]
+            lowest = int(np.argmin(tyre[:, column]))
+            if tyre[lowest, column] < self.lowest_load[wheel][0]:
+                when = (self.done + lowest) * every * self.step
+                self.lowest_load[wheel] = (float(tyre[lowest, column]), when)
+        power_in = np.sum(tyre * velocity, axis=1)
+        rate = b["rate"] + 0.5 * self.step * self._row_acceleration(b["solved"])
+        loss = np.sum(e.damping * rate**2, axis=(1, 2))
+        branch = self._branch_force(b["solved"], b["branch"])
+        present = e.branch_stiffness > 0.0
+        dashpots = (e.branch_stiffness * e.branch_time)[present]
+        loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)
+        loss = loss + np.sum(damper_force * b["damper_velocity"], axis=1)
+        modal_damping = np.ravel(self.model.dof_damping.reshape(self.model.nv, -1)[:, 0])[self.modes]
+        loss = loss + np.sum(modal_damping * b["modal_velocity"] ** 2, axis=1)
+        self._add_work(power_in, loss, every)
+        self.done += count
+        self.filled = 0
+
+    def _add_work(self, power_in: Vector, loss: Vector, every: int) -> None:
+        """Trapezoidal rule across chunks."""
+        if self.last_powers is not None:
+            power_in = np.concatenate([[self.last_powers[0]], power_in])
+            loss = np.concatenate([[self.last_powers[1]], loss])
+        interval = self.step * every
+        self.work_in += float(np.trapezoid(power_in) * interval)
+        self.dissipated += float(np.trapezoid(loss) * interval)
+        self.last_powers = (float(power_in[-1]), float(loss[-1]))
+
+    def energies(self) -> Energies:
+        """Energy balance of the whole run."""
+        assert self.energy_at_start is not None
+        return Energies(
+            work_in=self.work_in, dissipated=self.dissipated, stored=self.energy_at_end - self.energy_at_start
+        )
+
+    def warnings(self) -> tuple[str, ...]:
+        """A sentence for each tyre that pulled on its plate."""
+        found = []
+        for wheel, (load, when) in self.lowest_load.items():
+            if load < 0.0:
+                first = self.channels[f"tyre_{wheel}_force_z"]
+                start = int(np.argmax(first < 0.0)) / self.car.vehicle.solver.record_rate
+                found.append(
+                    f"tyre {wheel} would lift off its plate at t = {start:.3f} s (lowest load {load:.0f} N at "
+                    f"{when:.3f} s); the model pulls there, so the result is out of its validity"
+                )
+        return tuple(found)
+
+    def recording(self, signal: Signal, statistics: Statistics) -> Recording:
+        """The finished recording."""
+        interval = 1.0 / self.car.vehicle.solver.record_rate
+        time = interval * np.arange(self.samples)
+        return Recording(
+            time=time,
+            channels=self.channels,
+            units=channel_units(),
+            excited=tuple(wheel for wheel in WHEELS if np.any(signal.displacement.get(wheel, np.zeros(1)) != 0.0)),
+            pose_time=time[self.pose_index],
+            poses=np.array(self.poses),
+            statistics=statistics,
+        )

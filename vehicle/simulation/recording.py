@@ -1,0 +1,81 @@
+"""What a run leaves behind: channels over time, energies, poses for the film, solver statistics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Energies:
+    """Energy balance of a run [J]: work_in = dissipated + stored + residual."""
+
+    work_in: float
+    dissipated: float
+    stored: float
+
+    @property
+    def residual(self) -> float:
+        """|work_in - dissipated - stored| / work_in [-]; 0 where no work was done."""
+        if self.work_in == 0.0:
+            return 0.0
+        return abs(self.work_in - self.dissipated - self.stored) / abs(self.work_in)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Statistics:
+    """How the run was computed."""
+
+    engine: str
+    timestep: float
+    steps: int
+    wall_time: float
+    warnings: tuple[str, ...]
+    energies: Energies
+
+    @property
+    def realtime_factor(self) -> float:
+        """Simulated time over computing time [-]."""
+        return self.steps * self.timestep / self.wall_time
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Recording:
+    """Time histories of a run.
+
+    Attributes:
+        time: (n,) [s].
+        channels: channel name to (n,) array; names and units are those of `vehicle.names`.
+        units: channel name to unit.
+        excited: wheels whose plates were driven.
+        pose_time: times of the stored poses [s], (f,).
+        poses: generalised positions of MuJoCo at those times, (f, nq).
+        statistics: solver statistics.
+    """
+
+    time: Vector
+    channels: Mapping[str, Vector]
+    units: Mapping[str, str]
+    excited: tuple[str, ...]
+    pose_time: Vector
+    poses: Vector
+    statistics: Statistics
+
+    def __getitem__(self, channel: str) -> Vector:
+        """Time history of one channel."""
+        try:
+            return self.channels[channel]
+        except KeyError:
+            raise ConfigurationError(f"no channel {channel!r}; the recording has {', '.join(self.channels)}") from None
+
+    @property
+    def timestep(self) -> float:
+        """Sampling interval of the channels [s]."""
+        return float(self.time[1] - self.time[0])

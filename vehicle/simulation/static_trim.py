@@ -1,0 +1,123 @@
+"""Static trim: preloads with which the car stands in its design position under gravity.
+
+A car whose elements were stress-free in the design position would settle by u under gravity:
+K u + Jc' lambda = g, Jc u = 0, with K = sum of J' K_e J over all elements. The forces that the elements then carry,
+f_e = -K_e J u, are given to them as preloads, and the reaction -lambda to the ideal joints: in the design position
+these forces and gravity are in equilibrium exactly, and the share of each element is that of its stiffness.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import SimulationError
+from vehicle.names import WHEELS
+from vehicle.simulation.callbacks import installed
+from vehicle.simulation.element_rows import ElementRows
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class StaticTrim:
+    """Result of the trim.
+
+    Attributes:
+        preload: static force of every constraint row, in the axes of its element [N, N m], (rows,).
+        tyre_load: vertical load of each tyre [N], by wheel.
+        rear_support_load: vertical load of each rubber block [N], by side.
+        residual: largest displacement by which the trimmed car would still move [m].
+    """
+
+    preload: Vector
+    tyre_load: dict[str, float]
+    rear_support_load: dict[str, float]
+    residual: float
+
+
+def trim(model: mujoco.MjModel) -> StaticTrim:
+    """Find the preloads of a car and write those of its joint springs into the model.
+
+    Args:
+        model: compiled car; `qpos_spring` of the modal coordinates and of the stabilizer is set in place.
+
+    Returns:
+        The preloads of the rows, and the static loads.
+
+    Raises:
+        SimulationError: the car is not held in all directions by its elements.
+    """
+    _reset_joint_springs(model)
+    data = mujoco.MjData(model)
+    rows = ElementRows(model)
+    with installed(rows):
+        mujoco.mj_forward(model, data)
+    e = rows.elements
+    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
+    gravity = data.qfrc_smooth.copy()
+    row_stiffness = np.zeros(e.row_count)
+    row_stiffness[e.rows] = e.stiffness
+    row_stiffness[e.rotation_rows] = e.rotation_stiffness
+    row_stiffness[e.springs] = e.spring_stiffness
+    stiffness = jacobian.T @ (row_stiffness[:, None] * jacobian)
+    joint_stiffness = joint_spring_stiffness(model)
+    stiffness[np.diag_indices(model.nv)] += joint_stiffness
+    hard = jacobian[e.hard_rows.ravel()]
+    displacement, reaction = _settle(stiffness, hard, gravity)
+    preload = -row_stiffness * (jacobian @ displacement)
+    preload[e.hard_rows.ravel()] = -reaction
+    for joint in range(model.njnt):
+        dof = model.jnt_dofadr[joint]
+        if joint_stiffness[dof] > 0.0:
+            position = model.jnt_qposadr[joint]
+            model.qpos_spring[position] = model.qpos0[position] - displacement[dof]
+    return _loads(model, preload, stiffness, hard)
+
+
+def joint_spring_stiffness(model: mujoco.MjModel) -> Vector:
+    """Stiffness of the springs inside joints, per velocity coordinate; (nv,)."""
+    result = np.zeros(model.nv)
+    for joint in range(model.njnt):
+        result[model.jnt_dofadr[joint]] = float(np.ravel(model.jnt_stiffness[joint])[0])
+    return result
+
+
+def _reset_joint_springs(model: mujoco.MjModel) -> None:
+    model.qpos_spring[:] = model.qpos0
+
+
+def _settle(stiffness: Vector, hard: Vector, force: Vector) -> tuple[Vector, Vector]:
+    """Displacement and joint reactions under a force: K u + Jc' lambda = f, Jc u = 0."""
+    size, count = len(stiffness), len(hard)
+    system = np.block([[stiffness, hard.T], [hard, np.zeros((count, count))]])
+    scale = np.ones(size + count)
+    scale[:size] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
+    scaled = system * scale[:, None] * scale[None, :]
+    if np.linalg.cond(scaled) > 1e14:
+        raise SimulationError(
+            "static trim: the car can move without resistance; check that every bushing has a stiffness in each "
+            "direction that nothing else holds"
+        )
+    solution = scale * np.linalg.solve(scaled, scale * np.concatenate([force, np.zeros(count)]))
+    return solution[:size], solution[size:]
+
+
+def _loads(model: mujoco.MjModel, preload: Vector, stiffness: Vector, hard: Vector) -> StaticTrim:
+    """Static loads with the preloads in place, and the displacement that is left."""
+    data = mujoco.MjData(model)
+    rows = ElementRows(model, preload)
+    with installed(rows):
+        mujoco.mj_forward(model, data)
+    e = rows.elements
+    remaining, _ = _settle(stiffness, hard, data.qfrc_smooth)
+    vertical = dict(zip(e.names, preload[e.rows][:, 2], strict=True))
+    return StaticTrim(
+        preload=preload,
+        tyre_load={wheel: float(vertical[f"bushing/tyre_{wheel}"]) for wheel in WHEELS},
+        rear_support_load={side: float(vertical[f"bushing/rear_support_{side}"]) for side in ("right", "left")},
+        residual=float(np.max(np.abs(remaining))),
+    )

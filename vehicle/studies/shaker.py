@@ -1,0 +1,190 @@
+"""The main job: a signal under one wheel, and everything that a test bench would give."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.analysis.evaluation import evaluate
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.peaks import resonance_peaks
+from vehicle.assembly.body_inertia import rigid_body
+from vehicle.car import SATURATED_VELOCITY, Car, Run
+from vehicle.excitation.signal import Signal
+from vehicle.names import AXES, WHEELS, acceleration_channels
+from vehicle.output_folder import output_folder, write_json, write_whole
+from vehicle.parameters.toml_file import write_text
+from vehicle.rendering.plots import plot_frf, plot_time
+from vehicle.studies.tables import write_frf, write_time_csv, write_time_npz
+
+COMFORT_PLACES = ("seat_rail", "seat")
+FRAME = "x to the rear, y to the driver's right, z up; SI units"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ShakerOptions:
+    """What the command adds to car and signal.
+
+    Attributes:
+        output: folder of the run.
+        force: replace an existing folder.
+        time_format: "npz" or "csv".
+        video: writes the film of a run to a path; None without a film.
+        video_name: file name of the film, or a path of its own.
+        input_file: file that the signal was read from.
+        asked_wheel: wheel that a plain displacement column drove.
+    """
+
+    output: Path
+    force: bool = False
+    time_format: str = "npz"
+    video: Callable[[Run, Path], None] | None = None
+    video_name: Path | None = None
+    input_file: Path | None = None
+
+
+def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[[float], None]) -> dict[str, Any]:
+    """Run a car on a signal and write all files of a run.
+
+    Args:
+        car: the car.
+        signal: plate displacement.
+        options: where and what to write.
+        progress: called with the finished fraction.
+
+    Returns:
+        The content of `summary.json`.
+
+    Raises:
+        VehicleError: whatever goes wrong; nothing half-written is left behind.
+    """
+    with output_folder(options.output, force=options.force, protect=options.input_file) as folder:
+        run = car.run(signal, progress)
+        response = run.frf()
+        files = {
+            "summary": "summary.json",
+            "vehicle": "vehicle.toml",
+            "time": f"time.{options.time_format}",
+            "frf": "frf.csv",
+            "frf_plot": "frf.png",
+            "time_plot": "time.png",
+        }
+        header = f"parameters of this run, as used\nframe: {FRAME}"
+        write_whole(folder / "vehicle.toml", lambda path: _write(path, write_text(car.vehicle, header)))
+        writer = write_time_npz if options.time_format == "npz" else write_time_csv
+        write_whole(folder / files["time"], lambda path: writer(path, run.recording, FRAME))
+        write_whole(folder / "frf.csv", lambda path: write_frf(path, response, acceleration_channels(), FRAME))
+        caption = _caption(run, response)
+        write_whole(folder / "frf.png", lambda path: plot_frf(path, run, response, caption))
+        write_whole(folder / "time.png", lambda path: plot_time(path, run))
+        if options.video is not None:
+            name = options.video_name or Path(f"{options.output.name}.mp4")
+            inside = name.parent == Path(".")
+            target = folder / name if inside else name
+            make = options.video
+            write_whole(target, lambda path: make(run, path))
+            files["video"] = name.name if inside else str(name)
+        summary = summarise(run, response, files)
+        write_json(folder / "summary.json", summary)
+    return summary
+
+
+def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> dict[str, Any]:
+    """Content of `summary.json`.
+
+    Args:
+        run: finished run.
+        response: its FRFs of all acceleration channels.
+        files: kind of file to its name.
+
+    Returns:
+        Plain numbers, texts, lists and dictionaries; None where a value does not exist.
+    """
+    statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
+    notices = [*run.signal.notices, *response.reasons]
+    inertia = rigid_body(run.car.vehicle.body).report
+    return {
+        "frame": FRAME,
+        "vehicle": {
+            "name": run.car.vehicle.name,
+            "inertia_variant": run.car.vehicle.body.inertia_variant,
+            "inertia": inertia,
+            "superelement": run.car.model.superelement.provenance,
+        },
+        "input": {
+            "file": Path(run.signal.source).name,
+            "sha256": run.signal.sha256,
+            "rms_m": run.signal.rms(run.wheel),
+            "duration_s": run.signal.duration,
+            "wheel": run.wheel,
+        },
+        "slip_share": {wheel: run.slip_share(wheel) for wheel in WHEELS} | {"slip_velocity": damper.slip_velocity},
+        "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in WHEELS},
+        "first_slip_s": {wheel: run.first_slip(wheel) for wheel in WHEELS},
+        "peaks": _peaks(response),
+        "comfort": {place: _comfort(run, place) for place in COMFORT_PLACES},
+        "static": {
+            "tyre_load_n": static.tyre_load,
+            "rear_support_load_n": static.rear_support_load,
+            "residual_m": static.residual,
+        },
+        "solver": {
+            "engine": statistics.engine,
+            "timestep_s": statistics.timestep,
+            "steps": statistics.steps,
+            "wall_s": statistics.wall_time,
+            "realtime_factor": statistics.realtime_factor,
+            "warnings": list(statistics.warnings),
+            "energy_residual": statistics.energies.residual,
+            "work_in_j": statistics.energies.work_in,
+            "dissipated_j": statistics.energies.dissipated,
+            "stored_j": statistics.energies.stored,
+        },
+        "frf": {
+            "estimator": response.estimator,
+            "window": response.window,
+            "resolution_hz": response.resolution_hz,
+            "degrees_of_freedom": response.averages,
+        },
+        "notices": notices,
+        "files": files,
+    }
+
+
+def _peaks(response: FrequencyResponse) -> dict[str, list[dict[str, float | None]]]:
+    """Resonance peaks of every acceleration channel."""
+    found = {}
+    for row, channel in enumerate(acceleration_channels()):
+        peaks = resonance_peaks(response.frequency, np.abs(response.response[row]), response.coherence[row])
+        found[channel] = [
+            {"frequency_hz": peak.frequency_hz, "magnitude": peak.magnitude, "coherence": peak.coherence}
+            for peak in peaks
+        ]
+    return found
+
+
+def _comfort(run: Run, place: str) -> dict[str, Any]:
+    """Comfort values of a place: the source's unfiltered RMS, and ISO 2631-1."""
+    value = run.comfort(place)
+    xyz = np.array([run[f"{place}_acc_{axis}"] for axis in AXES])
+    return {
+        "rms_2_50_hz": {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall},
+        "iso2631": evaluate(run.recording.timestep, xyz),
+    }
+
+
+def _caption(run: Run, response: FrequencyResponse) -> str:
+    """One line under the FRF plot: input, level, estimator."""
+    return (
+        f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}, "
+        f"{run.signal.duration:g} s; estimator: {response.estimator}, stretches of {response.resolution_hz:.2g} Hz "
+        f"or 3 % of the frequency"
+    )
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
