@@ -1,10 +1,10 @@
 """The car in Python: load it, run it on a signal, ask the run for what a test bench would give.
 
-    car = Car.load()
-    run = car.run(read_signal(find_input("low.csv")))
-    run["seat_rail_acc_z"]                # time history
-    run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
-    run.comfort().overall                 # comfort value of source 1
+car = Car.load()
+run = car.run(read_signal(find_input("low.csv")))
+run["seat_rail_acc_z"]                # time history
+run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
+run.comfort().overall                 # comfort value of source 1
 """
 
 from __future__ import annotations

@@ -34,11 +34,19 @@ PLATE_HEIGHT = 0.02
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Assembly:
-    """What the generator made: the specification, and the superelement with the masses fixed to the body."""
+    """What the generator made.
+
+    Attributes:
+        spec: the specification; `spec.compile()` gives the model.
+        vehicle: the parameters it was made from.
+        superelement: the flexible body with the masses that are fixed to it.
+        origins: where each body frame sits in the design position [m], by body name.
+    """
 
     spec: mujoco.MjSpec
     vehicle: Vehicle
     superelement: Superelement
+    origins: Mapping[str, Vector]
 
 
 def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
@@ -76,7 +84,7 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
     for wheel in WHEELS:
         builder.add_damper(wheel)
     builder.add_places()
-    return Assembly(spec=spec, vehicle=vehicle, superelement=superelement)
+    return Assembly(spec=spec, vehicle=vehicle, superelement=superelement, origins=builder.origins)
 
 
 def _empty_spec(vehicle: Vehicle) -> mujoco.MjSpec:
@@ -278,9 +286,7 @@ class _Builder:
         tendon = self.spec.add_tendon(name=name)
         tendon.wrap_site(lower)
         tendon.wrap_site(upper)
-        self.spec.add_equality(
-            name=name, type=mujoco.mjtEq.mjEQ_TENDON, objtype=mujoco.mjtObj.mjOBJ_TENDON, name1=name
-        )
+        self.spec.add_equality(name=name, type=mujoco.mjtEq.mjEQ_TENDON, objtype=mujoco.mjtObj.mjOBJ_TENDON, name1=name)
         self._numeric(f"law/{name}", [self.vehicle.main_spring.stiffness])
         self._node_shape(name, f"strut_top_{wheel}")
 

@@ -47,7 +47,8 @@ def matrix_response(
     full_damping = matrices.damping.copy()
     if not stuck:
         full_damping[matrices.dampers, matrices.dampers] += matrices.viscous
-    mass, damping, stiffness = (basis.T @ matrix @ basis for matrix in (matrices.mass, full_damping, matrices.stiffness))
+    full = (matrices.mass, full_damping, matrices.stiffness)
+    mass, damping, stiffness = (basis.T @ matrix @ basis for matrix in full)
     branches = matrices.branch_rows @ basis
     plate = WHEELS.index(wheel)
     push = basis.T @ matrices.plate_stiffness[plate]

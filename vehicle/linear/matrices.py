@@ -160,5 +160,3 @@ def _body_masses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector
             matrix[3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
             found[model.body(body).name] = matrix
     return found
-
-

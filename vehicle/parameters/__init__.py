@@ -1,0 +1,1 @@
+"""Parameter objects: frozen, with units, validated; read from and written to TOML."""

@@ -28,7 +28,7 @@ class Hydromount:
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3)
     damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3)
     rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0)
-    maxwell_stiffness: float = quantity("N/m", "Kz2, spring of the Maxwell branch; 0 takes the branch out", at_least=0.0)
+    maxwell_stiffness: float = quantity("N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0)
     maxwell_damping: float = quantity(
         "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0
     )

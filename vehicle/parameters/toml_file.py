@@ -143,9 +143,7 @@ def _write(instance: Any, path: str, lines: list[str]) -> None:
     inner: list[tuple[str, Any]] = []
     for entry in dataclasses.fields(instance):
         value = getattr(instance, entry.name)
-        if dataclasses.is_dataclass(value):
-            inner.append((entry.name, value))
-        elif isinstance(value, Mapping):
+        if dataclasses.is_dataclass(value) or isinstance(value, Mapping):
             inner.append((entry.name, value))
         elif value is not None:
             unit, meaning = entry.metadata.get("unit", "-"), entry.metadata.get("meaning", "")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.assembly.spec import assemble
 from vehicle.errors import ConfigurationError, SimulationError
@@ -21,11 +23,21 @@ LARGEST_PHASE = 2.2
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarModel:
-    """Compiled model of a car with its preloads; the model is as generated, `prepare_model` comes with a run."""
+    """Compiled model of a car with its preloads; the model is as generated, `prepare_model` comes with a run.
+
+    Attributes:
+        vehicle: parameters.
+        superelement: flexible body with the masses that are fixed to it.
+        spec: specification the model was compiled from.
+        origins: where each body frame sits in the design position [m], by body name.
+        model: compiled and trimmed model.
+        static: its preloads and loads.
+    """
 
     vehicle: Vehicle
     superelement: Superelement
     spec: mujoco.MjSpec
+    origins: Mapping[str, npt.NDArray[np.float64]]
     model: mujoco.MjModel
     static: StaticTrim
 
@@ -52,7 +64,12 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     static = trim(model)
     _check_step(model, static)
     return CarModel(
-        vehicle=vehicle, superelement=assembly.superelement, spec=assembly.spec, model=model, static=static
+        vehicle=vehicle,
+        superelement=assembly.superelement,
+        spec=assembly.spec,
+        origins=assembly.origins,
+        model=model,
+        static=static,
     )
 
 

@@ -20,7 +20,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.simulation.elements import Elements, modal_joints, read_elements
+from vehicle.simulation.elements import modal_joints, read_elements
 
 Vector = npt.NDArray[np.float64]
 

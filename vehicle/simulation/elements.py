@@ -80,7 +80,7 @@ def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
 
 def modal_joints(model: mujoco.MjModel) -> list[int]:
     """Ids of the joints that hold the modal coordinates."""
-    found = []
+    found: list[int] = []
     while True:
         index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"mode_{len(found) + 1}")
         if index < 0:
@@ -112,7 +112,8 @@ def read_elements(model: mujoco.MjModel) -> Elements:
         shape = numeric(model, f"shape/{name}")
         triple = np.arange(row, row + 3)
         if kind in (kinds.mjEQ_WELD, kinds.mjEQ_CONNECT):
-            moving, carrier = (int(model.site_bodyid[site]) for site in (model.eq_obj1id[index], model.eq_obj2id[index]))
+            sites = (model.eq_obj1id[index], model.eq_obj2id[index])
+            moving, carrier = (int(model.site_bodyid[site]) for site in sites)
             if shape is not None:
                 # The residual is moving less carrier: the body's own shape counts with the sign of its role.
                 sign = 1.0 if model.body(moving).name == "body" else -1.0
@@ -143,6 +144,7 @@ def read_elements(model: mujoco.MjModel) -> Elements:
     damper_joints = [model.joint(f"damper_{wheel}").id for wheel in WHEELS if _has_joint(model, f"damper_{wheel}")]
     dofs = model.jnt_dofadr[damper_joints] if damper_joints else np.zeros(0, dtype=int)
     table = np.array(laws).reshape(len(laws), 14)
+    shapes = np.array(node_shapes).reshape(len(node_shapes), 3, modes)
     return Elements(
         names=tuple(names),
         rows=np.array(rows, dtype=np.intp).reshape(-1, 3),
@@ -165,7 +167,7 @@ def read_elements(model: mujoco.MjModel) -> Elements:
         damper_dofs=np.array(dofs, dtype=np.intp),
         modal_columns=slice(first, first + modes),
         node_rows=np.array(node_rows, dtype=np.intp).reshape(-1, 3).T,
-        node_shapes=np.array(node_shapes).reshape(len(node_shapes), 3, modes).transpose(1, 0, 2).reshape(3, len(node_shapes) * modes),
+        node_shapes=shapes.transpose(1, 0, 2).reshape(3, len(node_shapes) * modes),
         spring_shapes=np.array(spring_shapes).reshape(len(springs), 3, modes),
         body=_body_id(model),
         row_count=row + len(damper_joints),

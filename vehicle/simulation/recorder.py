@@ -79,7 +79,7 @@ class Recorder:
         self.work_in = 0.0
         self.dissipated = 0.0
         self.last_powers: tuple[float, float] | None = None
-        self.lowest_load = {wheel: (np.inf, 0.0) for wheel in WHEELS}
+        self.lowest_load = dict.fromkeys(WHEELS, (np.inf, 0.0))
         self.energy_at_start: float | None = None
 
     def before_step(self) -> None:
@@ -161,7 +161,7 @@ class Recorder:
                 value = value + np.einsum("nij,nj->ni", turn, local)
             for axis, name in enumerate(AXES):
                 self.channels[f"{place}_acc_{name}"][here] = value[:, axis]
-        e, rows = self.rows.elements, self.rows
+        e = self.rows.elements
         total = b["solved"] + b["explicit"]
         damper_force = -(b["actuator"] + total[:, e.dampers] + total[:, e.frictions])
         velocity = motion.velocity[steps]
@@ -222,7 +222,7 @@ class Recorder:
     def recording(self, signal: Signal, statistics: Statistics) -> Recording:
         """The finished recording."""
         interval = 1.0 / self.car.vehicle.solver.record_rate
-        time = interval * np.arange(self.samples)
+        time: Vector = interval * np.arange(self.samples, dtype=np.float64)
         return Recording(
             time=time,
             channels=self.channels,

@@ -83,7 +83,7 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
         write_whole(folder / "time.png", lambda path: plot_time(path, run))
         if options.video is not None:
             name = options.video_name or Path(f"{options.output.name}.mp4")
-            inside = name.parent == Path(".")
+            inside = name.parent == Path()
             target = folder / name if inside else name
             make = options.video
             write_whole(target, lambda path: make(run, path))

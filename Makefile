@@ -1,0 +1,49 @@
+# make shaker   set everything up and run the main job with a film
+# make test     set everything up, check and test
+# make check    format, lint and types only
+SHELL := /bin/bash
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV := .venv
+BIN := $(VENV)/bin
+INPUT ?= low.csv
+export OMP_NUM_THREADS ?= 1
+
+.PHONY: shaker test check setup mjcf benchmark clean
+
+shaker: setup
+	@if $(BIN)/python -m vehicle.rendering.backend; then \
+	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --video --force; \
+	else \
+	  echo "no film: the run goes on without it"; \
+	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --force; \
+	fi
+
+test: setup check
+	$(BIN)/python -m pytest -n 2
+
+check: setup
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+mjcf: setup
+	$(BIN)/python -m vehicle.mjcf
+
+benchmark: setup
+	$(BIN)/python -m tests.benchmarks.speed
+
+setup: .stamps/system .stamps/python
+
+# The off-screen OpenGL library; without root it is only named, and films are left out.
+.stamps/system: tools/system-libraries.sh
+	@mkdir -p .stamps
+	@bash tools/system-libraries.sh
+	@touch $@
+
+.stamps/python: constraints.txt pyproject.toml tools/environment.sh
+	@mkdir -p .stamps
+	@bash tools/environment.sh "$(PYTHON)" $(VENV)
+	@touch $@
+
+clean:
+	rm -rf $(VENV) .stamps runs build *.egg-info .pytest_cache .mypy_cache .ruff_cache

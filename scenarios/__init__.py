@@ -1,0 +1,1 @@
+"""Short studies, one script each: `python -m scenarios.NAME`."""

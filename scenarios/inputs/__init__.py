@@ -1,0 +1,1 @@
+"""The shipped plate signals and the script that makes them."""

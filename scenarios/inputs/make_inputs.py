@@ -1,0 +1,70 @@
+"""Write the shipped inputs: `python -m scenarios.inputs.make_inputs [--output DIR]`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehicle.excitation.band import LOWER_BAND_EDGE_HZ, UPPER_BAND_EDGE_HZ
+from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
+from vehicle.excitation.csv_output import write_signal
+from vehicle.excitation.random_road import random_road
+from vehicle.excitation.signal import Signal
+
+LEVELS = {"low": 1.06e-4, "mid": 3.17e-4, "high": 5.25e-4}
+"""RMS of the displacement [m] (thesis sections 3.2 and 3.3)."""
+
+HEIGHTS = {"bump_1p5mm": 1.5e-3, "bump_7p5mm": 7.5e-3}
+"""Peak height of the bump [m] (thesis section 3.2.2), A of the printed formula read as height."""
+
+SEED = 2006
+"""One seed for all levels: the same road, scaled. The year of the source; not chosen for any result."""
+
+FRAME = "frame: z up, positive displacement lifts the plate; SI units; made by: python -m scenarios.inputs.make_inputs"
+
+
+def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
+    """Every shipped input: name -> signal and the comments of its file."""
+    band = f"{LOWER_BAND_EDGE_HZ:g} to {UPPER_BAND_EDGE_HZ:g} Hz"
+    inputs: dict[str, tuple[Signal, list[str]]] = {}
+    for name, rms in LEVELS.items():
+        signal = random_road(rms=rms, seed=SEED)
+        inputs[name] = (
+            signal,
+            [
+                f"{name}: random displacement of the plate under the front right wheel, constant velocity PSD "
+                "(displacement PSD ~ 1/f^2)",
+                f"RMS {rms:.2e} m (exact), band {band}, seed {SEED}, {signal.duration:g} s at 1000 Hz",
+                "begins and ends at rest (half cosine of 0.5 s at both ends); low, mid and high are one signal, scaled",
+                FRAME,
+            ],
+        )
+    for name, height in HEIGHTS.items():
+        signal = bump(amplitude=height)
+        inputs[name] = (
+            signal,
+            [
+                f"{name}: x = A/2 (1 - cos(6 pi (t - {BUMP_START_S:g} s))), one period, peak height A = {height:.1e} m",
+                f"plus random noise, RMS {NOISE_RMS:.0e} m before and after the bump, constant velocity PSD "
+                f"{band}, seed {NOISE_SEED}, {signal.duration:g} s at 1000 Hz",
+                FRAME,
+            ],
+        )
+    return inputs
+
+
+def main() -> None:
+    """Write all files and say what was written."""
+    parser = argparse.ArgumentParser(
+        prog="python -m scenarios.inputs.make_inputs", description="Write the shipped inputs."
+    )
+    parser.add_argument("--output", type=Path, default=Path(__file__).parent, help="folder for the CSV files")
+    folder: Path = parser.parse_args().output
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, (signal, comments) in make_inputs().items():
+        write_signal(folder / f"{name}.csv", signal, comments)
+        print(f"{folder / name}.csv: RMS {signal.rms('fr'):.6e} m, {signal.duration:g} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Installs what pip cannot: the off-screen OpenGL library (OSMesa) and the venv module, on Debian, as root.
+set -u
+wanted=()
+ldconfig -p 2>/dev/null | grep -q 'libOSMesa\.so' || wanted+=(libosmesa6)
+"${PYTHON:-python3}" -c 'import ensurepip, venv' 2>/dev/null || wanted+=(python3-venv)
+[ ${#wanted[@]} -eq 0 ] && exit 0
+if [ "$(id -u)" -ne 0 ]; then
+  echo "missing system packages: ${wanted[*]}; as root: apt-get install ${wanted[*]} (without libosmesa6 there are no films)"
+  exit 0
+fi
+if ! command -v apt-get >/dev/null; then
+  echo "missing: ${wanted[*]} (Debian names); install them with this system's package manager"
+  exit 0
+fi
+echo "installing ${wanted[*]}"
+export DEBIAN_FRONTEND=noninteractive
+apt-get install -y -qq "${wanted[@]}" >/dev/null 2>&1 \
+  || { apt-get update -qq >/dev/null 2>&1 && apt-get install -y -qq "${wanted[@]}" >/dev/null 2>&1; } \
+  || echo "could not install ${wanted[*]}; the run goes on without what needs them"
+exit 0

@@ -1,0 +1,1 @@
+"""Spectra, FRF, coherence, peaks, slip share and comfort: arrays in, numbers out."""

@@ -1,0 +1,129 @@
+"""The comfort value of source 1, its statistical error, and whether the vibration had settled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from vehicle.analysis.samples import checked_signals
+from vehicle.analysis.spectra import band_periodogram, band_rms
+from vehicle.errors import DataError
+
+COMFORT_BAND = (2.0, 50.0)
+"""band of the comfort value [Hz] (source 1, chapter 4)"""
+DRIFT_LIMIT = 0.01
+"""drift of the RMS above which a comfort value is refused (bad-inputs item 43) [-]"""
+SIGNIFICANCE = 3.0
+"""standard errors by which a drift must exceed the scatter of a random record to count as a drift [-]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ComfortValue:
+    """Unweighted RMS accelerations in a band [m/s2]."""
+
+    x: float
+    y: float
+    z: float
+    overall: float
+    """sqrt(x^2 + y^2 + z^2) [m/s2]"""
+    band: tuple[float, float]
+    """[Hz]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Settling:
+    """How much the RMS changes from the first to the second half of a record."""
+
+    halves: tuple[float, float]
+    """RMS of each half [unit of the signal]"""
+    drift: float
+    """(second - first) / mean of both [-]"""
+    standard_error: float
+    """standard deviation that a stationary Gaussian record of this spectrum would give to the drift [-]"""
+    settled: bool
+    """whether |drift| is within 1 % or within three standard errors"""
+
+
+def comfort_value(time_step: float, acceleration: ArrayLike, band: tuple[float, float] = COMFORT_BAND) -> ComfortValue:
+    """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unfiltered acceleration in a band.
+
+    Args:
+        time_step: [s].
+        acceleration: of one point in x, y, z [m/s2], shape (3, n).
+        band: (low, high) [Hz], both edges included.
+
+    Raises:
+        DataError: not three axes, or `band_rms` refuses the record.
+
+    Source: source 1 (Bommer 2006), chapter 4.
+    """
+    array = checked_signals("acceleration", acceleration)
+    if array.shape[0] != 3:
+        raise DataError(f"acceleration: found {array.shape[0]} signals, needed are the three axes x, y, z")
+    x, y, z = (float(value) for value in band_rms(time_step, array, band))
+    return ComfortValue(x=x, y=y, z=z, overall=float(np.sqrt(x * x + y * y + z * z)), band=band)
+
+
+def rms_standard_error(
+    time_step: float, signals: ArrayLike, band: tuple[float, float] = COMFORT_BAND
+) -> NDArray[np.float64]:
+    """Return the normalised standard error of the band RMS of stationary Gaussian records, shape (k,).
+
+    Var[ms] = (1/T) int S^2 df  and  rms = sqrt(ms), so  error = sqrt(int S^2 df / T) / (2 int S df)
+
+    For white noise of bandwidth B that is 1 / (2 sqrt(B T)). A periodogram line is S times a chi-square variable with
+    two degrees of freedom over two, hence E[P^2] = 2 S^2, and int S^2 df is estimated without bias by sum(P^2 df) / 2.
+    Meaningless for a deterministic signal (a sine or a bump has no such error). A signal with no power in the band has
+    an error of 0.
+
+    Args:
+        time_step: [s].
+        signals: shape (n,) or (k, n).
+        band: (low, high) [Hz].
+
+    Source: Bendat and Piersol, Random Data, 4th ed., chapter 8 (bandwidth-time product).
+    """
+    spectrum = band_periodogram(time_step, signals, band)
+    mean_square = spectrum.density.sum(axis=1) * spectrum.resolution_hz
+    # df = 1/T, so int S^2 df / T is the sum over the lines times df^2
+    variance = 0.5 * (spectrum.density**2).sum(axis=1) * spectrum.resolution_hz**2
+    error = np.zeros_like(mean_square)
+    np.divide(np.sqrt(variance), 2.0 * mean_square, out=error, where=mean_square > 0.0)
+    return np.asarray(error)
+
+
+def settling(time_step: float, signals: ArrayLike, band: tuple[float, float] = COMFORT_BAND) -> tuple[Settling, ...]:
+    """Compare the band RMS of the two halves of each signal: a transient still decaying shows as a drift.
+
+    drift = (second - first) / mean. The halves of a stationary random record differ by chance as well: each half has
+    sqrt(2) times the standard error of the whole record, their difference twice. A drift counts only above both 1 %
+    and three of these.
+
+    Args:
+        time_step: [s].
+        signals: shape (n,) or (k, n).
+        band: (low, high) [Hz].
+
+    Source: bad-inputs item 43.
+    """
+    array = checked_signals("signals", signals)
+    middle = array.shape[1] // 2
+    if middle < 2:
+        raise DataError(f"signals: found {array.shape[1]} samples, two halves of at least 2 are needed")
+    first = band_rms(time_step, array[:, :middle], band)
+    second = band_rms(time_step, array[:, -middle:], band)
+    error = 2.0 * rms_standard_error(time_step, array, band)
+    found = []
+    for a, b, e in zip(first, second, error, strict=True):
+        drift = float(2.0 * (b - a) / (a + b)) if a + b > 0.0 else 0.0
+        found.append(
+            Settling(
+                halves=(float(a), float(b)),
+                drift=drift,
+                standard_error=float(e),
+                settled=abs(drift) <= max(DRIFT_LIMIT, SIGNIFICANCE * float(e)),
+            )
+        )
+    return tuple(found)

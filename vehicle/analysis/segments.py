@@ -1,0 +1,95 @@
+"""How a record is cut into overlapping windowed segments, and how many independent averages they are worth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import get_window
+
+from vehicle.errors import ConfigurationError, DataError
+
+MINIMUM_AVERAGES = 8.0
+"""Below this the coherence of unrelated signals is already 1/8 and the random error of an FRF above 25 % at 0.5."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Segments:
+    """Welch's segments of one record."""
+
+    length: int
+    """samples in a segment [-]"""
+    step: int
+    """samples from one segment to the next [-]"""
+    count: int
+    """number of whole segments [-]"""
+    averages: float
+    """independent averages that the overlapping segments are worth [-]"""
+    window: NDArray[np.float64]
+    """Hann window, shape (length,) [-]"""
+
+    @property
+    def overlap(self) -> int:
+        """Samples shared by two neighbours [-]."""
+        return self.length - self.step
+
+
+def effective_averages(window: NDArray[np.float64], step: int, count: int) -> float:
+    """Count the independent averages that `count` overlapping segments of a white record are worth.
+
+    K_eff = K / (1 + 2 sum_j (1 - j/K) rho_j),  rho_j = (sum w(i) w(i + j step))^2 / (sum w^2)^2
+
+    Args:
+        window: shape (length,).
+        step: samples from one segment to the next.
+        count: number of segments K.
+
+    Source: Welch (1967), IEEE Trans. Audio Electroacoustics 15, the variance of the averaged periodogram.
+    """
+    power = float(window @ window)
+    correlated = 0.0
+    for j in range(1, min(count, -(-window.size // step))):
+        shift = j * step
+        rho = (float(window[:-shift] @ window[shift:]) / power) ** 2 if shift < window.size else 0.0
+        correlated += (1.0 - j / count) * rho
+    return count / (1.0 + 2.0 * correlated)
+
+
+def cut_into_segments(
+    samples: int, time_step: float, *, window_s: float, overlap: float, minimum_averages: float
+) -> Segments:
+    """Cut a record of `samples` samples into Hann-windowed segments.
+
+    Args:
+        samples: length of the record [-].
+        time_step: [s].
+        window_s: length of a segment [s]; the lines are 1 / window_s apart.
+        overlap: share of a segment that the next one repeats, 0 <= overlap < 1 [-].
+        minimum_averages: effective averages that the caller asks for [-].
+
+    Raises:
+        ConfigurationError: window or overlap out of range.
+        DataError: the record is too short; the message says how long it must be.
+    """
+    if not (np.isfinite(window_s) and window_s >= 8.0 * time_step):
+        raise ConfigurationError(
+            f"window_s: found {window_s:g} s, allowed is at least 8 time steps ({8.0 * time_step:g} s)"
+        )
+    if not 0.0 <= overlap < 1.0:
+        raise ConfigurationError(f"overlap: found {overlap:g}, allowed is 0 <= overlap < 1")
+    length = round(window_s / time_step)
+    step = max(1, length - round(overlap * length))
+    window = np.asarray(get_window("hann", length), dtype=np.float64)
+    count = 0 if samples < length else 1 + (samples - length) // step
+    averages = effective_averages(window, step, count) if count else 0.0
+    if averages < minimum_averages:
+        needed = max(1, int(np.ceil(minimum_averages)))
+        while effective_averages(window, step, needed) < minimum_averages:
+            needed += 1
+        raise DataError(
+            f"record too short: {samples * time_step:g} s hold {averages:.3g} effective averages of {window_s:g} s "
+            f"windows with {100 * overlap:g} % overlap; needed are {minimum_averages:g}, so at least "
+            f"{(length + (needed - 1) * step) * time_step:g} s, or a shorter window (coarser lines)"
+        )
+    return Segments(length=length, step=step, count=count, averages=averages, window=window)

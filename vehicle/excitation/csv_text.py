@@ -1,0 +1,118 @@
+"""From a file to lines of text: size, encoding and line ends, checked before anything is parsed."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError, DataError
+
+MEMORY_LIMIT = 2 * 1024**3
+"""Refuse a file whose reading would need more than this [byte]."""
+
+BYTES_PER_ROW = 200
+"""Memory for each row beside its text [byte]: line and number objects, cells, and the arrays computed from them."""
+
+TEXT_COPIES = 4
+"""Copies of the text that exist at the same time: bytes, string, lines, and lines with another decimal sign."""
+
+LONGEST_LINE = 1_000_000
+"""Longest line that is read [byte]."""
+
+BOM = b"\xef\xbb\xbf"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CsvText:
+    """The lines of a text file with what was noticed on the way."""
+
+    lines: list[str]
+    """All lines without their ends; line number = index + 1."""
+    notices: tuple[str, ...]
+    """What was accepted although it is unusual."""
+    sha256: str
+    """Hexadecimal digest of the file's bytes."""
+
+
+def read_text(path: Path) -> CsvText:
+    """Read a UTF-8 file into lines, refusing early what would be slow, large or not text.
+
+    Memory needed = TEXT_COPIES * size + BYTES_PER_ROW * size / (mean length of the first rows).
+
+    Raises:
+        ConfigurationError: there is no such file.
+        DataError: empty, too large, NUL byte, not UTF-8, a line above 1 MB, not readable.
+    """
+    if not path.is_file():
+        raise ConfigurationError(f"{path}: no such file; give the path of a CSV file")
+    try:
+        with path.open("rb") as file:
+            size = path.stat().st_size
+            head = file.read(LONGEST_LINE + 1)
+            _check_bytes(path, head)
+            _check_memory(path, size, head)
+            data = head + file.read()
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
+    if not data.strip():
+        raise DataError(
+            f"{path}: the file is empty; needed is a header line 'time [s],displacement [m]' and one row per sample"
+        )
+    _check_bytes(path, data)
+    notices = []
+    digest = hashlib.sha256(data).hexdigest()
+    if data.startswith(BOM):
+        notices.append("byte order mark at the beginning of the file skipped")
+        data = data[len(BOM) :]
+    if b"\r" in data:
+        notices.append("line ends of another system (CR) read as line ends")
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    lines = _decode(path, data).split("\n")
+    longest = max(range(len(lines)), key=lambda index: len(lines[index]))
+    if len(lines[longest]) > LONGEST_LINE:
+        raise _line_too_long(path, longest + 1)
+    return CsvText(lines=lines, notices=tuple(notices), sha256=digest)
+
+
+def _check_bytes(path: Path, data: bytes) -> None:
+    """Refuse what is visible without decoding; called on the first megabyte and again on the whole."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise DataError(f"{path}:1:1: the file is UTF-16; allowed is UTF-8; save it as UTF-8 text")
+    nul = data.find(b"\0")
+    if nul >= 0:
+        line, column = _place(data, nul)
+        raise DataError(f"{path}:{line}:{column}: NUL byte; allowed is UTF-8 text; this is a binary or damaged file")
+    if len(data) == LONGEST_LINE + 1 and b"\n" not in data and b"\r" not in data:
+        raise _line_too_long(path, 1)
+
+
+def _check_memory(path: Path, size: int, head: bytes) -> None:
+    rows = size * max(head.count(b"\n"), head.count(b"\r"), 1) / max(len(head), 1)
+    needed = TEXT_COPIES * size + BYTES_PER_ROW * rows
+    if needed > MEMORY_LIMIT:
+        raise DataError(
+            f"{path}: about {rows:.3g} rows in {size / 1e9:.3g} GB need {needed / 1024**3:.3g} GiB of memory; allowed "
+            f"{MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts or lower its sampling rate"
+        )
+
+
+def _decode(path: Path, data: bytes) -> str:
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line, column = _place(data, error.start)
+        raise DataError(
+            f"{path}:{line}:{column}: byte 0x{data[error.start]:02x} is not UTF-8; save the file as UTF-8 text"
+        ) from error
+
+
+def _place(data: bytes, offset: int) -> tuple[int, int]:
+    before = data[:offset]
+    return before.count(b"\n") + 1, offset - before.rfind(b"\n")
+
+
+def _line_too_long(path: Path, line: int) -> DataError:
+    return DataError(
+        f"{path}:{line}: line longer than {LONGEST_LINE} characters; allowed is one row per sample; check the line ends"
+    )

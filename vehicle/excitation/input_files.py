@@ -1,0 +1,42 @@
+"""Finding an input file by its path or by the name of a shipped one."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError
+
+INPUT_FOLDER = Path(__file__).resolve().parents[2] / "scenarios" / "inputs"
+"""The shipped inputs; `scenarios` lies beside `vehicle` in the repository and where both are installed."""
+
+
+def find_input(name: str | Path) -> Path:
+    """Return the file at the path as given, else the file of that name in `scenarios/inputs/`.
+
+    Args:
+        name: path of a CSV file, or the plain name of a shipped one such as 'low.csv'.
+
+    Raises:
+        ConfigurationError: there is no such file; the message lists the names that exist.
+    """
+    given = Path(name)
+    if given.is_file():
+        return given
+    if given.exists():
+        raise ConfigurationError(f"input {str(name)!r} is not a file; give the path of a CSV file")
+    names = shipped_inputs()
+    if given.name == str(name) and given.name in names:
+        return INPUT_FOLDER / given.name
+    close = get_close_matches(given.name, names, n=1)
+    hint = f" Did you mean {close[0]}?" if close else ""
+    exist = ", ".join(names) if names else "none (python -m scenarios.inputs.make_inputs writes them)"
+    raise ConfigurationError(
+        f"input {str(name)!r} not found: no such file, and none of that name in scenarios/inputs/.{hint} "
+        f"Give the path of a CSV file or one of: {exist}"
+    )
+
+
+def shipped_inputs() -> list[str]:
+    """Names of the CSV files in `scenarios/inputs/`, sorted."""
+    return sorted(path.name for path in INPUT_FOLDER.glob("*.csv"))

@@ -1,0 +1,138 @@
+"""Is this the displacement of a shaker plate in metres? Level, acceleration and bandwidth checks before a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+from scipy.signal import butter, sosfiltfilt
+
+from vehicle.errors import DataError
+from vehicle.excitation.signal import Signal
+
+LARGEST_DISPLACEMENT = 0.15
+"""Largest plausible |z| [m]: beyond it a plate leaves the stroke of a rig and a wheel the ground."""
+
+LARGEST_ACCELERATION = 50.0
+"""Largest plausible |z''| [m/s2] below 100 Hz."""
+
+SMALLEST_RMS = 1e-7
+"""Smallest plausible RMS [m]: below it no sensor sees the motion."""
+
+ACCELERATION_BAND = 100.0
+"""The acceleration is judged up to this frequency [Hz]."""
+
+ALIAS_SHARE = 0.05
+"""Share of the velocity variance above 0.8 of the Nyquist frequency that raises a notice [-]."""
+
+
+def check_level(path: Path, displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> None:
+    """Stop at magnitudes that speak of another unit or quantity.
+
+    Args:
+        path: file, for messages.
+        displacement: wheel -> plate displacement [m], shape (n,).
+        timestep: distance of the samples [s].
+
+    Raises:
+        DataError: |z| > 0.15 m, |z''| > 50 m/s2, or RMS < 1e-7 m (a plate at rest beside a moving one is accepted).
+    """
+    moving = any(np.std(z) >= SMALLEST_RMS for z in displacement.values())
+    for wheel, z in displacement.items():
+        at = int(np.argmax(np.abs(z)))
+        if abs(z[at]) > LARGEST_DISPLACEMENT:
+            raise DataError(
+                f"{path}: plate {wheel} is displaced by {z[at]:.6g} m at sample {at} (t = {at * timestep:.6g} s); "
+                "allowed "
+                f"{LARGEST_DISPLACEMENT:g} m; looks like mm? Write the unit [mm] into the header, or remove a "
+                "constant offset (--remove-mean)"
+            )
+        rms = float(np.std(z))
+        if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
+            raise DataError(
+                f"{path}: RMS of plate {wheel} is {rms:.3g} m; allowed from {SMALLEST_RMS:g} m; looks like mm? "
+                "Check whether the column holds "
+                "metres under the unit [mm], or another quantity"
+            )
+        acceleration = band_limited_acceleration(z, timestep)
+        at = int(np.argmax(np.abs(acceleration)))
+        if abs(acceleration[at]) > LARGEST_ACCELERATION:
+            raise DataError(
+                f"{path}: plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s "
+                f"(below {ACCELERATION_BAND:g} Hz); "
+                f"allowed {LARGEST_ACCELERATION:g} m/s2; looks like mm? Otherwise look there for a jump or a spike "
+                "in the record"
+            )
+
+
+def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArray[np.float64]:
+    """Second time derivative of the record below 100 Hz [m/s2], shape (n,).
+
+    z'' = (z[i+1] - 2 z[i] + z[i-1]) / dt^2, after a zero-phase low pass (Butterworth, 4th order, forwards and
+    backwards). Bare second differences amplify quantisation without limit: steps of 10 um at 1 kHz give 7 m/s2 RMS of
+    nothing, behind the filter 0.2 m/s2. Differences read low near the Nyquist frequency, so a coarse record is never
+    refused for its rate. Within 10 ms of both ends the filter may add 10 %.
+    """
+    nyquist = 0.5 / timestep
+    smooth = z
+    if nyquist > 1.25 * ACCELERATION_BAND:  # below, the sampling itself limits the band
+        smooth = sosfiltfilt(butter(4, ACCELERATION_BAND / nyquist, output="sos"), z)
+    inner = np.diff(smooth, 2) / timestep**2
+    return np.concatenate((inner[:1], inner, inner[-1:]))
+
+
+def velocity_share_near_nyquist(z: NDArray[np.float64], timestep: float) -> float:
+    """Share of the variance of the VELOCITY above 0.8 of the Nyquist frequency [-].
+
+    sum over f > 0.8 fN of f^2 |Z(f)|^2 / sum over all f, Hann window. The displacement of a road falls so steeply
+    (1/f^2) that its variance never shows the upper end of the band, and the acceleration shows sensor noise there
+    even in a good record; the velocity spectrum of a road is flat, so without anti-alias filter a fifth of it lies
+    there.
+    """
+    centred = z - z.mean()
+    spectrum = fft.rfft(centred * np.hanning(z.size), fft.next_fast_len(z.size, real=True))
+    frequency = np.linspace(0.0, 1.0, spectrum.size)  # share of the Nyquist frequency
+    power = (frequency * np.abs(spectrum)) ** 2
+    total = float(power.sum())
+    return float(power[frequency > 0.8].sum()) / total if total > 0.0 else 0.0
+
+
+def aliasing_notices(displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> tuple[str, ...]:
+    """One notice for each plate whose velocity has more than 5 % of its variance above 0.8 of the Nyquist frequency."""
+    limit = 0.4 / timestep
+    shares = {wheel: velocity_share_near_nyquist(z, timestep) for wheel, z in displacement.items()}
+    return tuple(
+        f"plate {wheel}: {100.0 * share:.1f} % of the velocity variance lies above {limit:.4g} Hz (0.8 of Nyquist; "
+        "expected below "
+        f"{100.0 * ALIAS_SHARE:g} %): recorded without anti-alias filter?"
+        for wheel, share in shares.items()
+        if share > ALIAS_SHARE
+    )
+
+
+def require_duration(signal: Signal, *, window: float = 4.0, averages: int = 8, overlap: float = 0.5) -> None:
+    """Refuse a signal too short for `averages` FRF windows.
+
+    T = window (1 + (averages - 1) (1 - overlap))
+
+    Args:
+        signal: the excitation.
+        window: length of a window [s]; the frequency resolution is 1/window.
+        averages: windows needed [-]; with one the coherence is 1 by definition.
+        overlap: share of a window that the next one repeats [-].
+
+    Raises:
+        DataError: the signal is shorter.
+
+    Source: Bendat and Piersol, Random Data, 4th edition (a coherence of one average is always 1).
+    """
+    needed = window * (1.0 + (averages - 1) * (1.0 - overlap))
+    if signal.duration < needed - 0.5 * signal.timestep:
+        raise DataError(
+            f"{signal.source}: record of {signal.duration:.6g} s; {averages} averages of {window:g} s (resolution "
+            f"{1.0 / window:g} Hz, overlap "
+            f"{100 * overlap:g} %) need {needed:.6g} s; record longer or ask for a coarser resolution"
+        )

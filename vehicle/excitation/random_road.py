@@ -1,0 +1,86 @@
+"""Random plate displacement with constant velocity PSD: the standard road of the source."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle.errors import ConfigurationError
+from vehicle.excitation.band import (
+    LOWER_BAND_EDGE_HZ,
+    UPPER_BAND_EDGE_HZ,
+    lines_in_band,
+    period_of,
+    positive,
+    samples_of,
+)
+from vehicle.excitation.rest import RAMP_S, taper
+from vehicle.excitation.signal import Signal, uniform_time
+
+
+def random_road(
+    *,
+    rms: float,
+    seed: int,
+    duration: float = 60.0,
+    rate: float = 1000.0,
+    lower_band_edge: float = LOWER_BAND_EDGE_HZ,
+    upper_band_edge: float = UPPER_BAND_EDGE_HZ,
+    taper_length: float = RAMP_S,
+    wheel: str = "fr",
+) -> Signal:
+    """Band-limited Gaussian displacement whose PSD falls with 1/f^2 between two band edges.
+
+    G_z(f) = G_v / (2 pi f)^2, G_v constant, from the lower to the upper edge; z = sum of A_k cos(2 pi k t / T +
+    phi_k) over the lines k / T in the band, A_k = R_k / k with Rayleigh R_k and uniform phases: a sample of a
+    Gaussian process, unlike random phases alone, whose estimated PSD would have no scatter. Periodic over the record
+    before the taper. The taper (half cosine at both ends) makes it begin and end at rest; the mean is then removed in
+    proportion to the taper, and the whole scaled, so that mean 0 and RMS are exact.
+
+    A line keeps its R_k and phase whatever the band edges, so one seed is one road, seen through different bands.
+
+    Args:
+        rms: root mean square of the displacement over the whole record [m].
+        seed: seed of the PCG64 generator; only its uniform numbers are used, the part of numpy that changes least.
+        duration: length T [s].
+        rate: samples per second [Hz].
+        lower_band_edge: lowest frequency [Hz].
+        upper_band_edge: highest frequency [Hz], at most 0.8 of the Nyquist frequency.
+        taper_length: length of the half cosine at each end [s]; 0 keeps the record periodic, not at rest.
+        wheel: driven wheel.
+
+    Returns:
+        Signal with duration * rate + 1 samples, from 0 to `duration`.
+
+    Raises:
+        ConfigurationError: a parameter is out of range.
+
+    Source: thesis sections 2.3.1 and 3.2 (constant velocity PSD); synthesis as Shinozuka and Deodatis, Appl. Mech. Rev.
+    44 (1991), with Rayleigh amplitudes.
+    """
+    positive("RMS", rms, "m")
+    steps = samples_of(duration, rate)
+    if not 0.0 <= taper_length <= 0.5 * duration:
+        raise ConfigurationError(f"taper {taper_length!r} s; allowed: 0 to half of the record, {0.5 * duration:g} s")
+    lines = lines_in_band(steps=steps, rate=rate, lower=lower_band_edge, upper=upper_band_edge)
+    period = period_of(_gaussian(seed, int(lines[-1]))[lines - 1] / lines, lines, steps)
+    z = np.append(period, period[0])
+    weights = taper(samples=z.size, timestep=1.0 / rate, length=taper_length)
+    z = weights * (z - np.sum(weights * z) / np.sum(weights))
+    z = z * (rms / np.std(z)) + 0.0
+    return Signal(
+        time=uniform_time(samples=z.size, timestep=1.0 / rate),
+        displacement={wheel: z},
+        source=(
+            f"random road, RMS {rms:g} m, constant velocity PSD {lower_band_edge:g} to {upper_band_edge:g} Hz, "
+            f"{duration:g} s at {rate:g} Hz, "
+            f"seed {seed}, half-cosine taper {taper_length:g} s"
+        ),
+    )
+
+
+def _gaussian(seed: int, count: int) -> NDArray[np.complex128]:
+    """Complex Gaussian numbers R exp(j phi), shape (count,), by Box and Muller: R^2 = -2 ln(1 - u), phi = 2 pi v."""
+    uniform = np.random.Generator(np.random.PCG64(seed)).random((count, 2))
+    numbers: NDArray[np.complex128] = np.sqrt(-2.0 * np.log1p(-uniform[:, 0])) * np.exp(2j * np.pi * uniform[:, 1])
+    return numbers

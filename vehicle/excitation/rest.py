@@ -1,0 +1,78 @@
+"""The beginning at rest: the car stands trimmed on still plates, so a signal starts with no offset and no speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+RAMP_S = 0.5
+"""Length of the half-cosine ramp [s]: half a period of 1 Hz, the lower end of the range of interest."""
+
+OFFSET_SHARE = 0.01
+"""A first value above this share of the RMS is a step of the plate at t = 0."""
+
+VELOCITY_SHARE = 0.1
+"""A first difference above this share of the RMS of all first differences is a jump of the plate velocity at t = 0."""
+
+
+def half_cosine(*, samples: int, timestep: float, length: float) -> NDArray[np.float64]:
+    """Weights that rise from 0 to 1 over `length` seconds with zero slope at both ends, then stay 1.
+
+    w(t) = (1 - cos(pi t / length)) / 2
+
+    Args:
+        samples: number of weights n.
+        timestep: distance of the samples [s].
+        length: duration of the rise [s]; 0 gives ones.
+
+    Returns:
+        Weights [-], shape (n,). The first is exactly 0 (for a length above 0).
+    """
+    if length <= 0.0:
+        return np.ones(samples)
+    phase = np.minimum(np.arange(samples) * timestep / length, 1.0)
+    weights: NDArray[np.float64] = 0.5 * (1.0 - np.cos(np.pi * phase))
+    return weights
+
+
+def taper(*, samples: int, timestep: float, length: float) -> NDArray[np.float64]:
+    """Half-cosine rise at the beginning and the same fall at the end: weights [-], shape (n,)."""
+    rise = half_cosine(samples=samples, timestep=timestep, length=length)
+    return rise * rise[::-1]
+
+
+def start_from_rest(
+    displacement: Mapping[str, NDArray[np.float64]], *, timestep: float
+) -> tuple[dict[str, NDArray[np.float64]], tuple[str, ...]]:
+    """Apply the half-cosine ramp to all wheels if one of them does not begin at rest; nothing is ever subtracted.
+
+    Args:
+        displacement: wheel -> plate displacement [m], shape (n,).
+        timestep: distance of the samples [s].
+
+    Returns:
+        The displacements, and one notice for each cause with the length of the ramp (none: untouched).
+    """
+    causes = [cause for wheel, z in displacement.items() for cause in _causes(wheel, z, timestep)]
+    kept = {wheel: np.array(z) for wheel, z in displacement.items()}
+    if not causes:
+        return kept, ()
+    samples = next(iter(kept.values())).size
+    length = min(RAMP_S, 0.1 * (samples - 1) * timestep)
+    weights = half_cosine(samples=samples, timestep=timestep, length=length)
+    done = f"half-cosine ramp applied to all plates over the first {length:.3f} s; nothing was subtracted"
+    # Adding 0 turns the -0 of a negative first value into 0.
+    return {wheel: z * weights + 0.0 for wheel, z in kept.items()}, tuple(f"{cause}; {done}" for cause in causes)
+
+
+def _causes(wheel: str, z: NDArray[np.float64], timestep: float) -> list[str]:
+    rms = float(np.std(z))
+    first = float(z[0])
+    if abs(first) > OFFSET_SHARE * rms:
+        return [f"plate {wheel} begins at {first:.6g} m (RMS {rms:.6g} m): a step at t = 0"]
+    steps = np.diff(z)
+    if abs(steps[0]) > VELOCITY_SHARE * float(np.sqrt(np.mean(steps**2))):
+        return [f"plate {wheel} begins with {steps[0] / timestep:.6g} m/s: a jump of velocity at t = 0"]
+    return []

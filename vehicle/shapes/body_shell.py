@@ -1,0 +1,282 @@
+"""The body's sheet metal and glass, built as patches between the curves of the outline."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import trimesh
+
+from vehicle.shapes.body_outline import (
+    CANT_RAIL,
+    COWL_X,
+    ROOF_CORNER_STEP,
+    ROOF_CROWN,
+    ROOF_EDGE_STEP,
+    SILL,
+    TAIL_X,
+    Outline,
+    station_at,
+    station_front,
+    station_rear,
+)
+from vehicle.shapes.curve import bezier, spline
+from vehicle.shapes.patch import coons, grid
+from vehicle.shapes.placement import joined, mirrored
+from vehicle.shapes.shape import Array
+
+CORNER_Y = 0.58  # [m] reference Y of the bonnet's front corner
+LINING_GAP = 0.014  # [m]
+ARCH_POINTS = 11  # along the half circle of a wheel arch
+FAN = 0.075  # [m] the row over the foot of an arch leans away from the wheel by this much
+LEVELS = 7  # rows of the lower body between sill and waist
+ROOF_STATIONS = 13
+CANT_STEPS = 4
+SILL_GLASS, TOP_GLASS = 0.06, 0.93  # share of the height of the side where the glass begins and ends
+# side windows: reference X at the waist and at the roof rail of the front and the rear edge [m]
+WINDOWS = ((1.66, 2.075, 2.46, 2.50), (2.58, 2.60, 3.38, 3.30), (3.50, 3.41, 4.20, 4.01))
+MIRROR_Y = np.array([1.0, -1.0, 1.0])
+
+
+def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
+    """Stations and heights of the lower and upper edge of the lower body, right half, front middle to rear middle.
+
+    The lower edge follows bumper, front arch, sill, rear arch, bumper; both edges have as many points.
+
+    Returns:
+        station and height H of the lower edge, station and height H of the upper edge, each shape (n,)
+    """
+    (fx, fh), (rx, rh) = arch_edge(body, 0), arch_edge(body, 1)
+    # above an arch the upper points are spread evenly and wider than the arch, so that the rows fan out round it
+    fan = [np.concatenate([[x[0] - FAN], np.linspace(x[0], x[-1], len(x) - 2), [x[-1] + FAN]]) for x in (fx, rx)]
+    front = station_front(np.array([0.0, 0.20, 0.38, 0.50, CORNER_Y]))
+    rear = station_rear(np.array([0.60, 0.48, 0.32, 0.16, 0.0]))
+    middle = station_at(np.concatenate([[COWL_X], np.linspace(COWL_X, rx[0], 8)[1:-1]]))
+    front_side, front_side_top = (station_at(np.linspace(0.115, end, 7))[:-1] for end in (fx[0], fan[0][0]))
+    rear_side, rear_side_top = (station_at(np.linspace(start, 4.36, 7))[1:] for start in (rx[-1], fan[1][-1]))
+    low = np.concatenate([front, front_side, station_at(fx), middle, station_at(rx), rear_side, rear])
+    top = np.concatenate([front, front_side_top, station_at(fan[0]), middle, station_at(fan[1]), rear_side_top, rear])
+
+    def sill(station: Array) -> Array:
+        return np.asarray(np.interp(station, station_at(SILL[:, 0]), SILL[:, 1]))
+
+    heights = np.concatenate([sill(front), sill(front_side), fh, sill(middle), rh, sill(rear_side), sill(rear)])
+    return low, heights, top, body.waist(top)
+
+
+def arch_edge(body: Outline, axle: int) -> tuple[Array, Array]:
+    """Reference X and H [m] of the edge of a wheel arch: upright from the sill, half a circle, upright to the sill."""
+    cx, cz = body.arch_centre(axle)
+    phi = np.linspace(np.pi, 0, ARCH_POINTS)
+    X = body.along(cx + body.arch_radius * np.cos(phi))
+    H = body.height(cz + body.arch_radius * np.sin(phi))
+    feet = np.interp(X[[0, -1]], *SILL.T)
+    return np.concatenate([X[:1], X, X[-1:]]), np.concatenate([feet[:1], H, feet[1:]])
+
+
+def lower_grid(body: Outline, lift: float = 0.0) -> Array:
+    """Points of the right lower body, shape (levels, n, 3), from the lower edge to the waist."""
+    low, low_h, top, top_h = lower_loops(body)
+    share = np.linspace(0, 1, LEVELS)[:, None]
+    return body.side((1 - share) * low + share * top, (1 - share) * low_h + share * top_h, lift)
+
+
+def waist_curve(body: Outline, X: Array) -> Array:
+    """The waist as vehicle points at reference X [m] of the plan curve, shape (n, 3)."""
+    station = station_at(X)
+    return body.side(station, body.waist(station))
+
+
+def cant_rail(body: Outline, X: Array) -> tuple[Array, Array, Array]:
+    """Lower edge, corner and upper edge of the roof's rounding at reference X [m], each shape (n, 3)."""
+    rail = spline(CANT_RAIL, 200)
+    low = np.column_stack([X, *(np.interp(X, rail[:, 0], rail[:, k]) for k in (1, 2))])
+    return body.place(low), body.place(low + ROOF_CORNER_STEP), body.place(low + ROOF_EDGE_STEP)
+
+
+def header(body: Outline, X: float, bow: float, across: int) -> Array:
+    """Edge of the roof over the windscreen or the tailgate, from the right rail over the middle to the left one.
+
+    Args:
+        body: the outline
+        X: reference X of its ends [m]
+        bow: how far its middle lies ahead [m]
+        across: points across the flat of the roof, odd
+
+    Returns:
+        points, shape (across + 2 * (CANT_STEPS - 1), 3)
+    """
+    low, corner, edge = (curve[0] for curve in cant_rail(body, np.array([X])))
+    rounding = bezier(low, corner, edge, CANT_STEPS)
+    flat = np.linspace(1, -1, across)[:, None]
+    roof = edge * (0, 0, 1) + (edge * (1, 0, 0) - (bow, 0, 0) * (1 - flat**2)) + (0, 1, 0) * flat * edge
+    roof = roof + (0, 0, ROOF_CROWN) * (1 - flat**2)
+    return np.vstack([rounding[:-1], roof, (rounding * MIRROR_Y)[::-1][1:]])
+
+
+ACROSS = 9  # points across the flat of the roof
+ROOF_X = (float(CANT_RAIL[0, 0]), float(CANT_RAIL[-1, 0]))
+BOW_FRONT, BOW_REAR = 0.085, -0.045
+
+
+def roof(body: Outline) -> Array:
+    """Points of the roof with both rounded rails, from the windscreen to the tailgate, right to left."""
+    X = np.linspace(*ROOF_X, ROOF_STATIONS)
+    _low, _corner, _edge = cant_rail(body, X)
+    rows = []
+    for _i, x in enumerate(X):
+        share = (x - X[0]) / (X[-1] - X[0])
+        bow = BOW_FRONT * max(0.0, 1 - 6 * share) ** 2 + BOW_REAR * max(0.0, 6 * share - 5) ** 2
+        rows.append(header(body, float(x), bow, ACROSS))
+    return np.array(rows)
+
+
+def windscreen_grid(body: Outline) -> Array:
+    """Points of the windscreen plane with the pillars, from cowl to header, shape (6, n, 3)."""
+    top = header(body, ROOF_X[0], BOW_FRONT, ACROSS)
+    bottom = cowl(body, len(top))
+    steps = np.linspace(0, 1, 6)[:, None]
+    left, right = (bottom[k] + steps * (top[k] - bottom[k]) for k in (0, -1))
+    return coons(bottom, top, left, right)
+
+
+def cowl(body: Outline, count: int) -> Array:
+    """Foot of the windscreen, bowed forward, from right to left; spaced like the header above it."""
+    side = waist_curve(body, np.array([COWL_X]))[0]
+    share = header_shares(count)
+    y = side[1] * share
+    lift, bow = 0.060 * (1 - share**2), 0.215 * (1 - share**2)
+    return np.column_stack([side[0] - bow, y, side[2] + lift])
+
+
+def header_shares(count: int) -> Array:
+    """Where the points of a header lie across the car, 1 at the right rail, -1 at the left one."""
+    rounding = 1 - 0.13 * np.linspace(0, 1, CANT_STEPS)
+    flat = np.linspace(rounding[-1], -rounding[-1], count - 2 * (CANT_STEPS - 1))
+    return np.concatenate([rounding[:-1], flat, -rounding[::-1][1:]])
+
+
+def bonnet(body: Outline) -> Array:
+    """Points of the bonnet between the front edge, both wing edges and the cowl, with a little extra crown."""
+    edge = lower_loops(body)[2]  # the edges share their points with the lower body: no gap
+    ahead = edge[edge <= station_front(CORNER_Y) + 1e-9]
+    half = np.concatenate([ahead[::-1], ahead[1:]])
+    wing_stations = edge[(edge >= station_front(CORNER_Y) - 1e-9) & (edge <= station_at(COWL_X) + 1e-9)]
+    count, rows = len(half), len(wing_stations)
+    shares = np.linspace(1, -1, count)
+    back = cowl(body, ACROSS + 2 * (CANT_STEPS - 1))
+    rear = np.column_stack([np.interp(-shares, -header_shares(len(back)), back[:, k]) for k in range(3)])
+    front = body.side(half, body.waist(half))
+    front[:, 1] *= np.sign(shares) + (shares == 0)
+    wing = body.side(wing_stations, body.waist(wing_stations))
+    surface = coons(front, rear, wing, wing * MIRROR_Y)
+    u, v = np.linspace(0, 1, count)[None, :], np.linspace(0, 1, rows)[:, None]
+    surface[..., 2] += 0.16 * u * (1 - u) * np.sin(np.pi * v) ** 0.8 * (1 - 0.4 * v)
+    return surface
+
+
+def tailgate_grid(body: Outline) -> Array:
+    """Points of the tailgate above the waist, from the waist to the header, shape (7, n, 3)."""
+    top = header(body, ROOF_X[1], BOW_REAR, ACROSS)
+    shares = header_shares(len(top))
+    station = 1 - (1 - station_at(TAIL_X)) * np.abs(shares)
+    bottom = body.side(station, body.waist(station))
+    bottom[:, 1] *= np.sign(shares)
+    steps = np.linspace(0, 1, 7)[:, None]
+    left = bottom[0] + steps * (top[0] - bottom[0])
+    surface = coons(bottom, top, left, left * MIRROR_Y)
+    bulge = np.sin(np.pi * np.linspace(0, 1, 7))[:, None] * (1 - shares**4)
+    surface[..., 0] += 0.022 * bulge
+    return surface
+
+
+def side_columns(body: Outline) -> tuple[list[Array], list[Array]]:
+    """Patches of the right side above the waist: sheet metal and glass, each shape (m, n, 3)."""
+    lines = [(COWL_X, ROOF_X[0])]
+    for front_low, front_top, rear_low, rear_top in WINDOWS:
+        lines += [(front_low, front_top), (rear_low, rear_top)]
+    lines.append((TAIL_X, ROOF_X[1]))
+    metal: list[Array] = []
+    glass: list[Array] = []
+    for k, (first, last) in enumerate(pairwise(lines)):
+        window = k % 2 == 1
+        count = 6 if window else 3
+        levels = [0.0, SILL_GLASS, TOP_GLASS, 1.0] if window else [0.0, 1.0]
+        for low, high in pairwise(levels):
+            is_glass = window and low == SILL_GLASS
+            steps = 5 if is_glass or not window else 2
+            # the bulge fades in the outermost pillars, whose edges belong to windscreen and tailgate too
+            fade = (float(k > 0), float(k < len(lines) - 2))
+            patch = side_patch(body, first, last, np.linspace(low, high, steps), count, fade)
+            (glass if is_glass else metal).append(patch)
+    return metal, glass
+
+
+def side_patch(
+    body: Outline,
+    first: tuple[float, float],
+    last: tuple[float, float],
+    levels: Array,
+    count: int,
+    fade: tuple[float, float],
+) -> Array:
+    """Points between two slanted lines on the right side above the waist, with the bulge of the side glass."""
+    share = np.linspace(0, 1, count)
+    bottom = waist_curve(body, first[0] + share * (last[0] - first[0]))
+    top = cant_rail(body, first[1] + share * (last[1] - first[1]))[0]
+    v = levels[:, None, None]
+    surface: Array = (1 - v) * bottom + v * top
+    surface[..., 1] += 0.018 * np.sin(np.pi * levels)[:, None] * (fade[0] + share * (fade[1] - fade[0]))
+    return surface
+
+
+def split_pane(surface: Array, rows: tuple[int, int], columns: int) -> tuple[list[Array], Array]:
+    """A pane cut from a grid: the frame around it as four patches, and the pane."""
+    low, high = rows
+    n = surface.shape[1]
+    frame = [
+        surface[: low + 1],
+        surface[high:],
+        surface[low : high + 1, : columns + 1],
+        surface[low : high + 1, n - 1 - columns :],
+    ]
+    return [patch for patch in frame if patch.shape[0] > 1], surface[low : high + 1, columns : n - columns]
+
+
+def lower_body(body: Outline) -> trimesh.Trimesh:
+    """Bumpers, wings, doors and side panels up to the waist, both sides."""
+    right = grid(lower_grid(body), flip=True)
+    return joined(right, mirrored(right))
+
+
+def pillars(body: Outline) -> trimesh.Trimesh:
+    """Pillars and the frames of windscreen and rear window."""
+    right = [grid(patch, flip=True) for patch in side_columns(body)[0]]
+    front = [grid(patch) for patch in split_pane(windscreen_grid(body), (0, 5), 2)[0]]
+    rear = [grid(patch, flip=True) for patch in split_pane(tailgate_grid(body), (1, 5), 2)[0]]
+    return joined(right, [mirrored(mesh) for mesh in right], front, rear)
+
+
+def sheet_metal(body: Outline) -> trimesh.Trimesh:
+    """All painted panels."""
+    return joined(lower_body(body), pillars(body), grid(bonnet(body)), grid(roof(body)))
+
+
+def glass(body: Outline) -> trimesh.Trimesh:
+    """Windscreen, side windows and rear window."""
+    right = [grid(patch, flip=True) for patch in side_columns(body)[1]]
+    windscreen, rear_window = (
+        split_pane(windscreen_grid(body), (0, 5), 2)[1],
+        split_pane(tailgate_grid(body), (1, 5), 2)[1],
+    )
+    return joined(right, [mirrored(mesh) for mesh in right], grid(windscreen), grid(rear_window, flip=True))
+
+
+def lining(body: Outline) -> trimesh.Trimesh:
+    """The inner side of the sheet metal, a little further inside and facing inward, with fewer triangles."""
+    right = grid(lower_grid(body, -LINING_GAP)[[0, 3, LEVELS - 1]])
+    posts = pillars(body)
+    vertices = np.asarray(posts.vertices) - LINING_GAP * np.asarray(posts.vertex_normals)
+    inner = trimesh.Trimesh(vertices, np.asarray(posts.faces)[:, ::-1], process=False)
+    covers = [grid(surface[::2, ::2] - (0, 0, 1.6 * LINING_GAP), flip=True) for surface in (bonnet(body), roof(body))]
+    return joined(right, mirrored(right), inner, covers)
