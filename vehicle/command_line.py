@@ -38,6 +38,7 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     previous = signal.signal(signal.SIGTERM, _interrupt)
     try:
         job()
+        sys.stdout.flush()
     except KeyboardInterrupt:
         _say("interrupted; nothing half-written is left behind")
         return INTERRUPTED

@@ -1,5 +1,8 @@
 """Every error a user can meet: one base class, one exit code for each kind."""
 
+from collections.abc import Mapping
+from typing import Any
+
 
 class VehicleError(Exception):
     """What went wrong, where, the value found, what is allowed and how to mend it, in one message."""
@@ -20,9 +23,18 @@ class DataError(VehicleError):
 
 
 class SimulationError(VehicleError):
-    """The simulation could not be carried through; no result may be used."""
+    """The simulation could not be carried through; no result may be used.
+
+    Args:
+        message: as of `VehicleError`.
+        state: the last good state, name to array, where there is one.
+    """
 
     exit_code = 4
+
+    def __init__(self, message: str, state: Mapping[str, Any] | None = None) -> None:
+        super().__init__(message)
+        self.state = state
 
 
 class MissingPartError(VehicleError):

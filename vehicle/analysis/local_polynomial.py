@@ -33,6 +33,9 @@ LEAST_HALF_WIDTH = 6
 RELATIVE_WIDTH = 0.03
 """Width of the stretch over its frequency: half the bandwidth of a mode with 3 % damping, which a parabola follows."""
 
+WORST_CONDITION = 1e-3
+"""Smallest over largest singular value of a stretch; below it too few of its lines are excited to tell the FRF."""
+
 MOST_HALF_WIDTH = 60
 """Lines n on each side at most, which bounds the work on long records."""
 
@@ -94,7 +97,9 @@ def local_polynomial_response(
             continue
         scale = np.sqrt(power)
         regressors = np.hstack([powers * (drive / scale)[:, None], powers])
-        solution, _, rank, _ = np.linalg.lstsq(regressors, answers[:, lines].T, rcond=None)
+        solution, _, rank, singular = np.linalg.lstsq(regressors, answers[:, lines].T, rcond=None)
+        if singular[-1] < WORST_CONDITION * singular[0]:
+            continue
         residual = answers[:, lines].T - regressors @ solution
         freedom = offsets.size - int(rank)
         noise = np.sum(np.abs(residual) ** 2, axis=0) / freedom

@@ -11,6 +11,12 @@ from vehicle.errors import SimulationError
 from vehicle.simulation.element_rows import ElementRows
 
 
+def _write_log(log: mujoco.MjLogConfig, *, console: bool, file: bool) -> None:
+    """Switch where MuJoCo writes its messages."""
+    log.logto_console, log.logto_file = console, file
+    mujoco.MjLogConfig.set(log)
+
+
 @contextmanager
 def installed(rows: ElementRows) -> Iterator[None]:
     """Install the callbacks of one simulation for the time of a `with` block.
@@ -36,9 +42,14 @@ def installed(rows: ElementRows) -> Iterator[None]:
     mujoco.set_mjcb_control(control)
     mujoco.set_mjcb_act_gain(rows.actuator_gain)
     mujoco.set_mjcb_act_bias(rows.actuator_bias)
+    log = mujoco.MjLogConfig.get()
+    written = (log.logto_console, log.logto_file)
+    # MuJoCo would print its warnings and append them to a file in the user's folder; the run reads its counters.
+    _write_log(log, console=False, file=False)
     try:
         yield
     finally:
+        _write_log(log, console=written[0], file=written[1])
         mujoco.set_mjcb_control(None)
         mujoco.set_mjcb_act_gain(None)
         mujoco.set_mjcb_act_bias(None)

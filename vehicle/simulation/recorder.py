@@ -113,6 +113,17 @@ class Recorder:
                 self.energy_at_start = energy
             self.energy_at_end = energy
 
+    def finite_samples(self) -> int:
+        """Number of buffered samples before the first one that is not finite."""
+        finite = np.all(np.isfinite(self.buffers["sensors"][: self.filled]), axis=1)
+        return self.filled if finite.all() else int(np.argmin(finite))
+
+    def last_pose(self, good: int) -> tuple[float, Vector]:
+        """Time [s] and position of the last stored pose among the finished and the first `good` buffered samples."""
+        last = max(self.done + good - 1, 0)
+        index = max((i for i, sample in enumerate(self.pose_index) if sample <= last), default=0)
+        return self.pose_index[index] / self.car.vehicle.solver.record_rate, self.poses[index]
+
     def _stored_energy(self, half: float) -> float:
         """Kinetic, elastic and gravity energy [J] at the present time."""
         # The armature of the integration is not a mass of the car, so the model as generated is asked.

@@ -24,6 +24,10 @@ POSE_RATE = 100.0
 """Rate [Hz] of the poses kept for films."""
 
 
+LARGEST_STATE = 1e8
+"""Velocity or acceleration beyond which a state is lost, long before it is infinite; the limit of MuJoCo is higher."""
+
+
 def simulate(car: CarModel, signal: Signal, *, progress: Progress | None = None) -> Recording:
     """Run a car on its shaker plates.
 
@@ -70,8 +74,8 @@ def simulate(car: CarModel, signal: Signal, *, progress: Progress | None = None)
                 mujoco.mj_forward(model, data)
             recorder.after_step(moved=index < count)
             if recorder.filled == CHUNK or index == count:
+                _check_state(model, data, recorder, every * step)
                 recorder.flush(motion, index, every)
-                _check_state(model, data, times[index])
                 if progress is not None:
                     progress(index / count)
     wall = clock.perf_counter() - started
@@ -108,15 +112,20 @@ def _pose_every(car: CarModel, every: int) -> int:
     return max(round(1.0 / (POSE_RATE * car.vehicle.solver.timestep * every)), 1)
 
 
-def _check_state(model: mujoco.MjModel, data: mujoco.MjData, time: float) -> None:
+def _check_state(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, interval: float) -> None:
     """Stop at the first state that is not finite; MuJoCo itself would go on."""
-    bad = np.flatnonzero(~(np.isfinite(data.qvel) & np.isfinite(data.qacc)) | (np.abs(data.qvel) > 1e6))
-    if len(bad):
-        joint = model.joint(model.dof_jntid[bad[0]]).name
-        raise SimulationError(
-            f"the state is no longer finite at t = {time:.4f} s (joint {joint}); "
-            "reduce solver.timestep or check the parameters that you changed"
-        )
+    good = recorder.finite_samples()
+    state = np.concatenate([data.qvel, data.qacc])
+    if good == recorder.filled and np.all(np.isfinite(state)) and np.max(np.abs(state)) < LARGEST_STATE:
+        return
+    bad = np.flatnonzero(~np.isfinite(data.qacc) | (np.abs(data.qacc) > LARGEST_STATE))
+    joint = model.joint(model.dof_jntid[bad[0] if len(bad) else int(np.argmax(np.abs(data.qacc)))]).name
+    pose_time, pose = recorder.last_pose(good)
+    raise SimulationError(
+        f"the state is no longer finite at t = {(recorder.done + good) * interval:.4f} s (joint {joint}); "
+        "reduce solver.timestep or check the parameters that you changed",
+        state={"time": np.array(pose_time), "qpos": pose},
+    )
 
 
 def _warnings(data: mujoco.MjData) -> list[str]:

@@ -14,6 +14,7 @@ from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonance_peaks
 from vehicle.assembly.body_inertia import rigid_body
 from vehicle.car import SATURATED_VELOCITY, Car, Run
+from vehicle.errors import SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES, WHEELS, acceleration_channels
 from vehicle.output_folder import output_folder, write_json, write_whole
@@ -62,8 +63,13 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
     Raises:
         VehicleError: whatever goes wrong; nothing half-written is left behind.
     """
+    # A car that cannot be built is refused before anything is written.
+    _ = car.model
     with output_folder(options.output, force=options.force, protect=options.input_file) as folder:
-        run = car.run(signal, progress)
+        try:
+            run = car.run(signal, progress)
+        except SimulationError as error:
+            raise _with_saved_state(error, options.output) from None
         response = run.frf()
         files = {
             "summary": "summary.json",
@@ -91,6 +97,21 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
         summary = summarise(run, response, files)
         write_json(folder / "summary.json", summary)
     return summary
+
+
+def _with_saved_state(error: SimulationError, output: Path) -> SimulationError:
+    """The same error, after its last good state has been saved beside the folder that will not exist."""
+    if error.state is None:
+        return error
+    state = dict(error.state)
+    path = output.with_name(f"{output.name}.failed.npz")
+
+    def save(temporary: Path) -> None:
+        with temporary.open("wb") as file:
+            np.savez(file, allow_pickle=False, **state)
+
+    write_whole(path, save)
+    return SimulationError(f"{error}; last good state (t = {float(state['time']):.3f} s): {path}")
 
 
 def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> dict[str, Any]:

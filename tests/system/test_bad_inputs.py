@@ -1,0 +1,200 @@
+"""Bad inputs and faults at the command line: exit code, one clear message, nothing half-written."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.system.conftest import csv_text
+from vehicle.excitation.random_road import random_road
+
+ROOT = Path(__file__).resolve().parents[2]
+GOOD = random_road(rms=1e-4, seed=1, duration=4.0).displacement["fr"]
+
+
+def _with(line: int, text: str) -> str:
+    lines = csv_text(GOOD).splitlines()
+    lines[line] = text
+    return "\n".join(lines) + "\n"
+
+
+SIGNALS = [
+    ("1 empty file", "", 3, "empty"),
+    ("1 header only", "time [s],displacement [m]\n", 3, "ends after the header"),
+    ("2 not a number", _with(10, "0.009,#N/A"), 3, ":11:"),
+    ("2 infinite", _with(10, "0.009,inf"), 3, ":11:"),
+    ("3 uneven steps", csv_text(GOOD).replace("0.010000,", "0.010400,"), 3, "--resample"),
+    ("4 repeated time", _with(12, "0.010000,1e-6"), 3, ":13"),
+    ("5 no header", csv_text(GOOD, header="0.0,0.0"), 3, "displacement [m]"),
+    ("6 decimal comma", csv_text(GOOD).replace(",", ";").replace(".", ","), 0, ""),
+    ("7 millimetres as metres", csv_text(GOOD * 1e3), 3, "mm"),
+    ("9 acceleration", csv_text(GOOD, header="time [s],acceleration [m/s2]"), 3, "displacement"),
+    ("11 too slow", csv_text(GOOD[::10], rate=100.0), 3, "Hz"),
+]
+
+
+@pytest.mark.parametrize(("text", "code", "piece"), [case[1:] for case in SIGNALS], ids=[case[0] for case in SIGNALS])
+def test_bad_signals(shaker, tmp_path, text, code, piece):
+    (tmp_path / "signal.csv").write_text(text, encoding="utf-8")
+    outcome = shaker("--input", "signal.csv", "--quiet")
+    assert outcome.code == code, outcome.err
+    if code:
+        assert outcome.err.count("\n") == 1 and outcome.err.startswith("error: ")
+        assert "signal.csv" in outcome.err and piece in outcome.err
+        assert not (tmp_path / "runs").exists(), "nothing may be written"
+
+
+SETTINGS = [
+    ("20 NaN stiffness", "bushings.tyre.stiffness=[nan, 1e5, 1e5]", "bushings.tyre.stiffness: found nan"),
+    ("21 negative stiffness", "main_spring.stiffness=-1", "main_spring.stiffness: found -1.0 N/m, must be greater"),
+    ("22 negative damping", "damper.viscous=-1", "damper.viscous: found -1.0 N s/m, must be at least 0.0"),
+    ("22 negative friction", "damper.coulomb_friction=-1", "damper.coulomb_friction: found -1.0 N"),
+    ("23 too stiff", "bushings.tyre.stiffness=[1.5e5, 1.5e5, 1e12]", "give at most"),
+    ("24 zero mass", "parts.knuckle.mass=0", "parts.knuckle.mass: found 0.0 kg, must be greater than 0.0"),
+    ("24 triangle inequality", "parts.engine.inertia=[1, 1, 3]", "parts.engine.inertia: found [1.0, 1.0, 3.0] kg m2"),
+    ("25 zero step", "solver.timestep=0", "solver.timestep: found 0.0 s, must be greater than 0.0"),
+    ("26 strut below ball", "hardpoints.strut_top=[0.877, 0.548, 0.5]", "hardpoints.strut_top: found z = 0.5 m"),
+    ("26 collinear arm", "hardpoints.arm_rear=[0.842, 0.2, 0.612]", "lie on one line"),
+    ("27 no such body", "body.superelement=nothing.toml", "body.superelement: no file 'nothing.toml'"),
+    ("30 unknown name", "damper.coulomb_fricton=100", "the nearest is damper.coulomb_friction"),
+    ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, needed is a number"),
+    ("31 overflow", "damper.viscous=1e400", "damper.viscous: found inf"),
+    ("31 two components", "body.cog=[1, 2]", "body.cog: found (1.0, 2.0), needed is a list of 3 numbers [m]"),
+    ("32 XML in a name", 'name="a\\"/><b"', "allowed are names of letters"),
+    ("33 path in a name", 'body.superelement="../../secret.toml"', "allowed are names of letters"),
+]
+
+
+@pytest.mark.parametrize(
+    ("setting", "piece"), [case[1:] for case in SETTINGS], ids=[case[0] for case in SETTINGS]
+)
+def test_bad_parameters(shaker, short_signal, tmp_path, setting, piece):
+    outcome = shaker("--input", "short.csv", "--set", setting)
+    assert outcome.code == 2, outcome.err
+    assert outcome.err.count("\n") == 1 and piece in outcome.err
+    assert not (tmp_path / "runs").exists()
+
+
+def test_item_27_bad_superelement_beside_the_vehicle_file(shaker, short_signal, tmp_path):
+    text = (ROOT / "vehicle/flexbody/trimmed_body.toml").read_text()
+    (tmp_path / "trimmed_body.toml").write_text(text.replace("mode_count = 9", "mode_count = 8"))
+    (tmp_path / "car.toml").write_text((ROOT / "vehicle/parameters/focus.toml").read_text())
+    outcome = shaker("--input", "short.csv", "--vehicle", "car.toml")
+    assert outcome.code == 3 and "mode_count" in outcome.err
+
+
+def test_item_33_link_out_of_the_folder(shaker, short_signal, tmp_path):
+    folder = tmp_path / "cars"
+    folder.mkdir()
+    (folder / "trimmed_body.toml").symlink_to(ROOT / "vehicle/flexbody/trimmed_body.toml")
+    (folder / "car.toml").write_text((ROOT / "vehicle/parameters/focus.toml").read_text())
+    outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml")
+    assert outcome.code == 2 and "is a link that leads out of" in outcome.err
+
+
+def test_item_35_existing_output(shaker, short_signal, tmp_path):
+    kept = tmp_path / "runs" / "short" / "mine.txt"
+    kept.parent.mkdir(parents=True)
+    kept.write_text("mine")
+    outcome = shaker("--input", "short.csv")
+    assert outcome.code == 2 and "give --force" in outcome.err and kept.read_text() == "mine"
+    outcome = shaker("--input", "short.csv", "--output", ".", "--force")
+    assert outcome.code == 2 and "holds the input" in outcome.err and short_signal.exists()
+
+
+def test_item_35_output_that_cannot_be_written(shaker, short_signal, tmp_path):
+    (tmp_path / "file").write_text("")
+    outcome = shaker("--input", "short.csv", "--output", "file/run")
+    assert outcome.code == 6 and "cannot be written" in outcome.err
+
+
+def test_item_36_a_lost_state_gives_no_numbers(shaker, short_signal, tmp_path, monkeypatch):
+    from vehicle.simulation.element_rows import ElementRows
+
+    laws = ElementRows.__call__
+
+    def break_down(self, model, data):
+        laws(self, model, data)
+        if data.time > 1.5:
+            data.qfrc_applied[0] = np.nan
+
+    monkeypatch.setattr(ElementRows, "__call__", break_down)
+    outcome = shaker("--input", "short.csv")
+    assert outcome.code == 4
+    assert "no longer finite at t = 1.50" in outcome.err and "joint" in outcome.err
+    assert outcome.out == "" and not (tmp_path / "runs" / "short").exists()
+    saved = np.load(tmp_path / "runs" / "short.failed.npz", allow_pickle=False)
+    assert 1.4 < float(saved["time"]) <= 1.51 and np.isfinite(saved["qpos"]).all()
+    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
+
+
+def test_item_38_interrupt(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "vehicle.shaker", "--input", "high.csv"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while not list(tmp_path.glob("runs/.high.*.partial")) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert list(tmp_path.glob("runs/.high.*.partial")), "the run never began"
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert said.strip().splitlines()[-1] == "error: interrupted; nothing half-written is left behind"
+    assert not list(tmp_path.glob("runs/*")) and not list(tmp_path.glob("runs/.*"))
+
+
+def test_item_39_full_disk(shaker, short_signal, tmp_path, monkeypatch):
+    def full(path, *_):
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    monkeypatch.setattr("vehicle.studies.shaker.write_frf", full)
+    outcome = shaker("--input", "short.csv")
+    assert outcome.code == 6 and "No space left on device" in outcome.err
+    assert not list(tmp_path.glob("runs/*")) and not list(tmp_path.glob("runs/.*"))
+
+
+def test_item_39_closed_pipe(tmp_path):
+    command = f'set -o pipefail; "{sys.executable}" -m vehicle.modes --json | head -c 1 >/dev/null; echo "${{PIPESTATUS[0]}}"'
+    done = subprocess.run(
+        ["bash", "-c", command],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.stderr == "" and done.stdout.strip() in {"0", "6"}
+
+
+def test_item_40_no_rendering_library(shaker, short_signal, tmp_path, monkeypatch):
+    from vehicle.errors import MissingPartError
+    from vehicle.rendering import backend
+
+    def missing():
+        raise MissingPartError("films need libOSMesa: apt-get install libosmesa6")
+
+    monkeypatch.setattr(backend, "choose_backend", missing)
+    outcome = shaker("--input", "short.csv", "--video")
+    assert outcome.code == 5 and "libosmesa6" in outcome.err
+    assert not (tmp_path / "runs").exists(), "refused before anything is simulated"
+
+
+def test_usage_errors(shaker, short_signal):
+    assert shaker().code == 2
+    outcome = shaker("--input", "short.csv", "--wheel", "rear_left")
+    assert outcome.code == 2 and "front_right" in outcome.err
+    outcome = shaker("--input", "short.csv", "--set", "damper")
+    assert outcome.code == 2 and "PATH=VALUE" in outcome.err

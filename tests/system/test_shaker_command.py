@@ -1,0 +1,133 @@
+"""The main job end to end: files, keys, round trips, reproducibility."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from vehicle.names import acceleration_channels, channel_units
+from vehicle.parameters.vehicle import load_vehicle
+
+FILES = {"summary.json", "vehicle.toml", "time.npz", "frf.csv", "frf.png", "time.png"}
+
+
+def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
+    outcome = shaker("--input", "short.csv", "--set", "damper.coulomb_friction=100")
+    assert outcome.code == 0, outcome.err
+    folder = tmp_path / "runs" / "short"
+    assert {path.name for path in folder.iterdir()} == FILES
+    assert not list((tmp_path / "runs").glob(".*")), "temporary files must be gone"
+    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
+
+    summary = json.loads((folder / "summary.json").read_text())
+    assert set(summary["input"]) >= {"file", "sha256", "rms_m", "duration_s", "wheel"}
+    assert summary["input"]["rms_m"] == pytest.approx(5.25e-4, rel=1e-5)  # six digits in the file
+    assert set(summary["slip_share"]) == {"fr", "fl", "slip_velocity"}
+    assert set(summary["friction_saturated_share"]) == set(summary["first_slip_s"]) == {"fr", "fl"}
+    assert summary["friction_saturated_share"]["fr"] >= summary["slip_share"]["fr"] > 0.0
+    assert set(summary["comfort"]["seat_rail"]["rms_2_50_hz"]) == {"x", "y", "z", "overall"}
+    assert set(summary["static"]) == {"tyre_load_n", "rear_support_load_n", "residual_m"}
+    assert summary["static"]["residual_m"] < 1e-6
+    assert summary["solver"]["energy_residual"] < 5e-3  # six seconds end in motion; whole runs reach 1e-3
+    assert set(summary["peaks"]) == set(acceleration_channels())
+    assert set(summary["files"].values()) == FILES
+
+    record = np.load(folder / "time.npz", allow_pickle=False)
+    assert set(record.files) == {"time", "units", "frame", *channel_units()}
+    assert all(np.isfinite(record[name]).all() for name in channel_units())
+    assert np.allclose(np.diff(record["time"]), 1e-3, rtol=1e-9)
+
+    used = load_vehicle(folder / "vehicle.toml")
+    assert used.damper.coulomb_friction == 100.0
+    assert used == load_vehicle(None, ["damper.coulomb_friction=100"])
+
+    header = (folder / "frf.csv").read_text().splitlines()[1].split(",")
+    assert header[0] == "frequency [Hz]"
+    assert header[1:4] == [
+        "knuckle_fr_acc_x_magnitude [m/s2/m]",
+        "knuckle_fr_acc_x_phase [deg]",
+        "knuckle_fr_acc_x_coherence [-]",
+    ]
+    assert len(header) == 1 + 3 * len(acceleration_channels())
+    for word in ("damper", "resonances", "comfort", "solver", "files"):
+        assert word in outcome.out
+
+
+def test_the_same_command_twice_gives_the_same_bytes(shaker, short_signal, tmp_path):
+    for folder in ("first", "second"):
+        assert shaker("--input", "short.csv", "--output", folder, "--quiet").code == 0
+    for name in ("frf.csv", "time.npz", "vehicle.toml", "frf.png", "time.png"):
+        assert (tmp_path / "first" / name).read_bytes() == (tmp_path / "second" / name).read_bytes(), name
+
+
+def test_a_run_repeats_from_its_own_vehicle_file(shaker, short_signal, tmp_path):
+    options = ["--set", "bushings.suspension_mount.stiffness=[3e6, 3e6, 8e5]", "--timestep", "0.0005", "--quiet"]
+    assert shaker("--input", "short.csv", "--output", "first", *options).code == 0
+    outcome = shaker("--input", "short.csv", "--output", "again", "--vehicle", "first/vehicle.toml", "--quiet")
+    assert outcome.code == 0 and outcome.out == ""
+    assert (tmp_path / "first" / "frf.csv").read_bytes() == (tmp_path / "again" / "frf.csv").read_bytes()
+
+
+def test_left_wheel_and_text_histories(shaker, short_signal, tmp_path):
+    outcome = shaker("--input", "short.csv", "--wheel", "front_left", "--time-format", "csv")
+    assert outcome.code == 0, outcome.err
+    folder = tmp_path / "runs" / "short"
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["input"]["wheel"] == "fl"
+    assert summary["slip_share"]["fl"] > summary["slip_share"]["fr"]
+    lines = (folder / "time.csv").read_text().splitlines()
+    assert lines[1].startswith("time [s],knuckle_fr_acc_x [m/s2]")
+    assert len(lines) == 2 + 6001
+
+
+def test_shipped_inputs_are_found_by_name(shaker):
+    outcome = shaker("--input", "lov.csv")
+    assert outcome.code == 2
+    assert "lov.csv" in outcome.err and "Did you mean low.csv?" in outcome.err
+
+
+def test_modes_command(capsys):
+    from vehicle.modes import main
+
+    assert main(["--damper", "stuck", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    frequencies = [mode["frequency_hz"] for mode in found["modes"]]
+    assert frequencies == sorted(frequencies) and frequencies[-1] < 60.0
+    for mode in found["modes"]:
+        assert set(mode) == {"frequency_hz", "damping_ratio", "description", "energy"}
+        assert sum(mode["energy"].values()) == pytest.approx(1.0, rel=1e-9)  # shares of one sum
+    assert main(["--damper", "sliding"]) == 0
+    assert "right wheel vertical" in capsys.readouterr().out
+
+
+def test_published_modes(capsys):
+    """Source 1: six rigid body modes below 10 Hz, roll at 6.5 Hz, engine 9 to 20 Hz, right wheel at 28 Hz."""
+    from vehicle.modes import main
+
+    rolls = {}
+    for variant in ("published", "improved"):
+        assert main(["--json", "--set", f"body.inertia_variant={variant}"]) == 0
+        modes = json.loads(capsys.readouterr().out)["modes"]
+        rolls[variant] = next(m["frequency_hz"] for m in modes if m["description"].startswith("body roll"))
+        rigid = [mode for mode in modes if mode["description"].startswith("body ")]
+        assert len(rigid) == 6 and rigid[-1]["frequency_hz"] < 10.0
+        engine = [mode["frequency_hz"] for mode in modes if mode["description"].startswith("engine")]
+        assert len(engine) >= 5 and min(engine) > 9.0 and max(engine) < 20.0
+        wheel = [m for m in modes if m["description"].startswith("right wheel vertical")]
+        assert any(abs(mode["frequency_hz"] - 28.0) < 1.0 for mode in wheel)
+    assert rolls["published"] == pytest.approx(6.5, abs=0.3)
+    assert rolls["improved"] < 0.9 * rolls["published"]
+
+
+def test_run_in_python(short_signal: Path):
+    """The five lines of the README."""
+    from vehicle.car import Car
+    from vehicle.excitation.csv_file import read_signal
+
+    run = Car.load().run(read_signal(short_signal))
+    assert run["seat_rail_acc_z"].shape == run.time.shape
+    assert run.frf(["seat_rail_acc_z"]).response.shape[0] == 1
+    assert run.comfort().overall > 0.0
