@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehicle.excitation.band import LOWER_BAND_EDGE_HZ, UPPER_BAND_EDGE_HZ
+from vehicle.excitation.band import LOWEST_FREQUENCY_HZ, SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER, UPPER_BAND_EDGE_HZ
 from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
 from vehicle.excitation.csv_output import write_signal
 from vehicle.excitation.random_road import random_road
@@ -25,10 +25,13 @@ FRAME = "frame: z up, positive displacement lifts the plate; SI units; made by: 
 
 def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
     """Every shipped input: name -> signal and the comments of its file."""
-    band = f"{LOWER_BAND_EDGE_HZ:g} to {UPPER_BAND_EDGE_HZ:g} Hz"
+    band = (
+        f"{SHAKER_EDGE_HZ:g} to {UPPER_BAND_EDGE_HZ:g} Hz (lower edge Butterworth of order {SHAKER_ROLL_OFF_ORDER}, "
+        f"lines from {LOWEST_FREQUENCY_HZ:g} Hz)"
+    )
     inputs: dict[str, tuple[Signal, list[str]]] = {}
     for name, rms in LEVELS.items():
-        signal = random_road(rms=rms, seed=SEED)
+        signal = random_road(rms=rms, seed=SEED, lower_band_edge=SHAKER_EDGE_HZ, roll_off_order=SHAKER_ROLL_OFF_ORDER)
         inputs[name] = (
             signal,
             [

@@ -8,7 +8,18 @@ from numpy.typing import NDArray
 from vehicle.errors import ConfigurationError
 
 LOWER_BAND_EDGE_HZ = 2.0
-"""Lower edge of the shipped random inputs [Hz]. Assumed: the source gives no band."""
+"""Lower edge of generated roads [Hz] where none is given."""
+
+SHAKER_EDGE_HZ = 5.0
+"""Lower edge of the shipped shaker inputs [Hz], half power. The source gives no band; fitted to its six slip shares
+together with `damper.slip_velocity`: with an edge at 2 Hz the left damper slips 4 % of the time in the high level."""
+
+SHAKER_ROLL_OFF_ORDER = 4
+"""Order of the Butterworth edge of the shipped inputs. Assumed: an electrodynamic shaker with limited stroke follows a
+constant velocity no further down, but it does not stop at a line either; FRFs from 1 Hz stay defined."""
+
+LOWEST_FREQUENCY_HZ = 1.0
+"""Lowest line of the shipped inputs [Hz]: the lower end of the source's range of interest."""
 
 UPPER_BAND_EDGE_HZ = 50.0
 """Upper edge of the shipped random inputs [Hz]: the upper end of the source's range of interest."""

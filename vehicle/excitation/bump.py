@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.band import positive, samples_of
+from vehicle.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER, positive, samples_of
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal, uniform_time
 
@@ -97,7 +97,14 @@ def bump(
     z = bump_shape(time, amplitude=amplitude, start=start, reading=reading)
     if noise_rms != 0.0:
         positive("noise RMS", noise_rms, "m")
-        noise = random_road(rms=noise_rms, seed=seed, duration=duration, rate=rate).displacement["fr"]
+        noise = random_road(
+            rms=noise_rms,
+            seed=seed,
+            duration=duration,
+            rate=rate,
+            lower_band_edge=SHAKER_EDGE_HZ,
+            roll_off_order=SHAKER_ROLL_OFF_ORDER,
+        ).displacement["fr"]
         outside = (time <= start) | (time >= start + BUMP_DURATION_S)
         z = z + noise * (noise_rms / np.std(noise[outside]))
     return Signal(

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.band import (
     LOWER_BAND_EDGE_HZ,
+    LOWEST_FREQUENCY_HZ,
     UPPER_BAND_EDGE_HZ,
     lines_in_band,
     period_of,
@@ -26,6 +27,7 @@ def random_road(
     rate: float = 1000.0,
     lower_band_edge: float = LOWER_BAND_EDGE_HZ,
     upper_band_edge: float = UPPER_BAND_EDGE_HZ,
+    roll_off_order: int = 0,
     taper_length: float = RAMP_S,
     wheel: str = "fr",
 ) -> Signal:
@@ -46,6 +48,8 @@ def random_road(
         rate: samples per second [Hz].
         lower_band_edge: lowest frequency [Hz].
         upper_band_edge: highest frequency [Hz], at most 0.8 of the Nyquist frequency.
+        roll_off_order: 0 for a sharp lower edge; n > 0 for the power 1 / (1 + (edge/f)^2n) of a Butterworth edge,
+            with lines down to 1 Hz.
         taper_length: length of the half cosine at each end [s]; 0 keeps the record periodic, not at rest.
         wheel: driven wheel.
 
@@ -62,8 +66,15 @@ def random_road(
     steps = samples_of(duration, rate)
     if not 0.0 <= taper_length <= 0.5 * duration:
         raise ConfigurationError(f"taper {taper_length!r} s; allowed: 0 to half of the record, {0.5 * duration:g} s")
-    lines = lines_in_band(steps=steps, rate=rate, lower=lower_band_edge, upper=upper_band_edge)
-    period = period_of(_gaussian(seed, int(lines[-1]))[lines - 1] / lines, lines, steps)
+    if roll_off_order < 0:
+        raise ConfigurationError(f"roll-off order {roll_off_order!r}; allowed: 0 for a sharp edge, or above")
+    lowest = min(LOWEST_FREQUENCY_HZ, lower_band_edge) if roll_off_order else lower_band_edge
+    lines = lines_in_band(steps=steps, rate=rate, lower=lowest, upper=upper_band_edge)
+    numbers = _gaussian(seed, int(lines[-1]))[lines - 1] / lines
+    if roll_off_order:
+        below = lower_band_edge * steps / rate / lines
+        numbers = numbers / np.sqrt(1.0 + below ** (2 * roll_off_order))
+    period = period_of(numbers, lines, steps)
     z = np.append(period, period[0])
     weights = taper(samples=z.size, timestep=1.0 / rate, length=taper_length)
     z = weights * (z - np.sum(weights * z) / np.sum(weights))
@@ -73,6 +84,7 @@ def random_road(
         displacement={wheel: z},
         source=(
             f"random road, RMS {rms:g} m, constant velocity PSD {lower_band_edge:g} to {upper_band_edge:g} Hz, "
+            f"(lower edge {f'of order {roll_off_order}' if roll_off_order else 'sharp'}), "
             f"{duration:g} s at {rate:g} Hz, "
             f"seed {seed}, half-cosine taper {taper_length:g} s"
         ),

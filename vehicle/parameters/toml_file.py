@@ -228,6 +228,10 @@ def _value(assignment: str, text: str, old: Any) -> Any:
     except tomllib.TOMLDecodeError:
         if isinstance(old, str) and re.fullmatch(r"[A-Za-z0-9_.-]+", text):
             return text
+        try:
+            return float(text)  # ".5" and "1." are numbers to everybody but TOML
+        except ValueError:
+            pass
         raise ConfigurationError(f"--set {assignment}: {text!r} is not a number, a list of numbers or a text") from None
 
 

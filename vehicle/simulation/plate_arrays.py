@@ -23,10 +23,19 @@ class PlateArrays:
 
     @classmethod
     def of(cls, signal: Signal, times: Vector) -> PlateArrays:
-        """Evaluate a signal at the times of the steps [s]."""
+        """Evaluate a signal at the times of the steps [s].
+
+        Velocity and acceleration are the central differences that the step itself makes of every coordinate of the
+        car: then the power that the plate puts in is exactly the power that the tyre takes up. (The derivatives of
+        the spline differ from them by a share w2 h2/6, which at 28 Hz and 1 ms is 0.5 % of the power.)
+        """
         motion = signal.plate_motion(times)
-        displacement, velocity, acceleration = (
-            np.stack([values[wheel] for wheel in WHEELS], axis=1)
-            for values in (motion.displacement, motion.velocity, motion.acceleration)
-        )
+        step = times[1] - times[0]
+        displacement = np.stack([motion.displacement[wheel] for wheel in WHEELS], axis=1)
+        velocity, acceleration = np.zeros_like(displacement), np.zeros_like(displacement)
+        velocity[1:-1] = (displacement[2:] - displacement[:-2]) / (2.0 * step)
+        acceleration[1:-1] = (displacement[2:] - 2.0 * displacement[1:-1] + displacement[:-2]) / step**2
+        for end in (0, -1):
+            velocity[end] = [motion.velocity[wheel][end] for wheel in WHEELS]
+            acceleration[end] = [motion.acceleration[wheel][end] for wheel in WHEELS]
         return cls(displacement=displacement, velocity=velocity, acceleration=acceleration)

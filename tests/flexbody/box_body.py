@@ -1,0 +1,38 @@
+"""A small body for tests: a box of steel tubes with unequal corner masses."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from vehicle.flexbody.beam import BeamSection, frame_stiffness
+from vehicle.flexbody.modes import condense_rotations, free_free_modes
+
+SECTION = BeamSection(axial=2.0e7, torsion=2.0e4, bending_y=2.5e4, bending_z=2.5e4)
+POSITIONS = np.array(list(itertools.product([0.0, 2.0], [-0.5, 0.5], [0.4, 1.3])))
+MASSES = np.array([30.0, 40.0, 35.0, 25.0, 50.0, 45.0, 20.0, 30.0])
+PAIRS = [(a, b) for a, b in itertools.combinations(range(8), 2) if np.sum(POSITIONS[a] != POSITIONS[b]) == 1]
+
+
+def box_stiffness():
+    """Translational stiffness [N/m], shape (24, 24)."""
+    return condense_rotations(frame_stiffness(POSITIONS, [(a, b, SECTION) for a, b in PAIRS]))[0]
+
+
+def box_fields(modes=4):
+    """Keyword arguments of a valid Superelement, fresh arrays at every call."""
+    frequencies, shapes = free_free_modes(box_stiffness(), MASSES, POSITIONS, modes)
+    return {
+        "name": "box",
+        "nodes": tuple(f"corner_{i}" for i in range(8)),
+        "positions": POSITIONS.copy(),
+        "edges": np.array(PAIRS),
+        "node_mass": MASSES.copy(),
+        "frequencies": frequencies,
+        "damping_ratio": np.full(modes, 0.02),
+        "shapes": shapes,
+        "attachment_stiffness": {"corner_1": np.array([1e7, 2e7, 3e7])},
+        "mode_names": tuple(f"mode {i + 1}" for i in range(modes)),
+        "provenance": "computed for a test",
+    }

@@ -1,0 +1,130 @@
+"""The straight three-dimensional Euler-Bernoulli beam and a space frame assembled from such beams."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from vehicle.errors import ConfigurationError
+
+FloatArray = NDArray[np.float64]
+
+_PARALLEL = 1e-6  # sine of the angle below which a reference direction counts as parallel to the beam
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BeamSection:
+    """Stiffness of a beam cross-section; the local z axis is the one nearest to the reference direction."""
+
+    axial: float
+    """E A, axial stiffness [N]"""
+    torsion: float
+    """G J, torsional stiffness [N m2]"""
+    bending_y: float
+    """E Iy, bending about the local y axis, so deflection along local z [N m2]"""
+    bending_z: float
+    """E Iz, bending about the local z axis, so deflection along local y [N m2]"""
+
+    def __post_init__(self) -> None:
+        for name in ("axial", "torsion", "bending_y", "bending_z"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value >= 0.0):
+                raise ConfigurationError(
+                    f"beam section: {name} is {value}; it must be finite and not negative. Correct the section."
+                )
+
+
+def local_stiffness(length: float, section: BeamSection) -> FloatArray:
+    """Stiffness matrix of one beam in its own axes.
+
+    Axial E A / L, torsion G J / L, and in each bending plane the cubic-interpolation terms 12, 6 L, 4 L^2, 2 L^2
+    times E I / L^3.
+
+    Args:
+        length: distance between the end nodes [m].
+        section: cross-section stiffnesses.
+
+    Returns:
+        Stiffness [N/m, N, N m], shape (12, 12), order (ux, uy, uz, rx, ry, rz) of the first and of the second node.
+
+    Source: J. S. Przemieniecki, Theory of Matrix Structural Analysis, 1968, eq. (5.116) without shear deformation.
+    """
+    k = np.zeros((12, 12))
+    for start, stiffness in ((0, section.axial), (3, section.torsion)):
+        k[np.ix_([start, start + 6], [start, start + 6])] = stiffness / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    planes = (  # deflection, rotation of both nodes; the sign couples the rotation to the slope of the deflection
+        ([1, 5, 7, 11], section.bending_z, 1.0),  # rz = +d uy / dx
+        ([2, 4, 8, 10], section.bending_y, -1.0),  # ry = -d uz / dx
+    )
+    for dofs, stiffness, sign in planes:
+        s, q = sign * 6.0 * length, length**2
+        bending = [
+            [12.0, s, -12.0, s],
+            [s, 4.0 * q, -s, 2.0 * q],
+            [-12.0, -s, 12.0, -s],
+            [s, 2.0 * q, -s, 4.0 * q],
+        ]
+        k[np.ix_(dofs, dofs)] = stiffness / length**3 * np.array(bending)
+    return k
+
+
+def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.0, 1.0)) -> FloatArray:
+    """Axes of a beam: x along it, z the part of the reference direction across it.
+
+    Args:
+        start: position of the first node [m], shape (3,).
+        end: position of the second node [m], shape (3,).
+        reference: direction near the local z axis; for a beam parallel to it global x is taken instead.
+
+    Returns:
+        Rotation with the local axes as rows, shape (3, 3): local = rotation @ global.
+
+    Raises:
+        ConfigurationError: both ends are in the same place.
+    """
+    along = np.asarray(end, dtype=float) - np.asarray(start, dtype=float)
+    length = float(np.linalg.norm(along))
+    if not length > 0.0:
+        raise ConfigurationError(f"beam from {list(np.asarray(start))} to the same point: its ends must differ.")
+    x = along / length
+    up = np.asarray(reference, dtype=float)
+    if np.linalg.norm(np.cross(x, up)) < _PARALLEL * np.linalg.norm(up):
+        up = np.array([1.0, 0.0, 0.0])
+    y = np.cross(up, x)
+    y /= np.linalg.norm(y)
+    return np.stack([x, y, np.cross(x, y)])  # (3, 3)
+
+
+def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> FloatArray:
+    """Stiffness matrix of one beam in global axes: T^T k T with T = diag(R, R, R, R).
+
+    Args:
+        start: position of the first node [m], shape (3,).
+        end: position of the second node [m], shape (3,).
+        section: cross-section stiffnesses.
+
+    Returns:
+        Stiffness [N/m, N, N m], shape (12, 12).
+    """
+    turn = np.kron(np.eye(4), local_axes(start, end))  # (12, 12)
+    length = float(np.linalg.norm(np.asarray(end, dtype=float) - np.asarray(start, dtype=float)))
+    return np.asarray(turn.T @ local_stiffness(length, section) @ turn)
+
+
+def frame_stiffness(positions: FloatArray, beams: list[tuple[int, int, BeamSection]]) -> FloatArray:
+    """Stiffness matrix of a space frame.
+
+    Args:
+        positions: node positions [m], shape (n, 3).
+        beams: first node, second node and section of each beam.
+
+    Returns:
+        Stiffness [N/m, N, N m], shape (6 n, 6 n), order (ux, uy, uz, rx, ry, rz) node by node.
+    """
+    stiffness = np.zeros((6 * len(positions), 6 * len(positions)))
+    for first, second, section in beams:
+        dofs = np.r_[6 * first : 6 * first + 6, 6 * second : 6 * second + 6]
+        stiffness[np.ix_(dofs, dofs)] += beam_stiffness(positions[first], positions[second], section)
+    return stiffness
