@@ -1,0 +1,59 @@
+"""The committed MJCF files are those of the committed parameters, open anywhere and stand still."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from vehicle.assembly.mjcf_files import mjcf_files, write_mjcf
+from vehicle.car import Car
+
+FOLDER = Path(__file__).resolve().parents[2] / "mjcf"
+
+
+@pytest.fixture(scope="module")
+def files() -> dict[str, bytes]:
+    car = Car.load()
+    return mjcf_files(car.vehicle, car.trimmed_body)
+
+
+def test_committed_files_are_the_generated_ones(files):
+    committed = {
+        path.relative_to(FOLDER).as_posix(): path.read_bytes()
+        for path in FOLDER.rglob("*")
+        if path.is_file() and path.name != "README.md"
+    }
+    assert len(files) > 50
+    assert sorted(committed) == sorted(files), "run: python -m vehicle.mjcf"
+    changed = [name for name, content in files.items() if committed[name] != content]
+    assert not changed, f"run: python -m vehicle.mjcf ({changed[:3]} differ)"
+
+
+def test_scene_opens_and_stands_still_without_callbacks(files, tmp_path):
+    write_mjcf(tmp_path, files)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "scene.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    start = data.xpos.copy()
+    while data.time < 2.0:
+        mujoco.mj_step(model, data)
+    # MuJoCo's soft welds give way by some mm under the weight; then nothing moves any more.
+    assert np.max(np.abs(data.xpos - start)) < 5e-3
+    assert np.max(np.abs(data.qvel)) < 1e-6
+    assert not any(warning.number for warning in data.warning)
+    assert model.ngeom > 75, "every part is visible"
+
+
+def test_the_file_alone_holds_the_element_constants(files, tmp_path):
+    from vehicle.simulation.elements import read_elements
+
+    write_mjcf(tmp_path, files)
+    loaded = read_elements(mujoco.MjModel.from_xml_path(str(tmp_path / "car.xml")))
+    built = read_elements(Car.load().model.model)
+    assert loaded.names == built.names and loaded.row_count == built.row_count
+    # The file has some ten digits.
+    np.testing.assert_allclose(loaded.stiffness, built.stiffness, rtol=1e-6)
+    np.testing.assert_allclose(loaded.node_shapes, built.node_shapes, rtol=1e-6, atol=1e-9)
