@@ -1,0 +1,243 @@
+"""Choice of dampers for road holding: figures 2 to 13 of the source, and the trade-off on roads of ISO 8608.
+
+python -m scenarios.damper_choice [--output DIR] [--parameters FILE.toml] [--quick] [--force] [--refit]
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from scenarios.claim import write_claims
+from scenarios.complete_car_quarter import complete_car_quarter
+from scenarios.damper_choice_claims import (
+    half_optimum_claims,
+    half_response_claims,
+    quarter_optimum_claims,
+    quarter_response_claims,
+    rate_claims,
+    ratio_claims,
+)
+from scenarios.damper_choice_figures import (
+    half_response_figure,
+    iteration_figure,
+    optimum_figure,
+    quarter_response_figure,
+)
+from scenarios.damper_choice_runs import (
+    MEASURES,
+    RoadHolding,
+    half_car_measure,
+    half_responses,
+    quarter_responses,
+    road_holding,
+)
+from scenarios.damper_choice_tradeoff import TradeOff, trade_off, trade_off_figure
+from scenarios.output_folder import prepare_folder
+from scenarios.study_command import run_study, study_parser
+from vehicle.lumped.damper_fit import HALF_FREE, QUARTER_FREE, fit_half_car, fit_quarter_car
+from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
+from vehicle.parameters.toml_file import as_table
+from vehicle.parameters.vehicle import load_vehicle
+
+TITLE = "Choice of dampers for road holding"
+
+HEAVY_INDEX = 0.5
+"""Least J / (Ms a b) of the comparison fit of --refit [-]."""
+
+
+def study(options: argparse.Namespace) -> str:
+    """Run everything and write the files; returns the line to print."""
+    parameters = damper_choice_parameters(options.parameters or FITTED)
+    folder = prepare_folder(options.output, force=options.force)
+    damping = [float(c) for c in np.linspace(1000.0, 8000.0, 15 if options.quick else 57)]
+    lines = np.arange(0.01, 15.0, 0.01)
+    wide = np.arange(0.02, 30.0, 0.02)
+    quarter, half = quarter_responses(parameters, lines), half_responses(parameters, wide)
+    roads = {"highway": parameters.highway, "city": parameters.city}
+    found = {
+        road: {measure: road_holding(parameters, measure, density, damping) for measure in MEASURES}
+        for road, density in roads.items()
+    }
+    printed = half_car_measure(parameters, "printed", parameters.highway)
+    cars = {"fitted quarter car": parameters.quarter_car, "complete car": complete_car_quarter(load_vehicle())}
+    wide_damping = [float(c) for c in np.geomspace(200.0, 10000.0, 25 if options.quick else 81)]
+    trades = {name: trade_off(car, wide_damping) for name, car in cars.items()}
+
+    claims = [
+        *ratio_claims(parameters),
+        *quarter_response_claims(lines, quarter),
+        *quarter_optimum_claims(parameters, found["highway"]["printed"], "printed"),
+        *quarter_optimum_claims(parameters, found["highway"]["physical"], "physical"),
+        *half_response_claims(wide, half),
+        *half_optimum_claims(found["highway"]["printed"], "printed"),
+        *rate_claims(found["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
+        *half_optimum_claims(found["highway"]["physical"], "physical"),
+    ]
+    quarter_response_figure(folder, lines, quarter)
+    half_response_figure(folder, wide, half)
+    for road, measures in found.items():
+        optimum_figure(folder, measures, road)
+    iteration_figure(folder, found["highway"]["printed"], printed)
+    for name, trade in trades.items():
+        trade_off_figure(folder / f"trade_off_{name.replace(' ', '_')}.png", trade, name.capitalize())
+    notes = [_optimum_table(found, roads), _trade_note(trades), _fit_note(parameters)]
+    data: dict[str, Any] = {
+        "optima": {road: {m: _optimum_data(one) for m, one in row.items()} for road, row in found.items()},
+        "trade_off": {name: _trade_data(trade) for name, trade in trades.items()},
+        "parameters": as_table(parameters),
+        "complete_car_quarter": as_table(cars["complete car"]),
+    }
+    if options.refit:
+        data["refit"] = _refit(parameters)
+        notes.append(_refit_note(data["refit"]))
+    write_claims(folder, TITLE, claims, notes, data)
+    agree = sum(claim.within for claim in claims)
+    return f"{folder}: {agree} of {len(claims)} printed statements agree; see results.md"
+
+
+def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:
+    lines = ["Optimum damping [N s/m] and the measures there [-]:", ""]
+    lines += [
+        "| road | measure | quarter car | half car, equal: front | rear | iteration: front, rear | R front, rear "
+        "| joint optimum: front, rear | R front, rear |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for road, measures in found.items():
+        for name, one in measures.items():
+            last, (front, rear, values) = one.continuous[-1], one.joint
+            lines.append(
+                f"| {road} | {name} | {one.quarter_optimum.damping:.0f} | {one.equal_optima[0].damping:.0f} "
+                f"| {one.equal_optima[1].damping:.0f} | {last.front:.0f}, {last.rear:.0f} "
+                f"| {last.fluctuation[0]:.3f}, {last.fluctuation[1]:.3f} | {front:.0f}, {rear:.0f} "
+                f"| {values[0]:.3f}, {values[1]:.3f} |"
+            )
+    heights = " and ".join(
+        f"{1e3 * math.sqrt(road.roughness / road.decay):.0f} mm ({name})" for name, road in roads.items()
+    )
+    lines += [
+        "",
+        "The iteration lets each end look after its own tyre, the joint optimum (scipy.optimize, Nelder-Mead) after "
+        "the sum of both. Physical ratios above 1/3 mean that the tyres leave these roads: the printed densities have "
+        f"an RMS height of {heights}, so the values rank dampers and no more.",
+    ]
+    return "\n".join(lines)
+
+
+def _trade_note(trades: Mapping[str, TradeOff]) -> str:
+    lines = [
+        "ISO 8608, 80 km/h, linear quarter car; every class doubles all values, so the optima hold for A to H:",
+        "",
+    ]
+    lines += [
+        "| car | own damping | least tyre load at | best comfort (Wk) at | class C, own damper: tyre load, "
+        "acceleration, travel |",
+        "|---|---|---|---|---|",
+    ]
+    for name, trade in trades.items():
+        row = trade.measures["C"]
+        own = [
+            float(np.interp(trade.own, trade.damping, [getattr(one, key) for one in row]))
+            for key in ("tyre_load", "acceleration", "travel")
+        ]
+        lines.append(
+            f"| {name} | {trade.own:.0f} | {trade.best('tyre_load'):.0f} | {trade.best('acceleration'):.0f} N s/m "
+            f"| {own[0]:.3f}, {own[1]:.3f} m/s2, {1e3 * own[2]:.2f} mm |"
+        )
+    lines += [
+        "",
+        "Complete car: front right quarter from the complete car's own parameters (share of body and engine on the "
+        "wheel, spring and damper along the strut); rigid body, no friction, no mounts.",
+    ]
+    return "\n".join(lines)
+
+
+def _fit_note(parameters: DamperChoiceParameters) -> str:
+    half = parameters.half_car
+    index = half.pitch_inertia / (half.sprung_mass * half.front_arm * half.rear_arm)
+    return (
+        "Vehicle parameters are not printed. Fitted (vehicle/lumped/damper_fit.py lists every target): "
+        f"quarter car {', '.join(QUARTER_FREE)}; half car {', '.join(HALF_FREE)}; suspension stiffnesses from the "
+        f"printed damping ratios; band width. The fitted half car has J = {index:.2f} Ms a b; real cars have 0.8 to "
+        "1.1: the printed influence of one end on the other asks for a body that pitches more easily than a car's. "
+        f"--refit repeats the fit and also holds J at {HEAVY_INDEX} Ms a b or more, for comparison."
+    )
+
+
+def _refit_note(refit: Mapping[str, Any]) -> str:
+    lines = ["Refit (sum of squared residuals, each over its scale):", ""]
+    for name, one in refit.items():
+        lines.append(f"- {name}: {one['cost']:.2f}; " + ", ".join(f"{k} {v:.5g}" for k, v in one["values"].items()))
+    return "\n".join(lines)
+
+
+def _optimum_data(one: RoadHolding) -> dict[str, Any]:
+    front, rear, values = one.joint
+    return {
+        "quarter_car": {"damping": one.quarter_optimum.damping, "value": one.quarter_optimum.value},
+        "half_car_equal": [{"damping": best.damping, "value": best.value} for best in one.equal_optima],
+        "iteration_read_off": [as_table(step) for step in one.read_off],
+        "iteration": [as_table(step) for step in one.continuous],
+        "joint": {"front": front, "rear": rear, "values": [float(value) for value in values]},
+        "damping": one.damping.tolist(),
+        "quarter_car_curve": one.quarter.tolist(),
+        "half_car_curves": one.equal.tolist(),
+    }
+
+
+def _trade_data(trade: TradeOff) -> dict[str, Any]:
+    return {
+        "damping": trade.damping.tolist(),
+        "own_damping": trade.own,
+        "classes": {road: [as_table(one) for one in row] for road, row in trade.measures.items()},
+    }
+
+
+def _refit(parameters: DamperChoiceParameters) -> dict[str, Any]:
+    """Repeat the fit from the shipped values."""
+    quarter, half = parameters.quarter_car, parameters.half_car
+    base = half.front_arm + half.rear_arm
+    index = half.pitch_inertia / (half.sprung_mass * half.front_arm * half.rear_arm)
+    starts = (
+        (quarter.sprung_mass, quarter.wheel.unsprung_mass, quarter.wheel.tyre_stiffness),
+        (
+            half.sprung_mass,
+            index,
+            base,
+            half.front_arm / base,
+            half.front.unsprung_mass,
+            half.rear.unsprung_mass,
+            half.front.tyre_stiffness,
+            half.rear.tyre_stiffness,
+        ),
+    )
+    result: dict[str, Any] = {}
+    road, bands = parameters.highway, parameters.bands
+    heavy = (*starts[1][:1], 1.5 * HEAVY_INDEX, *starts[1][2:])
+    for name, names, (values, residuals) in (
+        ("quarter_car", QUARTER_FREE, fit_quarter_car(starts[0], road, bands)),
+        ("half_car", HALF_FREE, fit_half_car(starts[1], road, bands)),
+        ("half_car_heavy", HALF_FREE, fit_half_car(heavy, road, bands, least_index=HEAVY_INDEX)),
+    ):
+        result[name] = {
+            "values": {key: float(value) for key, value in zip(names, values, strict=True)},
+            "residuals": residuals.tolist(),
+            "cost": float(residuals @ residuals),
+        }
+    return result
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Command line; returns the exit code."""
+    parser = study_parser("damper_choice", "Choice of dampers for road holding.")
+    parser.add_argument("--refit", action="store_true", help="repeat the fit of the parameters and write it beside")
+    return run_study(parser, study, sys.argv[1:] if argv is None else argv)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

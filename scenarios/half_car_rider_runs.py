@@ -1,0 +1,134 @@
+"""Runs of the half car with rider: base case, parameter studies, speeds, semi-active laws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.analysis.exposure import vibration_dose_value
+from vehicle.lumped.bump_road import bump_passage
+from vehicle.lumped.half_car_rider import half_car_rider, places
+from vehicle.lumped.half_car_simulation import PASSIVE, simulate_bump
+from vehicle.lumped.linear_response import linear_response
+from vehicle.lumped.motion_history import MotionHistory
+from vehicle.lumped.tyre_contact import lift_off, linear_tyre_load
+from vehicle.parameters.axle import Axle
+from vehicle.parameters.half_car_rider import HalfCarRiderParameters
+
+Array = npt.NDArray[np.float64]
+
+KMH = 1.0 / 3.6
+"""[m/s]."""
+
+SPEEDS = (20.0, 30.0, 40.0, 50.0, 60.0)
+"""Speeds of the source [km/h]; the first is its base case."""
+
+VARIED = {
+    "sprung_mass": "sprung mass",
+    "unsprung_mass": "unsprung mass",
+    "suspension_stiffness": "suspension stiffness",
+    "tyre_stiffness": "tyre stiffness",
+    "tyre_damping": "tyre damping",
+    "suspension_damping": "suspension damping",
+}
+"""Varied parameters in the order of figures 11 to 22."""
+
+TIME_STEP = 1e-3
+"""Sampling of the exact response [s]; half of it changes the dose values by less than 0.01 %."""
+
+DURATION = 5.0
+"""[s]: all motion has died away below 1 % of its peak."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Outcome:
+    """What one passage over the bump costs."""
+
+    upper_vdv: float
+    """Vibration dose value of the upper limb [m/s^1.75]."""
+    lower_vdv: float
+    """The same of the lower limb."""
+    travel: float
+    """Largest magnitude of the suspension travel, front or rear [m]."""
+    lift_off: tuple[tuple[tuple[float, float], ...], tuple[tuple[float, float], ...]]
+    """Intervals in which the front and the rear wheel leave the road [s]."""
+    least_load: tuple[float, float]
+    """Least load of a tyre glued to the road, front and rear [N]."""
+
+
+def passive(car: HalfCarRiderParameters, speed: float) -> MotionHistory:
+    """Exact passive response at a speed [km/h]."""
+    passage = bump_passage(car.bump, speed * KMH, car.body.front_arm + car.body.rear_arm)
+    return linear_response(half_car_rider(car), passage, time_step=TIME_STEP, duration=DURATION)
+
+
+def outcome(car: HalfCarRiderParameters, history: MotionHistory) -> Outcome:
+    """Dose values, travel and lift-off of a passage."""
+    step = float(history.time[1] - history.time[0])
+    place = places(car)
+    loads = linear_tyre_load(car, history)
+    front, rear = (tuple(lift_off(history.time, load)) for load in loads)
+    return Outcome(
+        upper_vdv=vibration_dose_value(step, history.of(place["upper_limb"], "acceleration")),
+        lower_vdv=vibration_dose_value(step, history.of(place["lower_limb"], "acceleration")),
+        travel=max(float(np.abs(history.of(place[f"{end}_travel"])).max()) for end in ("front", "rear")),
+        lift_off=(front, rear),
+        least_load=(float(loads[0].min()), float(loads[1].min())),
+    )
+
+
+def varied(car: HalfCarRiderParameters, parameter: str, factor: float) -> HalfCarRiderParameters:
+    """The car with one parameter of `VARIED` scaled, front and rear alike.
+
+    The sprung mass alone is varied, as in the source; the moment of inertia stays.
+    """
+    if parameter == "sprung_mass":
+        return replace(car, body=replace(car.body, mass=factor * car.body.mass))
+
+    def scaled(axle: Axle) -> Axle:
+        return replace(axle, **{parameter: factor * getattr(axle, parameter)})
+
+    return replace(car, front=scaled(car.front), rear=scaled(car.rear))
+
+
+def parameter_study(
+    car: HalfCarRiderParameters, factors: Sequence[float], law: str = PASSIVE
+) -> Mapping[str, list[list[Outcome]]]:
+    """Outcomes over every varied parameter, speed and factor.
+
+    Args:
+        car: base case.
+        factors: of the varied parameter [-].
+        law: "passive" for the exact response, else a law of `semi_active`.
+
+    Returns:
+        Parameter -> speed -> factor -> outcome.
+    """
+    cases = [(name, speed, factor) for name in VARIED for speed in SPEEDS for factor in factors]
+    cars = [varied(car, name, factor) for name, _, factor in cases]
+    if law == PASSIVE:
+        results = [outcome(one, passive(one, speed)) for one, (_, speed, _) in zip(cars, cases, strict=True)]
+    else:
+        results = []
+        for start in range(0, len(cases), 90):  # bounds the memory: 90 runs hold 10^4 samples of 28 numbers each
+            part = slice(start, start + 90)
+            histories = simulate_bump(cars[part], [speed * KMH for _, speed, _ in cases[part]], law=law)
+            results += [outcome(one, history) for one, history in zip(cars[part], histories, strict=True)]
+    found = iter(results)
+    return {name: [[next(found) for _ in factors] for _ in SPEEDS] for name in VARIED}
+
+
+def driven(
+    car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, one_sided_tyres: bool
+) -> list[MotionHistory]:
+    """Histories with a law at several speeds [km/h]."""
+    return simulate_bump(
+        [car] * len(speeds),
+        [speed * KMH for speed in speeds],
+        law=law,
+        one_sided_tyres=one_sided_tyres,
+        duration=DURATION,
+    )

@@ -1,0 +1,65 @@
+"""The folder of a study: refused if it holds files, written by temporary names."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError, OutputError
+
+
+def prepare_folder(folder: Path, *, force: bool) -> Path:
+    """Make the folder of the results.
+
+    Args:
+        folder: where to.
+        force: write into a folder that already holds files.
+
+    Returns:
+        The folder.
+
+    Raises:
+        ConfigurationError: it exists and is not empty, and force is off.
+        OutputError: it cannot be made or is not a folder.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        occupied = any(folder.iterdir())
+    except OSError as error:
+        raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None
+    if occupied and not force:
+        raise ConfigurationError(
+            f"--output {folder}: holds files already; give another folder, or --force to overwrite"
+        )
+    return folder
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file under a temporary name and rename it when complete.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    _write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def write_figure(path: Path, figure: Any) -> None:
+    """Save a matplotlib figure as PNG in the same way.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    _write(path, lambda temporary: figure.savefig(temporary, format="png", dpi=110))
+
+
+def _write(path: Path, write: Callable[[Path], object]) -> None:
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        write(temporary)
+        temporary.replace(path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}") from None
+    finally:
+        temporary.unlink(missing_ok=True)

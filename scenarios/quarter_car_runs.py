@@ -1,0 +1,238 @@
+"""Runs of the quarter-car family: sines, random roads and the mass on a damper, each computed once."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.analysis.spectra import power_spectral_density
+from vehicle.excitation.random_road import random_road
+from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.switch import Switch
+from vehicle.lumped.drive import Sampled, Sine
+from vehicle.lumped.history import History
+from vehicle.lumped.marched_solution import marched_solution
+from vehicle.lumped.quarter_car import quarter_car
+from vehicle.lumped.single_mass import single_mass
+from vehicle.lumped.state_space import StateSpace, state_space
+from vehicle.lumped.stiff_solution import Tolerances, stiff_solution
+from vehicle.lumped.switch_solution import switch_solution
+from vehicle.parameters.quarter_car import QuarterCar
+
+Array = npt.NDArray[np.float64]
+
+STEP = 1e-3
+"""Sampling of road and results [s]."""
+
+SEED = 2006
+"""Seed of the first road; runs of every level share their roads."""
+
+UPPER_EDGE_HZ = 100.0
+"""Upper edge of the road's band [Hz]: twice the range of interest, so that 50 Hz has input too."""
+
+NO_FRICTION: Mapping[str, float] = {"friction.limit": 0.0}
+
+LEVELS = (0.0005, 0.0015, 0.005, 0.015, 0.05)
+"""RMS of the roads of figure 2.14 [m]; the lowest and the highest are printed."""
+
+LOW, HIGH = 0.001, 0.05
+"""RMS of the low and the high road of figures 2.21 to D.5, and amplitude of the sines [m]."""
+
+STEEP: Mapping[str, float] = {"friction.steepness": 1e6}
+"""Smoothing of table C.1 [s/m], which holds for appendices C and D."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Family:
+    """Models whose spectra are computed in one march: a composition, variants of its parameters, road levels."""
+
+    parts: Mapping[str, Any]
+    variants: tuple[Mapping[str, float], ...] = ({},)
+    levels: tuple[float, ...] = (LOW, HIGH)
+
+
+FAMILIES = {
+    "no engine": Family(parts={}, levels=(*LEVELS, LOW)),
+    "linear mount": Family(parts={"engine": "linear"}),
+    "elastomer": Family(parts={"engine": "elastomer"}),
+    "constant damping": Family(parts={"engine": "elastomer"}, variants=(STEEP,)),
+    "degressive": Family(parts={"engine": "elastomer", "degressive": True}, variants=(STEEP,)),
+    "inclined": Family(
+        parts={"engine": "elastomer", "degressive": True, "strut": True},
+        variants=tuple(
+            {**STEEP, "strut.angle": angle, "strut.longitudinal_damping": damping}
+            for angle, damping in ((0.0, 550.0), (4.2, 550.0), (8.4, 550.0), (4.2, 0.0), (4.2, 1100.0))
+        ),
+    ),
+}
+"""Variants of the inclined strut: the three angles, then two more longitudinal dampings at 4.2 deg."""
+
+
+@dataclass(slots=True)
+class Runs:
+    """All simulations behind the figures and the table; a run asked for twice is computed once."""
+
+    car: QuarterCar
+    quick: bool
+    seconds: float = 0.0
+    """Time spent solving [s]."""
+    _done: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def duration(self) -> float:
+        """Length of a random road [s]; 30 s as in figure 2.6."""
+        return 10.0 if self.quick else 30.0
+
+    @property
+    def resolution(self) -> float:
+        """Distance of the lines [Hz] where resonances are looked for: three windows fit the record."""
+        return 3.0 / self.duration
+
+    def model(self, vary: Mapping[str, Any] | None = None, **parts: Any) -> StateSpace:
+        """Equations of a composition of parts."""
+        return state_space(quarter_car(self.car, vary=vary, **parts))
+
+    def road_profile(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Array:
+        """Road displacement [m] at uniform steps [s]; its lowest line fits the record once."""
+        signal = random_road(
+            rms=rms,
+            seed=seed,
+            duration=self.duration,
+            rate=1.0 / step,
+            lower_band_edge=1.0 / self.duration,
+            upper_band_edge=UPPER_EDGE_HZ,
+        )
+        return np.asarray(signal.displacement["fr"])
+
+    def road(self, rms: float, vary: Mapping[str, Any] | None = None, **parts: Any) -> History:
+        """Friction model on a random road of an RMS displacement [m], from rest."""
+        profile = self.road_profile(rms)
+        times = STEP * np.arange(profile.size)
+        return self._once(
+            f"road {rms} {vary} {sorted(parts.items())}",
+            lambda: stiff_solution(self.model(vary, damper="friction", **parts), times, road=Sampled(profile, STEP)),
+        )
+
+    @property
+    def march_step(self) -> float:
+        """Step of the vectorised march [s]; with 0.5 ms it is within 5 % of the stiff solver at every instant."""
+        return STEP if self.quick else 0.5 * STEP
+
+    @property
+    def roads(self) -> int:
+        """Number of random roads whose spectra are averaged."""
+        return 3 if self.quick else 8
+
+    def spectrum(
+        self, family: str, level: float, variant: int = 0, *, resolution: float = 0.25, per_road: bool = False
+    ) -> tuple[Array, Array]:
+        """Mean PSD of the body acceleration over all roads, 1 to 50 Hz.
+
+        Args:
+            family: name in `FAMILIES`.
+            level: RMS of the road [m].
+            variant: index of the variant.
+            resolution: distance of the lines [Hz].
+            per_road: divide by the PSD of the road velocity; on roads of constant velocity PSD this is the same shape
+                with less scatter.
+
+        Returns:
+            Lines [Hz] and PSD [(m/s2)^2/Hz], or their ratio [1/s2].
+        """
+        motion = self._march(family)[level, variant]
+        estimate = power_spectral_density(STEP, motion, window_s=1.0 / resolution)
+        inside = (estimate.frequency >= 1.0) & (estimate.frequency <= 50.0)
+        frequency, density = estimate.frequency[inside], estimate.density[:, inside].mean(axis=0)
+        if per_road:
+            profiles = [self.road_profile(level, seed=SEED + i) for i in range(self.roads)]
+            road = power_spectral_density(STEP, profiles, window_s=1.0 / resolution).density[:, inside].mean(axis=0)
+            density = density / (road * (2.0 * np.pi * frequency) ** 2)
+        return frequency, density
+
+    def _march(self, name: str) -> dict[tuple[float, int], Array]:
+        """Body acceleration [m/s2] by level and variant, each of shape (roads, samples)."""
+        key = f"march {name}"
+        if key not in self._done:
+            start = clock.perf_counter()
+            family = FAMILIES[name]
+            cases = [(level, index) for level in family.levels for index in range(len(family.variants))]
+            vary = {
+                path: np.repeat([family.variants[index][path] for _, index in cases], self.roads)
+                for path in family.variants[0]
+            }
+            profiles = {
+                level: [self.road_profile(level, seed=SEED + i, step=self.march_step) for i in range(self.roads)]
+                for level in family.levels
+            }
+            roads = np.concatenate([profiles[level] for level, _ in cases]).T
+            vary["body.mass"] = np.full(roads.shape[1], self.car.body.mass)  # one model for each road
+            history = marched_solution(
+                self.model(vary, damper="friction", **family.parts),
+                self.march_step,
+                roads,
+                every=round(STEP / self.march_step),
+            )
+            motions = history.acceleration("body").T.reshape(len(cases), self.roads, -1)
+            self._done[key] = dict(zip(cases, motions, strict=True))
+            self.seconds += clock.perf_counter() - start
+        found: dict[tuple[float, int], Array] = self._done[key]
+        return found
+
+    def sine(
+        self, amplitude: float, vary: Mapping[str, Any] | None = None, *, phase: float = 0.0, **parts: Any
+    ) -> History:
+        """Friction model on a sine of 1 Hz and an amplitude [m] for 5 s, from rest."""
+        drive = Sine(amplitude=amplitude, frequency=1.0, phase=phase)
+        return self._once(
+            f"sine {amplitude} {phase} {vary} {sorted(parts.items())}",
+            lambda: stiff_solution(
+                self.model(vary, damper="friction", **parts), np.arange(0.0, 5.0 + 0.5 * STEP, STEP), road=drive
+            ),
+        )
+
+    def mass_on_damper(self, kind: str) -> History:
+        """Mass on a damper of section 2.3.2.3 for 0.5 s, with the "smooth" or the "switch" law."""
+        p = self.car.mass_on_damper
+        friction = SmoothCoulomb(limit=p.friction_limit, steepness=p.steepness)
+        model = state_space(single_mass(mass=p.mass, damping=p.damping, friction=friction))
+        times = np.linspace(0.0, 0.5, 10001)
+        drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)
+        if kind == "smooth":
+            # While it sticks, velocity errors of 1e-9 m/s shift the friction by more than the inertia force.
+            fine = Tolerances(relative=1e-8, displacement=1e-13, velocity=1e-11)
+            return self._once("mass smooth", lambda: stiff_solution(model, times, force=drive, tolerances=fine))
+        law = Switch(limit=p.friction_limit, band=p.stick_band, return_time=p.return_time)
+        return self._once("mass switch", lambda: switch_solution(model, law, times, force=drive))
+
+    def run_time(self, rms: float, steepness: float) -> tuple[History, float]:
+        """Run of table B.1 (small mass on the body) with its wall time [s]."""
+        start = clock.perf_counter()
+        key = f"timed {rms} {steepness}"
+        history = self.road(rms, {"friction.steepness": steepness}, small_mass=True)
+        seconds = self._done.setdefault(key, clock.perf_counter() - start)
+        return history, float(seconds)
+
+    def _once(self, key: str, solve: Any) -> History:
+        if key not in self._done:
+            start = clock.perf_counter()
+            self._done[key] = solve()
+            self.seconds += clock.perf_counter() - start
+        found: History = self._done[key]
+        return found
+
+
+def peak(frequency: Array, density: Array, band: tuple[float, float]) -> tuple[float, float]:
+    """Frequency [Hz] and height of the largest line in a band."""
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    index = int(np.argmax(np.where(inside, density, -np.inf)))
+    return float(frequency[index]), float(density[index])
+
+
+def rms(values: Array) -> float:
+    """Root mean square about zero."""
+    return float(np.sqrt(np.mean(values**2)))

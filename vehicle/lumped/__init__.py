@@ -1,0 +1,1 @@
+"""Lumped models: the quarter-car family, and the machinery that solves any network of masses and elements."""

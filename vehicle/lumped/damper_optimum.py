@@ -1,0 +1,140 @@
+"""Damper coefficients of least tyre-load fluctuation: one damper, front and rear in turn, and both at once."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import minimize, minimize_scalar
+
+from vehicle.errors import ConfigurationError, SimulationError
+
+Array = npt.NDArray[np.float64]
+
+Fluctuation = Callable[[float, float], Array]
+"""(front damping, rear damping) [N s/m] -> measure of the front and the rear tyre [-], shape (2,)."""
+
+SEARCHED = (500.0, 12000.0)
+"""Damper coefficients searched [N s/m]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Optimum:
+    """Least value of a measure over one damper coefficient."""
+
+    damping: float
+    """[N s/m]."""
+    value: float
+    """The measure there [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Step:
+    """One step of the front/rear iteration."""
+
+    changed: str
+    """"front" or "rear": the damper that was optimised, for its own tyre."""
+    front: float
+    """Front damper coefficient after the step [N s/m]."""
+    rear: float
+    """Rear damper coefficient after the step [N s/m]."""
+    fluctuation: tuple[float, float]
+    """Measure of the front and the rear tyre after the step [-]."""
+
+
+def optimum(measure: Callable[[float], float], grid: npt.ArrayLike | None = None) -> Optimum:
+    """Coefficient of least fluctuation.
+
+    Args:
+        measure: damping [N s/m] -> measure [-].
+        grid: coefficients to choose from [N s/m]; without it the whole range is searched, to 1 N s/m.
+
+    Returns:
+        The optimum. The continuous search starts around the best of a coarse grid: the printed measure, a sum of
+        magnitudes, need not have one minimum only.
+    """
+    coarse = np.linspace(*SEARCHED, 47) if grid is None else np.asarray(grid, dtype=float)
+    values = np.array([measure(float(c)) for c in coarse])
+    best = int(values.argmin())
+    if grid is not None:
+        return Optimum(damping=float(coarse[best]), value=float(values[best]))
+    inside = (float(coarse[max(best - 1, 0)]), float(coarse[min(best + 1, coarse.size - 1)]))
+    found = minimize_scalar(measure, bounds=inside, method="bounded", options={"xatol": 1.0})
+    return Optimum(damping=float(found.x), value=float(found.fun))
+
+
+def iterate(measure: Fluctuation, *, rear: float, grid: npt.ArrayLike | None = None, limit: int = 20) -> list[Step]:
+    """Optimise front and rear damper in turn, each for its own tyre, until neither changes.
+
+    Args:
+        measure: fluctuation of both tyres.
+        rear: rear coefficient to start with [N s/m].
+        grid: coefficients to choose from [N s/m]; without it the whole range, and "no change" means 5 N s/m.
+        limit: most steps.
+
+    Returns:
+        The steps, front first; the last one repeats the damper found two steps before.
+
+    Raises:
+        SimulationError: still changing after the limit.
+
+    Source: "Dynamic Modeling of Vehicles and Damper" (2014), section 4.2, figures 11 to 13.
+    """
+    if not rear > 0.0:
+        raise ConfigurationError(f"iteration: rear: found {rear!r} N s/m, must be greater than 0.0")
+    steps: list[Step] = []
+    damping = {"front": float("nan"), "rear": rear}
+    tolerance = 0.0 if grid is not None else 5.0
+    for changed in itertools.islice(itertools.cycle(("front", "rear")), limit):
+        end = 0 if changed == "front" else 1
+        old = damping[changed]
+        other = damping["rear" if changed == "front" else "front"]
+        damping[changed] = optimum(_own(measure, end, other), grid).damping
+        values = measure(damping["front"], damping["rear"])
+        steps.append(
+            Step(
+                changed=changed,
+                front=damping["front"],
+                rear=damping["rear"],
+                fluctuation=(float(values[0]), float(values[1])),
+            )
+        )
+        if abs(damping[changed] - old) <= tolerance:
+            return steps
+    raise SimulationError(f"front/rear iteration: still changing after {limit} steps; give a coarser grid")
+
+
+def joint_optimum(measure: Fluctuation, *, start: tuple[float, float]) -> tuple[float, float, Array]:
+    """Front and rear coefficient of the least sum of both measures.
+
+    Args:
+        measure: fluctuation of both tyres.
+        start: front and rear coefficient to start with [N s/m].
+
+    Returns:
+        Front coefficient, rear coefficient [N s/m], measures there, shape (2,).
+
+    Raises:
+        SimulationError: the search did not converge.
+    """
+    found = minimize(
+        lambda pair: float(measure(float(pair[0]), float(pair[1])).sum()),
+        np.array(start),
+        method="Nelder-Mead",  # the printed measure has kinks where a band passes |H| = 1
+        bounds=[SEARCHED, SEARCHED],
+        options={"xatol": 1.0, "fatol": 1e-7},
+    )
+    if not found.success:
+        raise SimulationError(f"joint optimum of the dampers: {found.message}")
+    front, rear = (float(value) for value in found.x)
+    return front, rear, measure(front, rear)
+
+
+def _own(measure: Fluctuation, end: int, other: float) -> Callable[[float], float]:
+    """Measure of one end's tyre over its own damper, the other end held."""
+    if end == 0:
+        return lambda damping: float(measure(damping, other)[0])
+    return lambda damping: float(measure(other, damping)[1])

@@ -1,0 +1,117 @@
+"""Half car with seat and rider: seven coordinates, two roads.
+
+Heave and pitch of the body are about its centre of gravity; the seat base is q_b = x_b - a3 theta, the body above the
+front wheel x_b - a1 theta, above the rear wheel x_b + a2 theta.
+
+Source: "Parametric study of rider's comfort in a vehicle with semi-active suspension system under transient road
+conditions", equations 8 to 10; its equations of motion and matrices carry typing errors and are not used here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.lumped.energy_matrices import LinearModel, SpringDamper, energy_matrices
+from vehicle.parameters.axle import Axle
+from vehicle.parameters.half_car_rider import HalfCarRiderParameters, Limb
+
+GRAVITY = 9.81
+"""[m/s2]."""
+
+ROADS = ("front_road", "rear_road")
+"""Road heights under the front and the rear wheel."""
+
+
+def places(parameters: HalfCarRiderParameters) -> Mapping[str, Mapping[str, float]]:
+    """Displacements a user asks for, as linear forms of the coordinates [m per m, m per rad].
+
+    Args:
+        parameters: the car.
+
+    Returns:
+        Name of the place -> coordinate -> coefficient. A travel is positive in rebound (wheel below the body).
+    """
+    body = parameters.body
+    front = {"heave": 1.0, "pitch": -body.front_arm}
+    rear = {"heave": 1.0, "pitch": body.rear_arm}
+    return MappingProxyType(
+        {
+            "upper_limb": {"upper_limb": 1.0},
+            "lower_limb": {"lower_limb": 1.0},
+            "seat": {"seat": 1.0},
+            "body": {"heave": 1.0},
+            "seat_base": {"heave": 1.0, "pitch": -body.seat_arm},
+            "front_body": front,
+            "rear_body": rear,
+            "pitch": {"pitch": 1.0},
+            "front_wheel": {"front_wheel": 1.0},
+            "rear_wheel": {"rear_wheel": 1.0},
+            "front_travel": {**front, "front_wheel": -1.0},
+            "rear_travel": {**rear, "rear_wheel": -1.0},
+        }
+    )
+
+
+def half_car_rider(parameters: HalfCarRiderParameters) -> LinearModel:
+    """Linear model M x'' + C x' + K x = Bc z' + Bk z of the half car with rider.
+
+    Args:
+        parameters: the car.
+
+    Returns:
+        The model with the coordinates upper_limb, lower_limb, seat, heave, front_wheel, rear_wheel [m], pitch [rad].
+    """
+    masses = {
+        "upper_limb": parameters.upper_limb.mass,
+        "lower_limb": parameters.lower_limb.mass,
+        "seat": parameters.seat.mass,
+        "heave": parameters.body.mass,
+        "front_wheel": parameters.front.unsprung_mass,
+        "rear_wheel": parameters.rear.unsprung_mass,
+        "pitch": parameters.body.pitch_inertia,
+    }
+    place = places(parameters)
+    elements = (
+        _on(parameters.upper_limb, {"upper_limb": 1.0, "seat": -1.0}),
+        _on(parameters.lower_limb, {"lower_limb": 1.0, "seat": -1.0}),
+        _on(parameters.seat, {"seat": 1.0, **{name: -value for name, value in place["seat_base"].items()}}),
+        _suspension(parameters.front, place["front_travel"]),
+        _suspension(parameters.rear, place["rear_travel"]),
+        _tyre(parameters.front, "front"),
+        _tyre(parameters.rear, "rear"),
+    )
+    return energy_matrices(masses, elements, ROADS)
+
+
+def static_tyre_load(parameters: HalfCarRiderParameters) -> npt.NDArray[np.float64]:
+    """Load of the front and rear tyre at rest [N], shape (2,).
+
+    K x = -M g e with e = 1 for every displacement and 0 for pitch; the load is the force of the compressed tyre.
+
+    Args:
+        parameters: the car.
+    """
+    model = half_car_rider(parameters)
+    vertical = np.array([0.0 if name == "pitch" else 1.0 for name in model.coordinates])
+    rest = np.linalg.solve(model.stiffness, -GRAVITY * model.mass @ vertical)
+    wheels = [model.coordinates.index(name) for name in ("front_wheel", "rear_wheel")]
+    stiffness = np.array([parameters.front.tyre_stiffness, parameters.rear.tyre_stiffness])
+    return np.asarray(-stiffness * rest[wheels])
+
+
+def _on(limb: Limb, extension: Mapping[str, float]) -> SpringDamper:
+    return SpringDamper(extension=extension, stiffness=limb.stiffness, damping=limb.damping)
+
+
+def _suspension(axle: Axle, travel: Mapping[str, float]) -> SpringDamper:
+    return SpringDamper(extension=travel, stiffness=axle.suspension_stiffness, damping=axle.suspension_damping)
+
+
+def _tyre(axle: Axle, end: str) -> SpringDamper:
+    return SpringDamper(
+        extension={f"{end}_wheel": 1.0, f"{end}_road": -1.0}, stiffness=axle.tyre_stiffness, damping=axle.tyre_damping
+    )

@@ -1,0 +1,102 @@
+"""Exact response of a linear model to a half-sine bump, by matrix exponentials.
+
+While wheel i is on the bump its road height obeys z_i'' = -omega^2 z_i. Coordinates, velocities and road heights
+together are therefore an autonomous linear system s' = A s between the four instants at which a wheel enters or
+leaves the bump; there only (z_i, z_i') jumps, x and x' are continuous. s(t) = expm(A (t - t_k)) s(t_k) holds no
+time-step error.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import expm
+
+from vehicle.errors import ConfigurationError
+from vehicle.lumped.bump_road import BumpPassage
+from vehicle.lumped.energy_matrices import LinearModel
+from vehicle.lumped.motion_history import MotionHistory
+
+Array = npt.NDArray[np.float64]
+
+
+def linear_response(model: LinearModel, passage: BumpPassage, *, time_step: float, duration: float) -> MotionHistory:
+    """Response of a model at rest to a bump, exact at every sample.
+
+    Args:
+        model: linear model with one road for each arrival of the passage.
+        passage: the bump under each wheel.
+        time_step: sampling of the answer [s]; no influence on its accuracy.
+        duration: length of the answer [s].
+
+    Returns:
+        The motion from t = 0 to the duration. At the instant of an arrival the acceleration is the one just after it.
+
+    Raises:
+        ConfigurationError: time step or duration not positive, or roads and arrivals differ in number.
+    """
+    if not (math.isfinite(time_step) and time_step > 0.0):
+        raise ConfigurationError(f"linear response: time_step: found {time_step!r} s, must be greater than 0.0")
+    if not (math.isfinite(duration) and duration >= time_step):
+        raise ConfigurationError(f"linear response: duration: found {duration!r} s, must be at least one time step")
+    if len(passage.arrivals) != len(model.roads):
+        raise ConfigurationError(
+            f"linear response: found {len(passage.arrivals)} arrivals for {len(model.roads)} roads, needed is one each"
+        )
+    n, w = len(model.coordinates), len(model.roads)
+    system = _autonomous(model, passage.omega)
+    time = np.asarray(time_step * np.arange(round(duration / time_step) + 1), dtype=np.float64)
+    states = np.zeros((system.shape[0], time.size))
+    powers = [expm(system * time_step)]
+    state, since = np.zeros(system.shape[0]), 0.0
+    for instant, wheel, rate in [*_events(passage), (math.inf, 0, 0.0)]:
+        inside = np.flatnonzero((time >= since) & (time < instant))
+        if inside.size:
+            first = expm(system * (time[inside[0]] - since)) @ state
+            states[:, inside] = _steps(first, powers, inside.size)
+        if math.isinf(instant):
+            break
+        state, since = expm(system * (instant - since)) @ state, instant
+        state[2 * n + wheel], state[2 * n + w + wheel] = 0.0, rate
+    return MotionHistory(
+        coordinates=model.coordinates,
+        time=time,
+        displacement=states[:n],
+        velocity=states[n : 2 * n],
+        acceleration=system[n : 2 * n] @ states,
+        road=states[2 * n : 2 * n + w],
+        road_rate=states[2 * n + w :],
+    )
+
+
+def _autonomous(model: LinearModel, omega: float) -> Array:
+    """A of s = (x, x', z, z'), shape (2n + 2w, 2n + 2w)."""
+    n, w = len(model.coordinates), len(model.roads)
+    force = np.hstack((-model.stiffness, -model.damping, model.road_stiffness, model.road_damping))
+    system = np.zeros((2 * n + 2 * w, 2 * n + 2 * w))
+    system[:n, n : 2 * n] = np.eye(n)
+    system[n : 2 * n] = np.linalg.solve(model.mass, force)
+    system[2 * n : 2 * n + w, 2 * n + w :] = np.eye(w)
+    system[2 * n + w :, 2 * n : 2 * n + w] = -(omega**2) * np.eye(w)
+    return system
+
+
+def _events(passage: BumpPassage) -> list[tuple[float, int, float]]:
+    """Instants at which a wheel enters (road rate h0 omega) or leaves (0) the bump, in order."""
+    entering = [(arrival, wheel, passage.height * passage.omega) for wheel, arrival in enumerate(passage.arrivals)]
+    leaving = [(arrival + passage.contact, wheel, 0.0) for wheel, arrival in enumerate(passage.arrivals)]
+    return sorted(entering + leaving)
+
+
+def _steps(first: Array, powers: list[Array], count: int) -> Array:
+    """States P^0 s, P^1 s, ... of a uniform grid by doubling, shape (len(s), count); powers grows as P^(2^k)."""
+    states = first[:, None]
+    level = 0
+    while states.shape[1] < count:
+        if level == len(powers):
+            powers.append(powers[-1] @ powers[-1])
+        states = np.hstack((states, powers[level] @ states))
+        level += 1
+    return states[:, :count]

@@ -1,0 +1,153 @@
+"""A thousand nonlinear lumped models at once: exact propagator of the linear part, friction solved implicitly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import expm
+
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.laws.law import ForceLaw
+from vehicle.lumped.history import Array, History
+from vehicle.lumped.state_space import StateSpace
+
+ITERATIONS = 120
+"""More than enough: of two iterations one halves the bracket or the step, and 52 halvings exhaust a double."""
+
+
+def marched_solution(
+    model: StateSpace, timestep: float, road: npt.ArrayLike, *, every: int = 1, initial: npt.ArrayLike | None = None
+) -> History:
+    """March a stack of models with one sliding pair over a road given at every step.
+
+    Over a step the linear part is exact for a road that moves on a straight line, and the sliding force is constant:
+    x+ = P x + R0 w + R1 (w+ - w) + S f, v+ = V x+. Friction is taken at the end of the step, f = friction(v+), so that
+    sticking is exact at any step (the constant force is the one that stops the pair); the viscous law is taken at the
+    mean of both velocities. What remains is one monotone equation for v+ in each model, solved to rounding by Newton's
+    method in a bracket. Second order in the step: sliding friction hardly depends on the velocity, and the instant
+    where sticking begins enters the displacement with the square of the step.
+
+    Args:
+        model: models with exactly one sliding pair; leading axes "..." are the stack.
+        timestep: step h [s].
+        road: road displacement [m] at the ends of the steps, shape (T,) or (T, ...).
+        every: keep every so manieth step.
+        initial: states at the start, shape (..., s); zero where not given.
+
+    Returns:
+        The history at the steps kept, first one included.
+
+    Raises:
+        ConfigurationError: no or several sliding pairs, a bad step, or a road that does not fit the stack.
+        SimulationError: a solution that is not finite.
+    """
+    shape, size = model.models, model.state.shape[-1]
+    if len(model.slides) != 1:
+        raise ConfigurationError(f"marched_solution: needed is one sliding pair, found {len(model.slides)}")
+    if not (math.isfinite(timestep) and timestep > 0.0):
+        raise ConfigurationError(f"timestep: found {timestep!r} s, must be finite and greater than 0.0")
+    if every < 1:
+        raise ConfigurationError(f"every: found {every!r}, must be at least 1")
+    driven = np.asarray(road, dtype=float)
+    if driven.ndim not in (1, 1 + len(shape)) or driven.shape[1:] not in ((), shape) or len(driven) < 2:
+        raise ConfigurationError(f"road: found shape {driven.shape}, needed is (T,) or (T, *{shape}) with T >= 2")
+    if not np.isfinite(driven).all():
+        raise ConfigurationError("road: all displacements must be finite")
+    pair = model.slides[0]
+    propagate, at_start, over_step, by_force = _propagators(model, timestep)
+    row = model.slide[..., 0, :]
+    gain = -np.einsum("...i,...i->...", row, by_force)  # positive: a force against the motion slows it down
+    ahead = driven if driven.ndim == 1 + len(shape) else driven.reshape(driven.shape + (1,) * len(shape))
+    rates = np.diff(ahead, axis=0) / timestep
+    state = (
+        np.zeros((*shape, size)) if initial is None else np.array(np.broadcast_to(initial, (*shape, size)), dtype=float)
+    )
+    speed = np.einsum("...i,...i->...", row, state) + model.slide_road_rate[..., 0] * rates[0]
+    force = np.zeros(shape)
+    kept = range(0, len(driven), every)
+    states, forces = np.empty((len(kept), *shape, size)), np.empty((len(kept), *shape))
+    states[0], forces[0] = state, pair.friction.force(speed) + (pair.viscous.force(speed) if pair.viscous else 0.0)
+    for step in range(1, len(driven)):
+        free = (propagate @ state[..., None])[..., 0]
+        free += at_start * ahead[step - 1][..., None] + over_step * (ahead[step] - ahead[step - 1])[..., None]
+        arriving = np.einsum("...i,...i->...", row, free) + model.slide_road_rate[..., 0] * rates[step - 1]
+        balance = _balance(pair.friction, pair.viscous, gain, arriving, speed)
+        speed = _root(balance, arriving, speed)
+        force = (arriving - speed) / gain
+        state = free + by_force * force[..., None]
+        if step % every == 0:
+            states[step // every], forces[step // every] = state, force
+    if not np.isfinite(states).all():
+        raise SimulationError("marched_solution: a state is not finite; take a smaller step or check the parameters")
+    at_kept = np.minimum(np.arange(len(kept)) * every, len(rates) - 1)
+    return History(
+        model=model,
+        time=np.asarray(timestep * every * np.arange(len(kept)), dtype=float),
+        state=states,
+        sliding_force=forces[..., None],
+        road=ahead[::every],
+        road_rate=rates[at_kept],
+        force=np.zeros_like(ahead[::every]),
+        evaluations=len(driven) - 1,
+        method=f"exact propagator with implicit friction, step {timestep:g} s",
+    )
+
+
+def _propagators(model: StateSpace, step: float) -> tuple[Array, Array, Array, Array]:
+    """P, R0, R1 and S of a step: exact for a road on a straight line and a constant sliding force."""
+    size = model.state.shape[-1]
+    # (x, w, w', f) with w' and f constant over the step: one matrix exponential gives all of them.
+    whole = np.zeros((*model.models, size + 3, size + 3))
+    whole[..., :size, :size] = model.state
+    whole[..., :size, size] = model.road
+    whole[..., :size, size + 1] = model.road_rate
+    whole[..., :size, size + 2] = -model.friction[..., 0]
+    whole[..., size, size + 1] = 1.0
+    moved = expm(whole * step)
+    return (
+        moved[..., :size, :size],
+        moved[..., :size, size],
+        moved[..., :size, size + 1] / step,
+        moved[..., :size, size + 2],
+    )
+
+
+def _balance(
+    friction: ForceLaw, viscous: ForceLaw | None, gain: Array, arriving: Array, before: Array
+) -> Callable[[Array], tuple[Array, Array]]:
+    """v - v_free + G f(v) and its derivative: zero where the sliding force fits the velocity it leads to."""
+
+    def balance(velocity: Array) -> tuple[Array, Array]:
+        force, slope = friction.force(velocity), friction.slope(velocity)
+        if viscous is not None:
+            middle = 0.5 * (velocity + before)
+            force, slope = force + viscous.force(middle), slope + 0.5 * viscous.slope(middle)
+        return velocity - arriving + gain * force, 1.0 + gain * slope
+
+    return balance
+
+
+def _root(balance: Callable[[Array], tuple[Array, Array]], arriving: Array, before: Array) -> Array:
+    """Root of an increasing function for each model: Newton's method, safeguarded by bisection."""
+    # Every law opposes the velocity it sees, so the root lies between zero, the free and the earlier velocity.
+    reach = np.abs(arriving) + np.abs(before)
+    low, high = -reach, reach
+    velocity, last = before, 2.0 * reach
+    for _ in range(ITERATIONS):
+        value, slope = balance(velocity)
+        low, high = np.where(value < 0.0, velocity, low), np.where(value > 0.0, velocity, high)
+        change = -value / slope
+        # A change below a part in 1e13 of the velocities of the step is rounding, and no reason to leave the bracket.
+        settled = np.abs(change) <= 1e-13 * reach
+        if settled.all():
+            return velocity
+        newton = velocity + change
+        # Across the steep part of the friction Newton's steps can swing for ever: they must at least halve.
+        trusted = (newton >= low) & (newton <= high) & (np.abs(change) <= 0.5 * last)
+        better = np.where(settled, velocity, np.where(trusted, newton, 0.5 * (low + high)))
+        last = np.abs(better - velocity)
+        velocity = better
+    raise SimulationError("marched_solution: the friction law has no single force for a step; take a smaller step")

@@ -1,0 +1,101 @@
+"""Lumped models with set-valued friction by the switch model: stick band, mixed vector fields, exponential return."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.integrate import solve_ivp
+
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.laws.switch import Switch
+from vehicle.lumped.drive import AtRest, Drive
+from vehicle.lumped.history import Array, History
+from vehicle.lumped.state_space import StateSpace
+
+
+def switch_solution(
+    model: StateSpace,
+    law: Switch,
+    time: npt.ArrayLike,
+    *,
+    road: Drive | None = None,
+    force: Drive | None = None,
+    initial: npt.ArrayLike | None = None,
+    relative: float = 1e-6,
+    longest_step: float = 1e-3,
+) -> History:
+    """Solve x' = alpha f+ + (1 - alpha) f- with the mixing alpha of the switch model.
+
+    f+ and f- are the vector fields with the friction +Fd and -Fd; the friction law of the model itself is replaced by
+    the switch law. Inside the stick band the velocity returns to zero with the time constant tau.
+
+    Args:
+        model: a single model with one sliding pair that does not touch the road.
+        law: Coulomb limit, stick band and return time.
+        time: increasing sample times [s], shape (T,).
+        road: road displacement; at rest where not given.
+        force: applied force; zero where not given.
+        initial: state at the first time, shape (s,); zero where not given.
+        relative: relative tolerance of the solver; the absolute one of velocities is a hundredth of the band.
+        longest_step: upper bound of the solver's step [s].
+
+    Returns:
+        The history at the sample times.
+
+    Raises:
+        ConfigurationError: a stack of models, no or several sliding pairs, or one that touches the road.
+        SimulationError: the solver gave up.
+
+    Source: Bommer 2006, appendix A (Leine and Nijmeijer).
+    """
+    if model.models or len(model.slides) != 1 or model.slide_road_rate.any():
+        raise ConfigurationError("switch_solution: needed is a single model with one sliding pair off the road")
+    times = np.asarray(time, dtype=float)
+    size, n = model.state.shape[-1], len(model.coordinates)
+    start = np.zeros(size) if initial is None else np.asarray(initial, dtype=float)
+    road, force = road or AtRest(), force or AtRest()
+    row, effect, limit = model.slide[0], model.friction[:, 0], float(law.limit)
+
+    def fields(t: float, x: Array) -> tuple[Array, float, Array]:
+        """Vector field without friction, sliding velocity and mixing."""
+        w, rate = road.at(t)
+        bare = model.state @ x + model.road * w + model.road_rate * rate + model.force * force.at(t)[0]
+        held, brake = float(row @ bare), float(row @ effect) * limit
+        velocity = float(row @ x)
+        return bare, velocity, law.mixing(velocity, held - brake, held + brake)
+
+    def right_hand_side(t: float, x: Array) -> Array:
+        bare, _, alpha = fields(t, x)
+        return bare - effect * ((2.0 * alpha - 1.0) * limit)
+
+    absolute = np.full(size, 1e-2 * float(law.band))
+    # Positions move by velocity times time: a thousandth of the band's velocity over a millisecond.
+    absolute[:n] = 1e-6 * float(law.band)
+    solution: Any = solve_ivp(
+        right_hand_side,
+        (times[0], times[-1]),
+        start,
+        method="LSODA",
+        t_eval=times,
+        rtol=relative,
+        atol=absolute,
+        max_step=longest_step,
+    )
+    if not solution.success or not np.isfinite(solution.y).all():
+        raise SimulationError(f"switch model: {solution.message} Widen the stick band or lengthen the return time.")
+    states = solution.y.T
+    friction = [(2.0 * float(fields(t, x)[2]) - 1.0) * limit for t, x in zip(times.tolist(), states, strict=True)]
+    driven = np.array([(*road.at(t), force.at(t)[0]) for t in times.tolist()])
+    return History(
+        model=model,
+        time=times,
+        state=states,
+        sliding_force=np.array(friction)[:, None],
+        road=driven[:, 0],
+        road_rate=driven[:, 1],
+        force=driven[:, 2],
+        evaluations=int(solution.nfev),
+        method=f"switch model, LSODA, relative {relative:g}, band {float(law.band):g} m/s",
+    )

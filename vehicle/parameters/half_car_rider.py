@@ -1,0 +1,101 @@
+"""Parameters of the half car with seat and rider, its bump and its semi-active dampers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError
+from vehicle.parameters.axle import Axle
+from vehicle.parameters.quantity import quantity, validate
+from vehicle.parameters.toml_file import build, read_table
+
+PUBLISHED = Path(__file__).with_name("half_car_rider.toml")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RiderBody:
+    """Sprung mass in heave and pitch; arms are measured from its centre of gravity."""
+
+    mass: float = quantity("kg", "sprung mass mb", above=0.0)
+    pitch_inertia: float = quantity("kg m2", "moment of inertia J about the pitch axis", above=0.0)
+    front_arm: float = quantity("m", "centre of gravity to front suspension a1", above=0.0)
+    rear_arm: float = quantity("m", "centre of gravity to rear suspension a2", above=0.0)
+    seat_arm: float = quantity("m", "centre of gravity to seat a3, forward positive")
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Limb:
+    """A mass on a spring and a damper: the seat on the body, or one half of the rider on the seat."""
+
+    mass: float = quantity("kg", "mass", above=0.0)
+    stiffness: float = quantity("N/m", "stiffness of its support", above=0.0)
+    damping: float = quantity("N s/m", "damper coefficient of its support", at_least=0.0)
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BumpShape:
+    """Half-sine bump."""
+
+    height: float = quantity("m", "bump height h0; negative is a dip")
+    length: float = quantity("m", "bump length wb", above=0.0)
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SemiActiveDamper:
+    """What the adjustable dampers can do, and the gains of the control laws."""
+
+    minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
+    maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0)
+    skyhook_damping: float = quantity("N s/m", "damper between body and sky", at_least=0.0)
+    groundhook_damping: float = quantity("N s/m", "damper between wheel and ground", at_least=0.0)
+    skyhook_share: float = quantity(
+        "-", "share of skyhook in the hybrid law, the rest is groundhook", at_least=0.0, at_most=1.0
+    )
+    control_period: float = quantity("s", "time between two settings of the dampers", above=0.0)
+
+    def __post_init__(self) -> None:
+        validate(self)
+        if self.maximum_damping < self.minimum_damping:
+            raise ConfigurationError(
+                f"SemiActiveDamper.maximum_damping: found {self.maximum_damping!r} N s/m, "
+                f"must be at least minimum_damping {self.minimum_damping!r} N s/m"
+            )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class HalfCarRiderParameters:
+    """Half car with seat and rider (7 coordinates)."""
+
+    body: RiderBody
+    front: Axle
+    rear: Axle
+    seat: Limb
+    lower_limb: Limb
+    upper_limb: Limb
+    bump: BumpShape
+    semi_active: SemiActiveDamper
+
+
+def half_car_rider_parameters(path: Path = PUBLISHED) -> HalfCarRiderParameters:
+    """Read the parameters of a half car with rider.
+
+    Args:
+        path: TOML file; the published set by default.
+
+    Returns:
+        The validated parameters.
+
+    Raises:
+        ConfigurationError: the file, a name or a value is wrong.
+    """
+    return build(HalfCarRiderParameters, read_table(path))
