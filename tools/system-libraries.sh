@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what pip cannot: the off-screen OpenGL library (OSMesa) and the venv module, on Debian, as root.
 set -u
+PATH=$PATH:/sbin:/usr/sbin
 wanted=()
 ldconfig -p 2>/dev/null | grep -q 'libOSMesa\.so' || wanted+=(libosmesa6)
 "${PYTHON:-python3}" -c 'import ensurepip, venv' 2>/dev/null || wanted+=(python3-venv)

@@ -36,7 +36,7 @@ def parser() -> Parser:
     found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
     found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
     found.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
-    found.add_argument("--video-duration", type=float, default=10.0, metavar="S", help="length of the excerpt [s]")
+    found.add_argument("--video-duration", type=float, default=10.0, metavar="S", help="length of the film [s]; slow motion shows less of the record in it")
     found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower")
     found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
@@ -67,14 +67,14 @@ def _job(options: argparse.Namespace) -> None:
     check_output(output, force=options.force, protect=source)
     video_name = None
     if options.video is not None:
-        from vehicle.rendering.backend import choose_backend
+        from vehicle.rendering.backend import require_film
 
         video_name = Path(options.video) if options.video else Path(f"{source.stem}.mp4")
         if video_name.suffix != ".mp4":
             raise ConfigurationError(f"--video {video_name}: a film is written as .mp4; give FILE.mp4")
         if options.slow_motion < 1.0 or options.video_duration <= 0.0:
             raise ConfigurationError("--slow-motion must be at least 1 and --video-duration greater than 0 s")
-        choose_backend()
+        require_film()
     overrides = list(options.overrides)
     if options.timestep is not None:
         overrides.append(f"solver.timestep={options.timestep!r}")
@@ -91,6 +91,13 @@ def _job(options: argparse.Namespace) -> None:
         remove_mean=options.remove_mean,
         accept_implausible=options.road,
     )
+
+    if video_name is not None and options.video_start is not None:
+        latest = signal.duration - options.video_duration / options.slow_motion
+        if not 0.0 <= options.video_start <= latest:
+            raise ConfigurationError(
+                f"--video-start {options.video_start:g}: the excerpt must lie in the record, so give 0 to {latest:g} s"
+            )
 
     def make_film(run: Run, path: Path) -> None:
         from vehicle.rendering.film import film

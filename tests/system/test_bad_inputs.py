@@ -73,9 +73,7 @@ SETTINGS = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("setting", "piece"), [case[1:] for case in SETTINGS], ids=[case[0] for case in SETTINGS]
-)
+@pytest.mark.parametrize(("setting", "piece"), [case[1:] for case in SETTINGS], ids=[case[0] for case in SETTINGS])
 def test_bad_parameters(shaker, short_signal, tmp_path, setting, piece):
     outcome = shaker("--input", "short.csv", "--set", setting)
     assert outcome.code == 2, outcome.err
@@ -167,7 +165,9 @@ def test_item_39_full_disk(shaker, short_signal, tmp_path, monkeypatch):
 
 
 def test_item_39_closed_pipe(tmp_path):
-    command = f'set -o pipefail; "{sys.executable}" -m vehicle.modes --json | head -c 1 >/dev/null; echo "${{PIPESTATUS[0]}}"'
+    command = (
+        f'set -o pipefail; "{sys.executable}" -m vehicle.modes --json | head -c 1 >/dev/null; echo "${{PIPESTATUS[0]}}"'
+    )
     done = subprocess.run(
         ["bash", "-c", command],
         cwd=tmp_path,
@@ -186,7 +186,7 @@ def test_item_40_no_rendering_library(shaker, short_signal, tmp_path, monkeypatc
     def missing():
         raise MissingPartError("films need libOSMesa: apt-get install libosmesa6")
 
-    monkeypatch.setattr(backend, "choose_backend", missing)
+    monkeypatch.setattr(backend, "require_film", missing)
     outcome = shaker("--input", "short.csv", "--video")
     assert outcome.code == 5 and "libosmesa6" in outcome.err
     assert not (tmp_path / "runs").exists(), "refused before anything is simulated"

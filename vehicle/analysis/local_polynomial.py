@@ -39,6 +39,9 @@ WORST_CONDITION = 1e-3
 MOST_HALF_WIDTH = 60
 """Lines n on each side at most, which bounds the work on long records."""
 
+COARSE_HZ = 0.5
+"""Widest stretch [Hz] that still separates the body modes of a car, which lie half a hertz apart."""
+
 SMALLEST_SHARE = 1e-8
 """Excitation power of a stretch of lines over that of the strongest line, below which nothing drives the car there."""
 
@@ -117,7 +120,18 @@ def local_polynomial_response(
         window="none (whole record)",
         estimator="local polynomial",
         resolution_hz=line * (2 * LEAST_HALF_WIDTH + 1),
-        reasons=_reasons(centres * line, response, names),
+        reasons=(*_coarse(line), *_reasons(centres * line, response, names)),
+    )
+
+
+def _coarse(line: float) -> tuple[str, ...]:
+    """A sentence where the record is too short to separate the modes of a car."""
+    resolution = line * (2 * LEAST_HALF_WIDTH + 1)
+    if resolution <= COARSE_HZ:
+        return ()
+    return (
+        f"the FRF resolves {resolution:.2g} Hz only, since the record lasts {1.0 / line:.3g} s; "
+        f"resonances below 10 Hz need {(2 * LEAST_HALF_WIDTH + 1) / COARSE_HZ:.0f} s",
     )
 
 

@@ -6,7 +6,6 @@ import io
 from pathlib import Path
 from xml.etree import ElementTree
 
-import mujoco
 import numpy as np
 
 from vehicle.assembly.spec import assemble

@@ -39,6 +39,7 @@ class CarMatrices:
         branch_rows: j_b; (b, n).
         branch_stiffness, branch_time: K2 [N/m] and tau [s]; (b,).
         plate_stiffness, plate_damping: k_p and c_p, force per vertical displacement and velocity; (2, n).
+        tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (2,).
         outputs: rows that turn u'' into accelerations; channel name to (n,).
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
@@ -57,6 +58,8 @@ class CarMatrices:
     branch_time: Vector
     plate_stiffness: Vector
     plate_damping: Vector
+    tyre_stiffness: Vector
+    tyre_damping: Vector
     outputs: dict[str, Vector]
     body_rows: dict[str, Vector]
     body_masses: dict[str, Vector]
@@ -103,6 +106,8 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         branch_time=e.branch_time[present],
         plate_stiffness=e.stiffness[e.tyres, 2][:, None] * jacobian[vertical],
         plate_damping=e.damping[e.tyres, 2][:, None] * jacobian[vertical],
+        tyre_stiffness=e.stiffness[e.tyres, 2],
+        tyre_damping=e.damping[e.tyres, 2],
         outputs=_outputs(model, data, modes),
         body_rows=_body_rows(model, data),
         body_masses=_body_masses(model, data),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.analysis.comfort import settling
 from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonance_peaks
@@ -126,7 +127,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
         Plain numbers, texts, lists and dictionaries; None where a value does not exist.
     """
     statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
-    notices = [*run.signal.notices, *response.reasons]
+    notices = [*run.signal.notices, *response.reasons, *_unsettled(run)]
     inertia = rigid_body(run.car.vehicle.body).report
     return {
         "frame": FRAME,
@@ -155,6 +156,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
         },
         "solver": {
             "engine": statistics.engine,
+            "callback": statistics.callback,
             "timestep_s": statistics.timestep,
             "steps": statistics.steps,
             "wall_s": statistics.wall_time,
@@ -196,6 +198,17 @@ def _comfort(run: Run, place: str) -> dict[str, Any]:
         "rms_2_50_hz": {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall},
         "iso2631": evaluate(run.recording.timestep, xyz),
     }
+
+
+def _unsettled(run: Run) -> list[str]:
+    """A sentence for each axis of the seat rail whose level changes along the record by more than chance."""
+    xyz = np.array([run[f"seat_rail_acc_{axis}"] for axis in AXES])
+    return [
+        f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
+        f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
+        for axis, part in zip(AXES, settling(run.recording.timestep, xyz), strict=True)
+        if not part.settled
+    ]
 
 
 def _caption(run: Run, response: FrequencyResponse) -> str:

@@ -1,0 +1,161 @@
+"""The pictures of a run: they exist, name their units, and are the same bytes every time."""
+
+from __future__ import annotations
+
+import sys
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from tests.rendering.conftest import FakeCar, FakeRun, fabricated
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.names import acceleration_channels
+from vehicle.rendering.excerpt import excerpt_start, liveliest
+from vehicle.rendering.frf_plot import driven, plot_frf, wrapped_phase
+from vehicle.rendering.time_plot import plot_time
+
+
+@pytest.fixture(scope="module")
+def long_run(car):
+    recording = fabricated(car, 4.0)
+    # Velocity white: displacement with 1/f, so that every frequency of the picture is driven.
+    noise = np.random.default_rng(1).normal(size=recording.time.size)
+    recording.channels["plate_fr_displacement"][:] = 1e-5 * np.cumsum(noise)
+    return FakeRun(car=FakeCar(model=car), recording=recording)
+
+
+@pytest.fixture(scope="module")
+def response():
+    frequency = np.arange(1.0, 50.0, 0.1)
+    rows = len(acceleration_channels())
+    single = frequency**2 / (1.0 - (frequency / 28.0) ** 2 + 0.1j * frequency / 28.0)
+    return FrequencyResponse(
+        frequency=frequency,
+        response=np.outer(np.arange(1, rows + 1), single).astype(np.complex128),
+        coherence=np.full((rows, frequency.size), 0.9),
+        averages=7.0,
+        segments=1,
+        window="none",
+        estimator="local polynomial",
+        resolution_hz=0.1,
+        reasons=(),
+    )
+
+
+@pytest.fixture
+def figures(monkeypatch):
+    """Figures as they are saved."""
+    kept = []
+    save = Figure.savefig
+
+    def keep(figure, *arguments, **options):
+        kept.append(figure)
+        save(figure, *arguments, **options)
+
+    monkeypatch.setattr(Figure, "savefig", keep)
+    return kept
+
+
+def every_axis(figure):
+    return [axis for part in (figure, *figure.subfigs) for axis in part.axes]
+
+
+def test_frf_plot_names_quantities_and_caption(long_run, response, tmp_path, figures):
+    plot_frf(tmp_path / ".123.frf.png", long_run, response, "shake.csv, RMS 0.25 mm; estimator: local polynomial")
+    axes = every_axis(figures[0])
+    assert {axis.get_ylabel() for axis in axes} - {""} == {
+        "acceleration / plate displacement [(m/s²)/m]",
+        "phase [deg]",
+        "coherence [-]",
+    }
+    assert {axis.get_xlabel() for axis in axes} - {""} == {"frequency [Hz]"}
+    assert axes[0].get_xscale() == axes[0].get_yscale() == "log"
+    assert axes[0].get_xlim() == (1.0, 50.0)
+    assert figures[0].get_supxlabel() == "shake.csv, RMS 0.25 mm; estimator: local polynomial"
+    shown = {text.get_text() for axis in axes[:2] for text in axis.get_legend().get_texts()}
+    assert shown >= {
+        "knuckle at damper bottom",
+        "damper top",
+        "body at suspension mount",
+        "engine",
+        "seat rail",
+        "body front",
+        "roof, left rear",
+    }
+
+
+def test_frf_plot_draws_the_asked_channel(long_run, response, tmp_path, figures):
+    plot_frf(tmp_path / "frf.png", long_run, response, "")
+    lines = {line.get_label(): line for line in every_axis(figures[0])[0].get_lines()}
+    row = acceleration_channels().index("damper_top_fr_acc_z")
+    drawn = lines["damper top"].get_ydata()
+    there = np.isfinite(drawn)
+    assert there.mean() > 0.9
+    np.testing.assert_allclose(drawn[there], np.abs(response.response[row])[there])
+
+
+def test_time_plot_names_quantities(long_run, tmp_path, figures):
+    plot_time(tmp_path / "time.png", long_run)
+    axes = every_axis(figures[0])
+    assert {axis.get_ylabel().replace("\n", " ") for axis in axes} - {""} == {
+        "plate displacement [mm]",
+        "acceleration z [m/s²]",
+        "damper velocity [mm/s]",
+        "tyre force z [kN]",
+        "damper force [N]",
+    }
+    assert {axis.get_xlabel() for axis in axes} - {""} == {"time [s]", "damper velocity [mm/s]"}
+    assert "RMS 0.25 mm" in figures[0].get_supxlabel() and "slip velocity" in figures[0].get_supxlabel()
+
+
+@pytest.mark.parametrize("which", ["frf", "time"])
+def test_plots_are_the_same_bytes_whatever_the_user_has_set(long_run, response, tmp_path, which):
+    def draw(path):
+        if which == "frf":
+            plot_frf(path, long_run, response, "caption")
+        else:
+            plot_time(path, long_run)
+        return path.read_bytes()
+
+    first = draw(tmp_path / "first.png")
+    with matplotlib.rc_context({"axes.facecolor": "yellow", "xtick.labelsize": 20.0, "axes.grid": False}):
+        second = draw(tmp_path / "second.png")
+    assert first[:8] == b"\x89PNG\r\n\x1a\n"
+    assert first == second
+
+
+def test_plots_leave_no_global_figure(long_run, tmp_path):
+    before = "matplotlib.pyplot" in sys.modules
+    plot_time(tmp_path / "time.png", long_run)
+    assert ("matplotlib.pyplot" in sys.modules) == before
+
+
+def test_phase_breaks_where_it_wraps():
+    angle = np.radians([100.0, 170.0, 190.0, 260.0])
+    phase = wrapped_phase(np.exp(1j * angle))
+    np.testing.assert_allclose(phase[[0, 1, 3]], [100.0, 170.0, -100.0])
+    assert np.isnan(phase[2])
+
+
+def test_frequencies_that_the_plate_does_not_drive():
+    time = np.arange(20000) / 1000.0
+    lines = np.arange(5.0, 20.0, 0.05)  # a whole number of periods in 20 s: nothing leaks
+    phases = np.random.default_rng(2).uniform(0, 2 * np.pi, lines.size)
+    plate = sum(np.sin(2 * np.pi * f * time + p) / f for f, p in zip(lines, phases, strict=True))
+    inside = driven(1e-3, plate, np.array([2.0, 4.9, 6.0, 12.0, 19.0, 20.1, 40.0]))
+    np.testing.assert_array_equal(inside, [False, False, True, True, True, False, False])
+
+
+def test_liveliest_stretch():
+    time = np.arange(1001) / 100.0
+    values = np.where((time > 4.0) & (time < 5.0), 1.0, 0.1)
+    assert liveliest(time, values, 1.0) == pytest.approx(4.0, abs=0.011)
+    assert liveliest(time, values, 99.0) == 0.0
+
+
+def test_without_slip_the_knuckle_decides(run):
+    start, reason = excerpt_start(run.recording, "fl", 1.0, 0.1)
+    assert reason == "liveliest knuckle; no slip"
+    assert 0.0 <= start <= 0.2

@@ -1,0 +1,63 @@
+"""Lights, floor, background and off-screen buffer for pictures of the car."""
+
+from __future__ import annotations
+
+import mujoco
+
+FLOOR_COLOUR = (0.78, 0.80, 0.82, 1.0)
+BACKGROUND = (0.80, 0.825, 0.85)
+
+
+def add_studio(spec: mujoco.MjSpec, size: tuple[int, int], samples: int) -> None:
+    """Give a specification of the car what a picture needs; nothing of it has mass or touches anything.
+
+    Args:
+        spec: specification with its shapes; changed in place.
+        size: width and height of the largest picture [pixel].
+        samples: multisampling of the picture.
+    """
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = size
+    spec.visual.global_.fovy = 32.0
+    spec.visual.quality.offsamples = samples
+    # Nodes and members of the wireframe are thin; round ones would cost more than the whole car.
+    spec.visual.quality.numslices, spec.visual.quality.numstacks = 10, 4
+    spec.visual.headlight.ambient = [0.36, 0.37, 0.39]
+    spec.visual.headlight.diffuse = [0.22, 0.22, 0.22]
+    spec.visual.headlight.specular = [0.05, 0.05, 0.05]
+    spec.visual.map.znear = 0.01
+    spec.visual.map.zfar = 30.0
+    spec.visual.map.haze = 0.3
+    spec.visual.rgba.haze = [*BACKGROUND, 1.0]
+    spec.stat.extent = 4.0
+    spec.stat.center = [2.2, 0.0, 0.9]
+    spec.add_texture(
+        name="sky",
+        type=mujoco.mjtTexture.mjTEXTURE_SKYBOX,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
+        rgb1=BACKGROUND,
+        rgb2=BACKGROUND,
+        width=8,
+        height=48,
+    )
+    spec.add_material(name="floor", rgba=FLOOR_COLOUR, specular=0.1, shininess=0.2)
+    spec.worldbody.add_geom(
+        name="floor",
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=[0.0, 0.0, 0.05],
+        pos=[0.0, 0.0, -0.002],
+        material="floor",
+        contype=0,
+        conaffinity=0,
+    )
+    for direction, diffuse in (
+        ((0.55, -0.5, -0.75), (0.62, 0.61, 0.58)),
+        ((-0.5, 0.55, -0.5), (0.22, 0.235, 0.26)),
+        ((0.1, -1.0, -0.12), (0.16, 0.16, 0.16)),
+    ):
+        spec.worldbody.add_light(
+            dir=direction,
+            type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+            diffuse=diffuse,
+            specular=[0.15, 0.15, 0.15],
+            castshadow=False,
+        )

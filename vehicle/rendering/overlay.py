@@ -1,0 +1,200 @@
+"""What is written on a frame: input, time, factors, lamps of both dampers, colour bar, traces that run along."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, ImageDraw, ImageFont
+
+from vehicle.rendering.colour_scale import colours
+from vehicle.rendering.layout import Layout
+
+Picture = npt.NDArray[np.uint8]
+Vector = npt.NDArray[np.float64]
+
+INK = (28, 37, 48)
+PAPER = (245, 246, 248)
+STICK_COLOUR = (38, 140, 84)
+SLIP_COLOUR = (214, 48, 49)
+GRID = (208, 212, 218)
+TRACE_COLOURS = ((31, 95, 168), (46, 139, 87), (209, 73, 91))
+FINE = 2
+"""Traces are drawn this many times larger and reduced, which smooths their lines."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Trace:
+    """A channel that runs along under the picture."""
+
+    label: str
+    """quantity and unit"""
+    values: Vector
+    """in that unit, (n,)"""
+    top: float
+    """value at the upper edge; the lower edge is its negative"""
+    band: float | None = None
+    """half height of a shaded band"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Lamp:
+    """State of a damper."""
+
+    label: str
+    slipping: bool
+
+
+class Overlay:
+    """Draws onto frames of one size.
+
+    Args:
+        layout: where things are.
+        heading: lines at the upper left; the first is bold.
+        time: sample times of the traces [s], (n,).
+        traces: what runs along.
+        visible: length of the traces on the screen [s].
+        scale_top: displacement at the top of the colour bar [mm].
+    """
+
+    def __init__(
+        self,
+        layout: Layout,
+        heading: Sequence[str],
+        time: Vector,
+        traces: Sequence[Trace],
+        visible: float,
+        scale_top: float,
+    ) -> None:
+        self.layout, self.heading, self.time, self.traces = layout, tuple(heading), time, tuple(traces)
+        self.visible, self.scale_top = visible, scale_top
+        self.unit = layout.height / 720.0
+
+    def draw(self, picture: Picture, time: float, lamps: Sequence[Lamp]) -> Picture:
+        """Finish a frame.
+
+        Args:
+            picture: views of the car, (height above the traces, width, 3).
+            time: [s].
+            lamps: states of the dampers.
+
+        Returns:
+            The whole frame, (height, width, 3).
+        """
+        layout = self.layout
+        image = self.backdrop.copy()
+        image.paste(Image.fromarray(np.ascontiguousarray(picture)), (0, 0))
+        pen = ImageDraw.Draw(image)
+        self._head(pen, time)
+        self._lamps(pen, lamps)
+        image.paste(self.colour_bar, (self._px(16), layout.view_height - self.colour_bar.height - self._px(10)))
+        pen.line([(layout.main_width, 0), (layout.main_width, layout.view_height)], fill=PAPER, width=self._px(3))
+        self._run(image, time)
+        return np.asarray(image)
+
+    def _px(self, length: float) -> int:
+        """A length of the 720 line picture in this picture [pixel]."""
+        return max(round(length * self.unit), 1)
+
+    def _font(self, size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
+        return _font(max(round(size * self.unit), 6), bold)
+
+    def _head(self, pen: ImageDraw.ImageDraw, time: float) -> None:
+        """Input and level, time, factors."""
+        x, y = self._px(16), self._px(12)
+        for number, line in enumerate((*self.heading, f"t = {time:.3f} s")):
+            bold = number in (0, len(self.heading))
+            pen.text((x, y), line, fill=INK, font=self._font(21 if number == 0 else 17, bold))
+            y += self._px(28 if number == 0 else 24)
+
+    def _lamps(self, pen: ImageDraw.ImageDraw, lamps: Sequence[Lamp]) -> None:
+        """One lamp for each damper on a white plate above the close-up."""
+        right, radius, row = self.layout.width - self._px(12), self._px(9), self._px(30)
+        left, top = right - self._px(236), self._px(12)
+        pen.rounded_rectangle([left, top, right, top + row * len(lamps) + self._px(6)], self._px(8), fill=PAPER)
+        for number, lamp in enumerate(lamps):
+            y = top + self._px(3) + row * number + row // 2
+            colour = SLIP_COLOUR if lamp.slipping else STICK_COLOUR
+            x = left + self._px(20)
+            pen.ellipse([x - radius, y - radius, x + radius, y + radius], fill=colour, outline=INK)
+            pen.text((x + self._px(20), y), lamp.label, fill=INK, font=self._font(16), anchor="lm")
+            word = "SLIP" if lamp.slipping else "STICK"
+            pen.text((right - self._px(12), y), word, fill=colour, font=self._font(16, True), anchor="rm")
+
+    @cached_property
+    def colour_bar(self) -> Image.Image:
+        """Scale of the wireframe's colours on a white plate."""
+        width, height = self._px(384), self._px(56)
+        image = Image.new("RGB", (width, height), PAPER)
+        pen = ImageDraw.Draw(image)
+        pen.text(
+            (self._px(8), self._px(4)),
+            "true displacement of the body [mm]; grey: at rest",
+            fill=INK,
+            font=self._font(14),
+        )
+        left, right, top, bottom = self._px(10), width - self._px(10), self._px(23), self._px(35)
+        shades = (255.0 * colours(np.linspace(0.0, 1.0, right - left), 1.0)[:, :3]).astype(np.uint8)
+        image.paste(Image.fromarray(np.repeat(shades[None], bottom - top, axis=0)), (left, top))
+        for share, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
+            text = f"{share * self.scale_top:.3g}"
+            place = (left + share * (right - left), bottom + self._px(3))
+            pen.text(place, text, fill=INK, font=self._font(13), anchor=anchor)
+        return image
+
+    @cached_property
+    def backdrop(self) -> Image.Image:
+        """Everything in the strip of the traces that stands still."""
+        layout = self.layout
+        image = Image.new("RGB", (layout.width, layout.height), PAPER)
+        pen = ImageDraw.Draw(image)
+        for (top, bottom), trace, colour in zip(self._rows, self.traces, TRACE_COLOURS, strict=False):
+            middle = (top + bottom) / 2
+            pen.text((self._px(12), middle), trace.label, fill=colour, font=self._font(14, True), anchor="lm")
+            x = layout.trace_left - self._px(6)
+            pen.text((x, top), f"{trace.top:g}", fill=INK, font=self._font(11), anchor="rt")
+            pen.text((x, bottom), f"{-trace.top:g}", fill=INK, font=self._font(11), anchor="rb")
+        return image
+
+    @cached_property
+    def _rows(self) -> list[tuple[int, int]]:
+        """Upper and lower edge of each trace in the frame [pixel]."""
+        layout, gap = self.layout, self._px(6)
+        height = (layout.height - layout.view_height - gap) // max(len(self.traces), 1)
+        first = layout.view_height + gap
+        return [(first + height * row, first + height * (row + 1) - gap) for row in range(len(self.traces))]
+
+    def _run(self, image: Image.Image, now: float) -> None:
+        """Traces with the present in the middle."""
+        layout = self.layout
+        width = layout.width - layout.trace_left - self._px(10)
+        begin = now - self.visible / 2
+        first, last = np.searchsorted(self.time, [begin, begin + self.visible])
+        part = slice(max(first - 1, 0), last + 1)
+        across = (self.time[part] - begin) / self.visible * width * FINE
+        for (top, bottom), trace, colour in zip(self._rows, self.traces, TRACE_COLOURS, strict=False):
+            height = (bottom - top) * FINE
+            panel = Image.new("RGB", (width * FINE, height), (255, 255, 255))
+            pen = ImageDraw.Draw(panel)
+            if trace.band is not None:
+                share = min(trace.band / trace.top, 1.0)
+                pen.rectangle(
+                    [0, height / 2 * (1 - share), width * FINE, height / 2 * (1 + share)], fill=(226, 240, 231)
+                )
+            pen.line([(0, height / 2), (width * FINE, height / 2)], fill=GRID, width=FINE)
+            up = height / 2 * (1.0 - trace.values[part] / trace.top)
+            pen.line(list(zip(across.tolist(), up.tolist(), strict=True)), fill=colour, width=FINE + 1)
+            pen.line([(width * FINE / 2, 0), (width * FINE / 2, height)], fill=INK, width=FINE)
+            image.paste(panel.resize((width, bottom - top), Image.Resampling.BOX), (layout.trace_left, top))
+
+
+def _font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
+    """DejaVu Sans, which comes with matplotlib."""
+    import matplotlib
+
+    name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
+    return ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / name), size)

@@ -1,0 +1,261 @@
+"""One excerpt of a run, drawn frame by frame: the car, a close-up, and what is written on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError
+from vehicle.names import SIDE_OF_WHEEL, WHEELS
+from vehicle.rendering.canvas import Canvas
+from vehicle.rendering.coil import Coil
+from vehicle.rendering.colour_scale import colours, round_up
+from vehicle.rendering.exaggeration import Motion, State, round_factor
+from vehicle.rendering.excerpt import excerpt_start
+from vehicle.rendering.layout import Layout
+from vehicle.rendering.overlay import Lamp, Overlay, Trace
+from vehicle.rendering.recorded_run import RecordedRun
+from vehicle.rendering.stage import close_up, stage_model, whole_car
+from vehicle.rendering.wireframe import Wireframe
+from vehicle.shapes import SHELL
+
+Picture = npt.NDArray[np.uint8]
+Vector = npt.NDArray[np.float64]
+
+VISIBLE_TRAVEL = 0.08
+"""Travel [m] to which the largest displacement of the excerpt is exaggerated."""
+
+LARGEST_FACTOR = 1000.0
+"""Largest exaggeration that is chosen by itself: a car at rest stays at rest in the film."""
+
+FASTEST_MOTION = 40.0
+"""Frequency [Hz] up to which the car moves visibly; a film with fewer than two frames per period says so."""
+
+VISIBLE_TIME = 2.0
+"""Seconds of the record that the traces show at once in real time; over the root of the slow motion otherwise."""
+
+GHOSTS = ("tyre", "rim", "wheel_bolts")
+GHOST_OPACITY = 0.22
+"""The wheel hides the strut in the close-up."""
+
+CLEARED = (*SHELL, "body_seats", "body_dashboard", "body_floor", "body_exhaust", "body_front_structure")
+"""Shapes left out of the close-up."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cut:
+    """What of a record a film shows, and how.
+
+    Attributes:
+        start: first time [s].
+        frames: number of frames.
+        fps: frames per second of the film [Hz].
+        slow: how many times slower than the record.
+        exaggeration: factor of all motion.
+        reason: why it starts there.
+    """
+
+    start: float
+    frames: int
+    fps: float
+    slow: float
+    exaggeration: float
+    reason: str
+
+    @property
+    def interval(self) -> float:
+        """Time of the record between two frames [s]."""
+        return 1.0 / (self.fps * self.slow)
+
+    @property
+    def end(self) -> float:
+        """Time of the last frame [s]."""
+        return self.start + (self.frames - 1) * self.interval
+
+
+class Shot:
+    """One excerpt of a run, ready to be drawn frame by frame.
+
+    Args:
+        run: the run.
+        layout: frame.
+        start, duration, slow, exaggeration, fps: as for `film`.
+
+    Raises:
+        ConfigurationError: an option is out of range.
+    """
+
+    def __init__(
+        self,
+        run: RecordedRun,
+        layout: Layout,
+        *,
+        start: float | None,
+        duration: float,
+        slow: float,
+        exaggeration: float | None,
+        fps: float,
+    ) -> None:
+        self.run, self.layout = run, layout
+        recording = run.recording
+        _check_options(float(recording.time[-1]), start, duration, slow, exaggeration, fps)
+        self.slip = run.car.model.vehicle.damper.slip_velocity
+        length = duration / slow
+        reason = "chosen"
+        if start is None:
+            start, reason = excerpt_start(recording, run.wheel, self.slip, length)
+        length = min(length, float(recording.time[-1]) - start)
+        frames = max(int(length * slow * fps + 1e-9), 1)
+        self.model = stage_model(run.car.model, (layout.width, layout.view_height))
+        self.motion = Motion(self.model, recording, start, start + length)
+        self.wireframe = Wireframe(run.car.model, self.motion)
+        times = start + np.arange(frames) / (fps * slow)
+        self.exposure = 1.0 / (fps * slow)
+        largest, node = self._largest(times)
+        self.cut = Cut(
+            start=start,
+            frames=frames,
+            fps=fps,
+            slow=slow,
+            exaggeration=round_factor(VISIBLE_TRAVEL / largest) if exaggeration is None else exaggeration,
+            reason=reason,
+        )
+        self.visible = VISIBLE_TIME / np.sqrt(slow)
+        self.scale_top = 1e-3 * round_up(1e3 * node)
+        self.overlay = Overlay(
+            layout, self._heading(), recording.time, self._traces(), self.visible, 1e3 * self.scale_top
+        )
+
+    def frames(self, backend: str) -> Iterator[Picture]:
+        """Draw all frames, (height, width, 3) each."""
+        layout, model = self.layout, self.model
+        data = mujoco.MjData(model)
+        # Lights and cameras take their places once; the geoms are then placed frame by frame.
+        for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
+            place(model, data)
+        coils = [Coil(self.motion, wheel) for wheel in WHEELS]
+        views = self._views()
+        with Canvas(model, (layout.width, layout.view_height), backend) as canvas:
+            for number in range(self.cut.frames):
+                time = self.cut.start + number * self.cut.interval
+                state = self.motion.at(time, self.exposure)
+                self._place(data, coils, state)
+                for coil in coils:
+                    canvas.upload(coil.mesh)
+                places = self.wireframe.places(state, self.cut.exaggeration)
+                shades = colours(self.wireframe.displacement(state), self.scale_top)
+                for camera, viewport, opacities in views:
+                    with _opacity(model, opacities):
+                        canvas.update(data, camera)
+                        self.wireframe.draw(canvas.scene, places, shades)
+                        canvas.render(viewport)
+                yield self.overlay.draw(canvas.read(), time, self._lamps(time))
+
+    def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], dict[str, float]]]:
+        """Camera, viewport and changed opacities of each view."""
+        layout, wheel = self.layout, self.run.wheel
+        ghosts = {f"{name}_{wheel}": GHOST_OPACITY for name in GHOSTS}
+        right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
+        return [
+            (whole_car(), (0, 0, layout.main_width, layout.view_height), {}),
+            (close_up(self.motion, wheel), right, ghosts | dict.fromkeys(CLEARED, 0.0)),
+        ]
+
+    def _place(self, data: mujoco.MjData, coils: list[Coil], state: State) -> None:
+        """Write the exaggerated poses of all geoms."""
+        factor = self.cut.exaggeration
+        data.geom_xpos[:], data.geom_xmat[:] = self.motion.geoms(state, factor)
+        for coil in coils:
+            coil.write(data, coil.places(state, factor))
+
+    def _largest(self, times: Vector) -> tuple[float, float]:
+        """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
+        parts, nodes = [], []
+        moving = [self.model.body(f"{part}_{wheel}").id for part in ("knuckle", "plate") for wheel in WHEELS]
+        for time in times:
+            state = self.motion.at(time, self.exposure)
+            parts.append(np.linalg.norm(state.translation[moving], axis=1))
+            nodes.append(self.wireframe.displacement(state))
+        largest = max(float(np.max(parts)), float(np.max(nodes)), VISIBLE_TRAVEL / LARGEST_FACTOR)
+        return largest, float(np.quantile(nodes, 0.97))
+
+    def _heading(self) -> list[str]:
+        """Input and level; factors and excerpt."""
+        run, cut = self.run, self.cut
+        speed = "real time" if cut.slow == 1.0 else f"slow motion 1 : {cut.slow:g}"
+        highest = 0.5 / cut.interval
+        if highest < FASTEST_MOTION:
+            speed += f" (faster than {highest:g} Hz averages out)"
+        return [
+            f"{Path(run.signal.source).name}: RMS {1e3 * run.signal.rms(run.wheel):.3g} mm under the "
+            f"{SIDE_OF_WHEEL[run.wheel]} front wheel",
+            f"motion exaggerated {cut.exaggeration:g} times, {speed}",
+            f"excerpt from {cut.start:.2f} s ({cut.reason})",
+        ]
+
+    def _traces(self) -> list[Trace]:
+        """Traces under the picture, scaled to the excerpt."""
+        recording, wheel = self.run.recording, self.run.wheel
+        ahead = 0.5 * self.visible
+        inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
+        found = []
+        for label, channel, scale, band in (
+            ("plate [mm]", f"plate_{wheel}_displacement", 1e3, None),
+            ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
+            (f"damper {SIDE_OF_WHEEL[wheel]} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
+        ):
+            values = scale * recording[channel]
+            top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0)))
+            found.append(Trace(label=label, values=values, top=top, band=band))
+        return found
+
+    def _lamps(self, time: float) -> list[Lamp]:
+        """Whether a damper slipped at any sample of the time between two frames."""
+        recording = self.run.recording
+        half = max(0.5 * self.cut.interval, 0.5 * recording.timestep)
+        first, last = np.searchsorted(recording.time, [time - half, time + half])
+        part = slice(int(first), max(int(last), int(first) + 1))
+        return [
+            Lamp(
+                label=f"damper {SIDE_OF_WHEEL[wheel]}",
+                slipping=bool(np.any(np.abs(recording[f"damper_{wheel}_velocity"][part]) > self.slip)),
+            )
+            for wheel in WHEELS
+        ]
+
+
+@contextmanager
+def _opacity(model: mujoco.MjModel, opacities: Mapping[str, float]) -> Iterator[None]:
+    """Draw some shapes with another opacity; 0 leaves them out."""
+    materials = [model.material(name).id for name in opacities]
+    before = model.mat_rgba[materials, 3].copy()
+    model.mat_rgba[materials, 3] = list(opacities.values())
+    try:
+        yield
+    finally:
+        model.mat_rgba[materials, 3] = before
+
+
+def _check_options(
+    record: float, start: float | None, duration: float, slow: float, exaggeration: float | None, fps: float
+) -> None:
+    """Refuse what cannot be shown, with the name of the option."""
+    wrong = None
+    if start is not None and not 0.0 <= start < record:
+        wrong = f"start: found {start:g} s, the record goes from 0 to {record:g} s"
+    elif not 0.0 < duration < float("inf"):
+        wrong = f"duration: found {duration:g} s, must be above 0 and finite"
+    elif not 1.0 <= slow < float("inf"):
+        wrong = f"slow motion: found {slow:g}, must be at least 1"
+    elif exaggeration is not None and not 0.0 < exaggeration < float("inf"):
+        wrong = f"exaggeration: found {exaggeration:g}, must be above 0 and finite"
+    elif not 1.0 <= fps <= 240.0:
+        wrong = f"frames per second: found {fps:g}, must be between 1 and 240"
+    if wrong is not None:
+        raise ConfigurationError(f"film, {wrong}")
