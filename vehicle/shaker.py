@@ -36,7 +36,13 @@ def parser() -> Parser:
     found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
     found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
     found.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
-    found.add_argument("--video-duration", type=float, default=10.0, metavar="S", help="length of the film [s]; slow motion shows less of the record in it")
+    found.add_argument(
+        "--video-duration",
+        type=float,
+        default=10.0,
+        metavar="S",
+        help="length of the film [s]; slow motion shows less of the record in it",
+    )
     found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower")
     found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")

@@ -31,7 +31,10 @@ CASES = {
         "bushings.rear_support.damping=[100.0, 500.0, -1.0]",
         "bushings.rear_support.damping: found -1.0 N s/m, must be at least 0.0",
     ),
-    "22 negative viscous damping": ("damper.viscous=-2250", "damper.viscous: found -2250.0 N s/m, must be at least 0.0"),
+    "22 negative viscous damping": (
+        "damper.viscous=-2250",
+        "damper.viscous: found -2250.0 N s/m, must be at least 0.0",
+    ),
     "22 negative friction": (
         "damper.coulomb_friction=-0.1",
         "damper.coulomb_friction: found -0.1 N, must be at least 0.0",
@@ -118,7 +121,7 @@ CASES = {
         "name: found 'a\\nb', allowed are names of letters, digits, '_', '.', '-'",
     ),
     "32 quote in a file name": (
-        "body.superelement=\"it's\"",
+        'body.superelement="it\'s"',
         "body.superelement: found \"it's\", allowed are names of letters, digits, '_', '.', '-'",
     ),
 }
@@ -137,9 +140,7 @@ def test_item_28_static_friction_below_sliding():
     # Only with the Stribeck law, where it means something.
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(None, ["damper.friction_law=stribeck", "damper.stribeck_friction=60"])
-    assert str(caught.value) == (
-        "damper.stribeck_friction: found 60.0 N, must be at least coulomb_friction (125.0 N)"
-    )
+    assert str(caught.value) == ("damper.stribeck_friction: found 60.0 N, must be at least coulomb_friction (125.0 N)")
     load_vehicle(None, ["damper.stribeck_friction=60"])
 
 
@@ -168,7 +169,11 @@ FILES = {
         "# nothing",
         "damper.viscous: missing; every parameter must be given [N s/m]",
     ),
-    "30 unknown hardpoint": ('["engine_cog"]', '["engine_kog"]', "parts.engine.between: unknown hardpoint 'engine_kog'"),
+    "30 unknown hardpoint": (
+        '["engine_cog"]',
+        '["engine_kog"]',
+        "parts.engine.between: unknown hardpoint 'engine_kog'",
+    ),
     "31 not TOML": ("gravity = 9.81", "gravity = 9,81", "not a TOML file: "),
     "31 given twice": ("gravity = 9.81", "gravity = 9.81\ngravity = 9.8", "not a TOML file: "),
 }

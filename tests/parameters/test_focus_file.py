@@ -34,7 +34,7 @@ def value_lines():
 def fields_by_path(cls=Vehicle, prefix=""):
     """Unit of the field metadata by dotted path; None for switches without a unit."""
     hints = typing.get_type_hints(cls)
-    found = {}
+    found: dict[str, str | None] = {}
     for entry in dataclasses.fields(cls):
         hint = hints[entry.name]
         if dataclasses.is_dataclass(hint):
@@ -128,7 +128,8 @@ def test_overrides_change_one_value_and_not_the_table():
     [
         (
             "damper.coulomb_fricton=1",
-            "--set damper.coulomb_fricton=1: no parameter damper.coulomb_fricton; the nearest is damper.coulomb_friction",
+            "--set damper.coulomb_fricton=1: no parameter damper.coulomb_fricton; "
+            "the nearest is damper.coulomb_friction",
         ),
         ("damper", "--set damper: needed is PATH=VALUE, as in damper.coulomb_friction=93.75"),
         ("=3", "--set =3: needed is PATH=VALUE, as in damper.coulomb_friction=93.75"),
@@ -151,6 +152,6 @@ def test_bad_overrides(assignment, message):
 def test_parameters_are_frozen():
     car = load_vehicle()
     with pytest.raises(dataclasses.FrozenInstanceError):
-        car.damper.viscous = 1.0
+        car.damper.viscous = 1.0  # type: ignore[misc]
     with pytest.raises(TypeError):
-        car.parts["engine"] = car.parts["tyre"]
+        car.parts["engine"] = car.parts["tyre"]  # type: ignore[index]

@@ -93,6 +93,8 @@ def _empty_spec(vehicle: Vehicle) -> mujoco.MjSpec:
     spec.modelname = vehicle.name
     spec.compiler.degree = False
     spec.compiler.autolimits = True
+    # Compiled callbacks find their arrays through the user data of a state.
+    spec.nuserdata = 4
     option = spec.option
     option.timestep = vehicle.solver.timestep
     option.gravity = [0.0, 0.0, -vehicle.gravity]

@@ -6,13 +6,41 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import solve_ivp
+from scipy.integrate import LSODA, solve_ivp
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.laws.switch import Switch
 from vehicle.lumped.drive import AtRest, Drive
 from vehicle.lumped.history import Array, History
 from vehicle.lumped.state_space import StateSpace
+
+
+MOST_STEPS = 200_000
+"""Half a minute of solving; the published half second of the mass on a damper takes 700 steps."""
+
+
+class _LimitedLSODA(LSODA):  # type: ignore[misc]
+    """LSODA that gives up after a number of steps."""
+
+    def __init__(self, *arguments: Any, most_steps: int, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.most_steps = most_steps
+        self.taken = 0
+
+    def step(self) -> str | None:
+        """Advance by one step.
+
+        Raises:
+            SimulationError: all steps are taken.
+        """
+        if self.taken >= self.most_steps:
+            raise SimulationError(
+                f"switch model: stopped at t = {self.t:g} s of {self.t_bound:g} s after most_steps = "
+                f"{self.most_steps} steps; widen the stick band, lengthen the return time, or allow more steps"
+            )
+        self.taken += 1
+        message: str | None = super().step()
+        return message
 
 
 def switch_solution(
@@ -25,6 +53,7 @@ def switch_solution(
     initial: npt.ArrayLike | None = None,
     relative: float = 1e-6,
     longest_step: float = 1e-3,
+    most_steps: int = MOST_STEPS,
 ) -> History:
     """Solve x' = alpha f+ + (1 - alpha) f- with the mixing alpha of the switch model.
 
@@ -40,18 +69,21 @@ def switch_solution(
         initial: state at the first time, shape (s,); zero where not given.
         relative: relative tolerance of the solver; the absolute one of velocities is a hundredth of the band.
         longest_step: upper bound of the solver's step [s].
+        most_steps: number of steps after which the run is given up; a law that chatters would take for ever.
 
     Returns:
         The history at the sample times.
 
     Raises:
-        ConfigurationError: a stack of models, no or several sliding pairs, or one that touches the road.
-        SimulationError: the solver gave up.
+        ConfigurationError: a stack of models, no or several sliding pairs, or one that touches the road; no steps.
+        SimulationError: the solver gave up, or took too many steps.
 
     Source: Bommer 2006, appendix A (Leine and Nijmeijer).
     """
     if model.models or len(model.slides) != 1 or model.slide_road_rate.any():
         raise ConfigurationError("switch_solution: needed is a single model with one sliding pair off the road")
+    if most_steps < 1:
+        raise ConfigurationError(f"most_steps: found {most_steps!r}, must be at least 1")
     times = np.asarray(time, dtype=float)
     size, n = model.state.shape[-1], len(model.coordinates)
     start = np.zeros(size) if initial is None else np.asarray(initial, dtype=float)
@@ -77,7 +109,8 @@ def switch_solution(
         right_hand_side,
         (times[0], times[-1]),
         start,
-        method="LSODA",
+        method=_LimitedLSODA,
+        most_steps=most_steps,
         t_eval=times,
         rtol=relative,
         atol=absolute,

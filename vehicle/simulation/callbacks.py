@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import mujoco
 
 from vehicle.errors import SimulationError
 from vehicle.simulation.element_rows import ElementRows
+
+if TYPE_CHECKING:
+    from vehicle.simulation.native_callback import NativeCallback
 
 
 def _write_log(log: mujoco.MjLogConfig, *, console: bool, file: bool) -> None:
@@ -18,7 +22,7 @@ def _write_log(log: mujoco.MjLogConfig, *, console: bool, file: bool) -> None:
 
 
 @contextmanager
-def installed(rows: ElementRows) -> Iterator[None]:
+def installed(rows: ElementRows, native: NativeCallback | None = None) -> Iterator[None]:
     """Install the callbacks of one simulation for the time of a `with` block.
 
     Callbacks are global to the process: they are refused while others are installed, they check which model calls
@@ -26,6 +30,8 @@ def installed(rows: ElementRows) -> Iterator[None]:
 
     Args:
         rows: element laws of the model that will be stepped inside the block.
+        native: their compiled form, to be installed instead; it acts on the states that it is attached to,
+            and is detached from them at the end.
 
     Raises:
         SimulationError: other callbacks are installed already.
@@ -39,9 +45,9 @@ def installed(rows: ElementRows) -> Iterator[None]:
         if model is rows.model or model._address == rows.model._address:
             rows(model, data)
 
-    mujoco.set_mjcb_control(control)
-    mujoco.set_mjcb_act_gain(rows.actuator_gain)
-    mujoco.set_mjcb_act_bias(rows.actuator_bias)
+    mujoco.set_mjcb_control(control if native is None else native.control)
+    mujoco.set_mjcb_act_gain(rows.actuator_gain if native is None else native.gain)
+    mujoco.set_mjcb_act_bias(rows.actuator_bias if native is None else native.bias)
     log = mujoco.MjLogConfig.get()
     written = (log.logto_console, log.logto_file)
     # MuJoCo would print its warnings and append them to a file in the user's folder; the run reads its counters.
@@ -53,3 +59,5 @@ def installed(rows: ElementRows) -> Iterator[None]:
         mujoco.set_mjcb_control(None)
         mujoco.set_mjcb_act_gain(None)
         mujoco.set_mjcb_act_bias(None)
+        if native is not None:
+            native.detach()

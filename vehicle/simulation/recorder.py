@@ -28,6 +28,7 @@ class Recorder:
         model, data: its prepared model and state.
         rows: its element laws.
         samples: number of recorded samples.
+        every: steps between two recorded samples.
         pose_every: samples between two stored poses.
     """
 
@@ -39,11 +40,12 @@ class Recorder:
         rows: ElementRows,
         *,
         samples: int,
+        every: int,
         pose_every: int,
     ) -> None:
         self.car, self.model, self.data, self.rows = car, model, data, rows
         self.step = model.opt.timestep
-        self.samples, self.pose_every = samples, pose_every
+        self.samples, self.every, self.pose_every = samples, every, pose_every
         e = rows.elements
         self.dampers = e.damper_dofs
         self.actuators = [model.actuator(f"damper_{wheel}").id for wheel in WHEELS]
@@ -112,6 +114,12 @@ class Recorder:
             if self.energy_at_start is None:
                 self.energy_at_start = energy
             self.energy_at_end = energy
+
+    def keep(self, count: int, poses: Vector, pose_index: npt.NDArray[np.intp]) -> None:
+        """Count samples that a compiled loop has written into the buffers, and take over its poses."""
+        self.filled += count
+        self.poses.extend(poses.copy())
+        self.pose_index.extend(int(sample) for sample in pose_index)
 
     def finite_samples(self) -> int:
         """Number of buffered samples before the first one that is not finite."""

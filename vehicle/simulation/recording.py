@@ -31,14 +31,27 @@ class Energies:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Statistics:
-    """How the run was computed."""
+    """How the run was computed.
+
+    Attributes:
+        engine: "mujoco".
+        callback: form of the element laws, "native" or "python".
+        timestep: [s].
+        steps: number of steps.
+        wall_time: computing time [s].
+        warnings: sentences about the validity of the results.
+        energies: energy balance.
+        notices: sentences about the way of computing.
+    """
 
     engine: str
+    callback: str
     timestep: float
     steps: int
     wall_time: float
     warnings: tuple[str, ...]
     energies: Energies
+    notices: tuple[str, ...] = ()
 
     @property
     def realtime_factor(self) -> float:

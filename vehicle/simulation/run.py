@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
-from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.element_rows import ElementRows, prepare_model
+from vehicle.simulation.native import native_callback
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recorder import CHUNK, Recorder
 from vehicle.simulation.recording import Recording, Statistics
 
+if TYPE_CHECKING:
+    from vehicle.simulation.native_callback import NativeCallback
+    from vehicle.simulation.native_loop import NativeLoop
+
+Vector = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
 
 POSE_RATE = 100.0
@@ -28,19 +36,24 @@ LARGEST_STATE = 1e8
 """Velocity or acceleration beyond which a state is lost, long before it is infinite; the limit of MuJoCo is higher."""
 
 
-def simulate(car: CarModel, signal: Signal, *, progress: Progress | None = None) -> Recording:
+def simulate(
+    car: CarModel, signal: Signal, *, progress: Progress | None = None, native: bool | None = None
+) -> Recording:
     """Run a car on its shaker plates.
 
     Args:
         car: compiled and trimmed car.
         signal: displacement of the plates.
         progress: called with the finished fraction [-] now and then.
+        native: True for the compiled form of the element laws, False for the Python form; by default the compiled
+            one where it can be had, with a notice where not.
 
     Returns:
         The recording, sampled at `solver.record_rate`.
 
     Raises:
         ConfigurationError: the recording rate is no whole fraction of the step rate.
+        MissingPartError: `native` is True and the compiled form cannot be had; the message says why.
         SimulationError: the state is no longer finite, or MuJoCo warned; the message says when and where.
     """
     every = record_every(car)
@@ -54,43 +67,82 @@ def simulate(car: CarModel, signal: Signal, *, progress: Progress | None = None)
     count -= count % every
     times = step * np.arange(count + 1)
     motion = PlateArrays.of(signal, times)
-    plates = [model.body_mocapid[model.body(f"plate_{wheel}").id] for wheel in WHEELS]
-    height = data.mocap_pos[plates, 2].copy()
-    recorder = Recorder(car, model, data, rows, samples=count // every + 1, pose_every=_pose_every(car, every))
-    heights = height + motion.displacement
+    plates = [int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in WHEELS]
+    heights = data.mocap_pos[plates, 2] + motion.displacement
+    callback, notices = _compiled(rows, native)
+    pose_every = _pose_every(car, every)
+    recorder = Recorder(car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every)
+    loop = None if callback is None else _native_loop(callback, recorder, motion, heights, plates)
     started = clock.perf_counter()
-    with installed(rows):
-        for index in range(count + 1):
-            data.mocap_pos[plates, 2] = heights[index]
-            rows.plate_velocity[:, 2] = motion.velocity[index]
-            rows.plate_acceleration[:, 2] = motion.acceleration[index]
-            if index % every:
-                mujoco.mj_step(model, data)
-                continue
-            recorder.before_step()
-            if index < count:
-                mujoco.mj_step(model, data)
+    with installed(rows, callback):
+        index = 0
+        while index <= count:
+            # The first and the last sample also ask for the energy of the car, so they are taken one by one.
+            last = every * min(recorder.done + CHUNK - 1, count // every - 1)
+            if loop is not None and 0 < index <= last:
+                loop.advance(index, last)
+                index = last
             else:
-                mujoco.mj_forward(model, data)
-            recorder.after_step(moved=index < count)
-            if recorder.filled == CHUNK or index == count:
+                data.mocap_pos[plates, 2] = heights[index]
+                rows.plate_velocity[:, 2] = motion.velocity[index]
+                rows.plate_acceleration[:, 2] = motion.acceleration[index]
+                _step(model, data, recorder, recorded=index % every == 0, moved=index < count)
+            if index == count or recorder.filled == CHUNK:
                 _check_state(model, data, recorder, every * step)
                 recorder.flush(motion, index, every)
                 if progress is not None:
                     progress(index / count)
+            index += 1
     wall = clock.perf_counter() - started
     warnings = _warnings(data)
     if warnings:
         raise SimulationError(f"MuJoCo warned during the run: {'; '.join(warnings)}; no result of it may be used")
     statistics = Statistics(
         engine="mujoco",
+        callback="python" if callback is None else "native",
         timestep=step,
         steps=count,
         wall_time=wall,
         warnings=recorder.warnings(),
         energies=recorder.energies(),
+        notices=notices,
     )
     return recorder.recording(signal, statistics)
+
+
+def _compiled(rows: ElementRows, native: bool | None) -> tuple[NativeCallback | None, tuple[str, ...]]:
+    """The compiled callbacks, and a notice where they were wished for and cannot be had."""
+    if native is False:
+        return None, ()
+    callback = native_callback(rows)
+    if not isinstance(callback, str):
+        return callback, ()
+    if native:
+        raise MissingPartError(callback)
+    return None, (callback,)
+
+
+def _native_loop(
+    callback: NativeCallback, recorder: Recorder, motion: PlateArrays, heights: Vector, plates: list[int]
+) -> NativeLoop:
+    """The compiled loop of a run whose callbacks are compiled."""
+    # The compiler is heavy and optional: it is imported only where it is used.
+    from vehicle.simulation.native_loop import NativeLoop
+
+    callback.attach(recorder.data)
+    return NativeLoop(callback, recorder, motion, heights, plates)
+
+
+def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, recorded: bool, moved: bool) -> None:
+    """One step, or the evaluation that ends the run; recorded where asked."""
+    if recorded:
+        recorder.before_step()
+    if moved:
+        mujoco.mj_step(model, data)
+    else:
+        mujoco.mj_forward(model, data)
+    if recorded:
+        recorder.after_step(moved=moved)
 
 
 def record_every(car: CarModel) -> int:
