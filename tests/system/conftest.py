@@ -24,7 +24,9 @@ class Outcome:
 
 
 @pytest.fixture
-def shaker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable:
+def shaker(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., Outcome]:
     """Run the shaker command in an empty folder."""
     monkeypatch.chdir(tmp_path)
 

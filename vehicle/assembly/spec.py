@@ -28,8 +28,8 @@ JOINT_TIME_STEPS = 4.0
 JOINT_IMPEDANCE = 0.9999
 """Impedance of the ideal joints; the residue 1e-4 of the constraint acceleration stays unanswered."""
 
-PLATE_HEIGHT = 0.02
-"""Half thickness [m] of the plates under the tyres."""
+LEAST_FRICTION = 1e-9
+"""Friction [N] written where a damper has none, so that its row exists."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -274,7 +274,9 @@ class _Builder:
             row.solimp = [JOINT_IMPEDANCE, JOINT_IMPEDANCE, 0.001, 0.5, 2.0]
         law = connection.law
         if law is not None:
-            constants = np.concatenate([law.stiffness, law.damping, law.branch_stiffness, law.branch_time])
+            # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
+            branch_damping = law.branch_stiffness * law.branch_time
+            constants = np.concatenate([law.stiffness, law.damping, law.branch_stiffness, branch_damping])
             self._numeric(f"law/{connection.name}", [*constants, law.rotational_stiffness, float(law.averaged)])
         if connection.node is not None:
             self._node_shape(connection.name, connection.node)
@@ -295,7 +297,8 @@ class _Builder:
     def add_damper(self, wheel: str) -> None:
         """Damper as a user actuator on its slide joint; the joint's friction row holds the set-valued part."""
         name, damper = f"damper_{wheel}", self.vehicle.damper
-        self.spec.joint(name).frictionloss = damper.coulomb_friction
+        # MuJoCo makes no friction row for a joint without friction; the callback sets the limit anyway.
+        self.spec.joint(name).frictionloss = max(damper.coulomb_friction, LEAST_FRICTION)
         # The equality row carries the half step of the viscous part; in a plain viewer it holds the damper.
         self.spec.add_equality(name=name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name)
         stribeck = damper.friction_law == "stribeck"

@@ -83,8 +83,8 @@ def _check_step(model: mujoco.MjModel, static: StaticTrim) -> None:
     step = model.opt.timestep
     jacobian = data.efc_J.reshape(e.row_count, model.nv)
     explicit, averaged = np.zeros(e.row_count), np.zeros(e.row_count)
-    # Branches are averaged over three steps, which is stable whatever their stiffness.
-    total = e.stiffness
+    # A branch that is averaged over three steps is stable whatever its stiffness.
+    total = e.stiffness + np.where(rows.branch_average < UNCONDITIONAL, e.branch_stiffness * rows.decay, 0.0)
     explicit[e.rows] = np.where(e.averaged[:, None], 0.0, total)
     averaged[e.rows] = np.where(e.averaged[:, None], total, 0.0)
     explicit[e.rotation_rows] = e.rotation_stiffness

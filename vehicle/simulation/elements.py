@@ -152,7 +152,7 @@ def read_elements(model: mujoco.MjModel) -> Elements:
         stiffness=table[:, 0:3].copy(),
         damping=table[:, 3:6].copy(),
         branch_stiffness=table[:, 6:9].copy(),
-        branch_time=table[:, 9:12].copy(),
+        branch_time=np.divide(table[:, 9:12], table[:, 6:9], out=np.zeros((len(laws), 3)), where=table[:, 6:9] > 0.0),
         averaged=table[:, 13] > 0.0,
         rotation_rows=np.array(rotation_rows, dtype=np.intp).reshape(-1, 3),
         rotation_stiffness=np.array(rotation_stiffness).reshape(-1, 1),

@@ -3,7 +3,8 @@
 A car whose elements were stress-free in the design position would settle by u under gravity:
 K u + Jc' lambda = g, Jc u = 0, with K = sum of J' K_e J over all elements. The forces that the elements then carry,
 f_e = -K_e J u, are given to them as preloads, and the reaction -lambda to the ideal joints: in the design position
-these forces and gravity are in equilibrium exactly, and the share of each element is that of its stiffness.
+these forces and gravity are in equilibrium exactly, and the share of each element is that of its stiffness. Tyres and
+rubber blocks are set down without horizontal force: while the car settles, they slide.
 """
 
 from __future__ import annotations
@@ -20,6 +21,13 @@ from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows
 
 Vector = npt.NDArray[np.float64]
+
+
+GROUND_CONTACTS = ("bushing/tyre", "bushing/rear_support")
+"""Elements between car and ground."""
+
+SLIDING_SHARE = 1e-5
+"""Share of the horizontal stiffness of the ground contacts left while the car settles; zero would let it drift."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -61,6 +69,8 @@ def trim(model: mujoco.MjModel) -> StaticTrim:
     gravity = data.qfrc_smooth.copy()
     row_stiffness = np.zeros(e.row_count)
     row_stiffness[e.rows] = e.stiffness
+    ground = [index for index, name in enumerate(e.names) if name.startswith(GROUND_CONTACTS)]
+    row_stiffness[e.rows[ground, :2]] *= SLIDING_SHARE
     row_stiffness[e.rotation_rows] = e.rotation_stiffness
     row_stiffness[e.springs] = e.spring_stiffness
     stiffness = jacobian.T @ (row_stiffness[:, None] * jacobian)

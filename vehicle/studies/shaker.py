@@ -127,7 +127,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
         Plain numbers, texts, lists and dictionaries; None where a value does not exist.
     """
     statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
-    notices = [*run.signal.notices, *response.reasons, *_unsettled(run)]
+    notices = [*run.signal.notices, *response.reasons, *_unsettled(run), *statistics.notices]
     inertia = rigid_body(run.car.vehicle.body).report
     return {
         "frame": FRAME,

@@ -1,0 +1,107 @@
+"""The generator takes any MacPherson front end: another car's hardpoints, its own body nodes, its own file."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import pytest
+
+from vehicle.assembly.spec import assemble
+from vehicle.car import Car
+from vehicle.errors import DataError
+from vehicle.excitation.random_road import random_road
+from vehicle.flexbody.superelement_file import write_superelement
+from vehicle.names import body_nodes
+from vehicle.parameters.hardpoints import Hardpoints
+from vehicle.parameters.toml_file import write_text
+from vehicle.parameters.vehicle import load_vehicle
+from vehicle.simulation.car_model import build_model
+
+WIDER = 0.03  # m on each side
+
+
+def wider_hardpoints(points: Hardpoints) -> Hardpoints:
+    """Wider track, and a strut top 12 mm further back and 20 mm higher."""
+    changed = {}
+    for entry in dataclasses.fields(points):
+        x, y, z = getattr(points, entry.name)
+        if entry.name in ("wheel_center", "tyre_patch", "lower_ball", "damper_bottom", "spring_lower", "tie_outer"):
+            changed[entry.name] = (x, y + WIDER, z)
+        elif entry.name == "strut_top":
+            changed[entry.name] = (x + 0.012, y + WIDER, z + 0.02)
+    return dataclasses.replace(points, **changed)
+
+
+def moved_body(body, points):
+    """The same modal model with its nodes on other hardpoints; shapes made free of rigid motion again."""
+    from vehicle.flexbody.modes import rigid_shapes
+
+    positions = body.positions.copy()
+    for name in body_nodes():
+        positions[body.node_index(name)] = points[name]
+    cog = body.node_mass @ positions / body.node_mass.sum()
+    rigid = rigid_shapes(positions, cog).reshape(6, -1)
+    shapes = body.shapes.reshape(len(body.frequencies), -1)
+    weight = np.repeat(body.node_mass, 3)
+    content = np.linalg.solve((rigid * weight) @ rigid.T, (rigid * weight) @ shapes.T)
+    free = shapes - content.T @ rigid
+    # Mass-normalised again; the move is small, so the modes stay what they were.
+    factor = np.linalg.cholesky((free * weight) @ free.T)
+    shapes = np.linalg.solve(factor, free).reshape(body.shapes.shape)
+    return dataclasses.replace(body, positions=positions, shapes=shapes)
+
+
+@pytest.fixture(scope="module")
+def other():
+    vehicle = load_vehicle()
+    vehicle = dataclasses.replace(vehicle, name="other", hardpoints=wider_hardpoints(vehicle.hardpoints))
+    body = moved_body(Car(load_vehicle()).trimmed_body, vehicle.hardpoints.all_points())
+    return vehicle, body
+
+
+def test_another_car_builds_and_stands(other):
+    vehicle, body = other
+    model = build_model(vehicle, body)
+    assert model.static.residual < 1e-6
+    data = mujoco.MjData(model.model)
+    mujoco.mj_forward(model.model, data)
+    points = vehicle.hardpoints.all_points()
+    np.testing.assert_allclose(data.site("place/damper_top_fr").xpos, points["strut_top_fr"], atol=1e-12)
+    assert data.site("bushing/tyre_fl/moving").xpos[1] == pytest.approx(-0.777, abs=1e-12)
+    # The tyres of the wider car still carry the front: their loads changed by the track alone.
+    loads = [*model.static.tyre_load.values(), *model.static.rear_support_load.values()]
+    assert sum(loads) == pytest.approx(vehicle.gravity * (model.model.body_mass.sum()), rel=1e-9)
+
+
+def test_another_car_from_its_files_runs(other, tmp_path):
+    vehicle, body = other
+    vehicle = dataclasses.replace(vehicle, body=dataclasses.replace(vehicle.body, superelement="other.toml"))
+    (tmp_path / "car.toml").write_text(write_text(vehicle), encoding="utf-8")
+    write_superelement(tmp_path / "other.toml", body)
+    car = Car.load(tmp_path / "car.toml")
+    assert car.vehicle == vehicle
+    run = car.run(random_road(rms=1e-4, seed=1, duration=1.0))
+    rms = float(np.sqrt(np.mean(run["knuckle_fr_acc_z"] ** 2)))
+    assert 0.05 < rms < 5.0
+    # A wider track rolls slower: more inertia at the wheels, same springs on longer arms; it is another car.
+    assert car.modes()[5].frequency != pytest.approx(Car.load().modes()[5].frequency, rel=1e-3)
+
+
+def test_item_27_hardpoints_that_the_body_does_not_have_are_refused(other):
+    vehicle, _ = other
+    published = Car(load_vehicle()).trimmed_body
+    with pytest.raises(DataError) as caught:
+        assemble(vehicle, published)
+    message = str(caught.value)
+    assert "node 'strut_top_fr'" in message and "mm away from its hardpoint" in message
+    assert "Move the hardpoint or use a body model measured at it." in message
+
+
+def test_item_27_a_missing_interface_node_is_refused(other):
+    vehicle, body = other
+    names = tuple("somewhere" if name == "hydromount" else name for name in body.nodes)
+    stiffness = {key: value for key, value in body.attachment_stiffness.items() if key != "hydromount"}
+    with pytest.raises(DataError, match="interface node 'hydromount' is missing; the car is fixed to it"):
+        assemble(vehicle, dataclasses.replace(body, nodes=names, attachment_stiffness=stiffness))

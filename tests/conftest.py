@@ -1,0 +1,29 @@
+"""Cars and short runs that several test folders share, made once a session."""
+
+from __future__ import annotations
+
+import pytest
+
+from vehicle.car import Car, Run
+from vehicle.excitation.csv_file import read_signal
+from vehicle.excitation.input_files import find_input
+from vehicle.excitation.signal import Signal
+
+
+@pytest.fixture(scope="session")
+def car() -> Car:
+    """The car of source 1."""
+    return Car.load()
+
+
+@pytest.fixture(scope="session")
+def high_piece() -> Signal:
+    """The first four seconds of the shipped high input; it begins at rest."""
+    signal = read_signal(find_input("high.csv"))
+    return Signal(time=signal.time[:4001], displacement={"fr": signal.displacement["fr"][:4001]})
+
+
+@pytest.fixture(scope="session")
+def high_run(car: Car, high_piece: Signal) -> Run:
+    """That piece on the car at the default step."""
+    return car.run(high_piece)

@@ -1,0 +1,139 @@
+"""Modes and frequency responses of matrices small enough to be known in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError
+from vehicle.linear.frequency_response import matrix_response
+from vehicle.linear.matrices import CarMatrices
+from vehicle.linear.modes import car_modes, free_basis, group_of, state_matrix
+
+SPRUNG, UNSPRUNG, SUSPENSION, TYRE = 180.0, 45.0, 3e4, 2.5e5  # the quarter car of source 1
+VISCOUS, TYRE_DAMPING = 1500.0, 400.0
+
+
+def quarter_car(*, branch=(), tyre_damping=0.0, links=()):
+    """Coordinates: wheel, and stroke of the damper (body less wheel), as in the model of the car."""
+    # u = (wheel, stroke); body = wheel + stroke.
+    rows = {"body": np.array([1.0, 1.0]), "tyre_fr": np.array([1.0, 0.0])}
+    masses = {"body": SPRUNG, "tyre_fr": UNSPRUNG}
+    mass = np.sum([masses[name] * np.outer(row, row) for name, row in rows.items()], axis=0)
+    six = {name: np.vstack([np.zeros((2, 2)), row, np.zeros((3, 2))]) for name, row in rows.items()}
+    branches = np.array([[0.0, 1.0]] * len(branch)).reshape(-1, 2)
+    return CarMatrices(
+        mass=mass,
+        damping=np.diag([tyre_damping, 0.0]),
+        stiffness=np.diag([TYRE, SUSPENSION]),
+        constraints=np.array(links, dtype=float).reshape(-1, 2),
+        dampers=np.array([1]),
+        viscous=np.array([VISCOUS]),
+        branch_rows=branches,
+        branch_stiffness=np.array([stiffness for stiffness, _ in branch]),
+        branch_time=np.array([time for _, time in branch]),
+        plate_stiffness=np.array([[TYRE, 0.0], [0.0, 0.0]]),
+        plate_damping=np.array([[tyre_damping, 0.0], [0.0, 0.0]]),
+        tyre_stiffness=np.array([TYRE, TYRE]),
+        tyre_damping=np.array([tyre_damping, tyre_damping]),
+        outputs={"body_acc_z": rows["body"], "wheel_acc_z": rows["tyre_fr"]},
+        body_rows=six,
+        body_masses={name: np.diag([value] * 3 + [1.0] * 3) for name, value in masses.items()},
+        modal=slice(0, 0),
+    )
+
+
+def test_stuck_is_one_mass_on_the_tyre():
+    (mode,) = car_modes(quarter_car(tyre_damping=TYRE_DAMPING), stuck=True)
+    omega = np.sqrt(TYRE / (SPRUNG + UNSPRUNG))
+    assert mode.frequency == pytest.approx(omega / (2.0 * np.pi), rel=1e-12)
+    assert mode.damping_ratio == pytest.approx(TYRE_DAMPING / (2.0 * omega * (SPRUNG + UNSPRUNG)), rel=1e-12)
+    # Locked: shares of the kinetic energy are those of the masses.
+    assert mode.energy["body"] == pytest.approx(SPRUNG / (SPRUNG + UNSPRUNG), rel=1e-12)
+    assert mode.description == "body heave (z)"
+
+
+def test_sliding_has_the_roots_of_the_characteristic_polynomial():
+    matrices = quarter_car(tyre_damping=TYRE_DAMPING)
+    modes = car_modes(matrices, stuck=False)
+    # (ms s2 + c s + k)(mu s2 + (c + ct) s + k + kt) - (c s + k)^2 = 0, by hand.
+    c, k, ct, kt = VISCOUS, SUSPENSION, TYRE_DAMPING, TYRE
+    polynomial = np.polysub(np.polymul([SPRUNG, c, k], [UNSPRUNG, c + ct, k + kt]), np.polymul([c, k], [c, k]))
+    roots = np.roots(polynomial)
+    exact = sorted((abs(root) / (2.0 * np.pi), -root.real / abs(root)) for root in roots if root.imag > 0.0)
+    assert len(modes) == len(exact) == 2
+    for mode, (frequency, ratio) in zip(modes, exact, strict=True):
+        assert mode.frequency == pytest.approx(frequency, rel=1e-10)
+        assert mode.damping_ratio == pytest.approx(ratio, rel=1e-9)
+        assert sum(mode.energy.values()) == pytest.approx(1.0, rel=1e-12)
+    assert modes[1].description == "right wheel vertical"
+    assert (
+        car_modes(matrices, stuck=False, highest=5.0) == [] or len(car_modes(matrices, stuck=False, highest=5.0)) == 1
+    )
+
+
+def test_a_maxwell_branch_adds_a_real_pole_and_the_right_limits():
+    soft = quarter_car(branch=((7e5, 1e-9),))
+    matrix, _ = state_matrix(soft, stuck=False)
+    assert matrix.shape == (5, 5)
+    poles = np.linalg.eigvals(matrix)
+    assert np.sum(np.abs(poles.imag) < 1e-6) == 1 and poles.real.max() < 0.0
+    # A fast branch is a damper K2 tau = 7e-4 N s/m, hence nothing; a slow one is a spring beside the main spring.
+    plain = [mode.frequency for mode in car_modes(quarter_car(), stuck=False)]
+    assert [mode.frequency for mode in car_modes(soft, stuck=False)] == pytest.approx(plain, rel=1e-6)
+    slow = car_modes(quarter_car(branch=((7e5, 1e6),)), stuck=False, highest=1e3)
+    hand = np.roots(
+        np.polysub(
+            np.polymul([SPRUNG, VISCOUS, SUSPENSION + 7e5], [UNSPRUNG, VISCOUS, SUSPENSION + 7e5 + TYRE]),
+            np.polymul([VISCOUS, SUSPENSION + 7e5], [VISCOUS, SUSPENSION + 7e5]),
+        )
+    )
+    exact = sorted(abs(root) / (2.0 * np.pi) for root in hand if root.imag > 0.0)
+    assert [mode.frequency for mode in slow] == pytest.approx(exact, rel=1e-6)
+
+
+def test_constraints_are_eliminated():
+    # wheel = 0.5 * stroke, given twice: one motion is left, the double row takes nothing more.
+    matrices = quarter_car(links=((1.0, -0.5), (2.0, -1.0)))
+    basis = free_basis(matrices, stuck=False)
+    assert basis.shape == (2, 1)
+    np.testing.assert_allclose(matrices.constraints @ basis, 0.0, atol=1e-14)
+    np.testing.assert_allclose(basis.T @ basis, 1.0)
+    assert free_basis(quarter_car(), stuck=False).shape == (2, 2)
+    assert free_basis(quarter_car(), stuck=True).shape == (2, 1)
+
+
+@pytest.mark.parametrize("stuck", [True, False])
+def test_frequency_response_by_hand(stuck):
+    frequency = np.array([0.5, 3.0, 12.0, 40.0])
+    s = 2j * np.pi * frequency
+    found = matrix_response(
+        quarter_car(tyre_damping=TYRE_DAMPING), frequency, ["body_acc_z", "wheel_acc_z"], stuck=stuck
+    )
+    drive = TYRE + TYRE_DAMPING * s
+    if stuck:
+        body = wheel = drive / ((SPRUNG + UNSPRUNG) * s**2 + drive)
+    else:
+        strut = SUSPENSION + VISCOUS * s
+        sprung = SPRUNG * s**2 + strut
+        wheel = drive / (UNSPRUNG * s**2 + strut + drive - strut**2 / sprung)
+        body = wheel * strut / sprung
+    np.testing.assert_allclose(found, [s**2 * body, s**2 * wheel], rtol=1e-10)
+    # The left plate drives nothing here.
+    assert not matrix_response(quarter_car(), frequency, ["body_acc_z"], wheel="fl", stuck=stuck).any()
+
+
+def test_unknown_channel():
+    with pytest.raises(ConfigurationError) as caught:
+        matrix_response(quarter_car(), [1.0], ["roof_acc_z"])
+    assert str(caught.value) == "no acceleration channel 'roof_acc_z'; known are body_acc_z, wheel_acc_z"
+
+
+def test_groups_of_parts():
+    assert [group_of(name) for name in ("body", "engine", "main_spring_upper_fr", "stabilizer_rod_fl", "tyre_fl")] == [
+        "body",
+        "engine",
+        "body",
+        "stabilizer",
+        "wheel_fl",
+    ]

@@ -1,0 +1,152 @@
+"""Friction of the dampers against closed forms: locked strut, sliding, Coulomb decay, Den Hartog, Stribeck."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.simulation.row_model import Stepper, add_damper, empty_spec
+from vehicle.laws.stribeck import Stribeck
+
+LIMIT, SMOOTHING, VISCOUS = 125.0, 1e5, 2250.0  # the damper of source 1
+CREEP = 2.0 / np.pi * LIMIT * SMOOTHING  # N s/m, slope of the smooth law at rest
+
+
+def strut(step=1e-3, mass=40.0, *, viscous=VISCOUS, limit=LIMIT, static=None, stiffness=0.0, exponent=3.5):
+    """A mass on a slide joint with a damper, and a spring to the ground where `stiffness` is given."""
+    spec = empty_spec(step)
+    body = spec.worldbody.add_body(name="mass")
+    body.explicitinertial = True
+    body.mass, body.inertia, body.ipos = mass, [1.0, 1.0, 1.0], np.zeros(3)
+    law = [viscous, SMOOTHING, limit, limit if static is None else static, 0.03, exponent]
+    add_damper(spec, body, law, stiffness=stiffness)
+    return Stepper(spec)
+
+
+def push(run, force):
+    def before(time):
+        run.data.xfrc_applied[1, 0] = force(time)
+
+    return before
+
+
+def speed(run):
+    """Velocity at the present time: MuJoCo's is that of half a step before."""
+    return lambda: run.data.qvel[0] + 0.5 * run.h * run.data.qacc[0]
+
+
+@pytest.mark.parametrize("step", [1e-4, 1e-3, 4e-3])
+@pytest.mark.parametrize("force", [1.0, -60.0, 124.0])
+def test_below_the_limit_it_sticks_at_any_step(step, force):
+    run = strut(step)
+    velocity = run.step(200, lambda: run.data.qvel[0], push(run, lambda _: force))
+    # It creeps with the slope of the published atan, some 1e-5 m/s; an explicit law would need steps of 5 us.
+    assert velocity[-1] == pytest.approx(force / (CREEP + VISCOUS), rel=1e-6)
+    assert np.max(np.abs(velocity)) < 2e-5
+
+
+@pytest.mark.parametrize("force", [126.0, 350.0, -350.0])
+def test_above_the_limit_it_slides(force):
+    run = strut()
+    # 40 kg / 2250 N s/m = 18 ms, so 0.6 s are 34 time constants.
+    velocity = run.step(600, lambda: run.data.qvel[0], push(run, lambda _: force))
+    assert velocity[-1] == pytest.approx((force - np.sign(force) * LIMIT) / VISCOUS, rel=1e-6)
+
+
+def test_it_breaks_away_and_stops_at_the_exact_times():
+    # A force that rises by 250 N/s passes 125 N at 0.5 s; without a spring and with v' = (F - Fd - D v)/m.
+    run = strut(step=1e-3, viscous=0.0)
+    x = run.step(1000, run.position, push(run, lambda t: 250.0 * t))[:, 0]
+    after = 1e-3 * np.arange(1000) - 0.5
+    exact = np.where(after > 0.0, 250.0 / 40.0 * np.maximum(after, 0.0) ** 3 / 6.0, 0.0)
+    # First-order error of the instant of breaking away: up to a step, of a speed that is then still zero.
+    assert np.max(np.abs(x - exact)) < 2e-3 * exact[-1]
+    # Pushed off with 0.5 m/s it stops after m v / Fd = 0.16 s, m v2 / (2 Fd) = 0.04 m further on.
+    run = strut(step=1e-3, viscous=0.0)
+    run.data.qvel[0] = 0.5
+    x = run.step(300, run.position)[:, 0]
+    stop = 40.0 * 0.5 / LIMIT
+    before = int(0.9 * stop / 1e-3)
+    assert np.max(x) == pytest.approx(0.5 * stop / 2.0, rel=0.02)  # half a step of 0.5 m/s is 0.6 %
+    assert x[before] < x[before + 5] and np.ptp(x[int(stop / 1e-3) + 3 :]) < 1e-9
+
+
+def test_free_decay_with_coulomb_friction_is_linear():
+    # k = 4 pi2 m (2 Hz half periods of 0.25 s): every half cycle loses 2 Fd / k.
+    mass, limit = 40.0, 20.0
+    stiffness = mass * (2.0 * np.pi * 2.0) ** 2
+    run = strut(mass=mass, viscous=0.0, limit=limit, stiffness=stiffness)
+    loss = 2.0 * limit / stiffness
+    start = 10.3 * loss
+    run.data.qpos[0] = start
+    x = run.step(4000, run.position)[:, 0]
+    turns = x[[0, *(np.flatnonzero(np.diff(np.sign(np.diff(x)))) + 1)]]
+    tops = np.abs(turns[:10])
+    # Half a step of turning round: x'' h2 / 8 is 2e-5 of the amplitude.
+    np.testing.assert_allclose(np.diff(tops), -loss, rtol=2e-3)
+    # It stays where spring and friction first balance: the tenth turn leaves 0.3 of the loss, inside Fd / k = 0.5.
+    assert abs(x[-1]) == pytest.approx(0.3 * loss, rel=0.01)
+    # ... but for the creep of the smooth law, k x / c.
+    creep = stiffness * abs(x[-1]) / (2.0 / np.pi * limit * SMOOTHING)
+    assert np.ptp(x[-1001:]) == pytest.approx(creep * 1.0, rel=0.01)
+
+
+@pytest.mark.parametrize(("ratio", "share"), [(0.6, 0.4), (1.5, 0.4), (0.8, 0.5)])
+def test_den_hartogs_forced_oscillator(ratio, share):
+    """Amplitude of m x'' + k x + Ff sign(x') = F0 cos(w t) without stops, equation 30 of the source.
+
+    x0 k / F0 = sqrt(V2 - (Ff/F0)2 U2), V = 1 / (1 - r2), U = tan(pi / (2 r)) / r.
+
+    Source: J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, Trans. ASME 53, 1931.
+    """
+    mass, natural, amplitude = 10.0, 2.0 * np.pi * 5.0, 100.0
+    stiffness = mass * natural**2
+    omega = ratio * natural
+    period = 800  # steps
+    step = 2.0 * np.pi / omega / period
+    run = strut(step, mass, viscous=0.0, limit=share * amplitude, stiffness=stiffness)
+    x = run.step(20 * period, run.position, push(run, lambda t: amplitude * np.cos(omega * t)))[:, 0]
+    tail = x[-2 * period :]
+    direct = 1.0 / (1.0 - ratio**2)
+    lost = np.tan(np.pi / (2.0 * ratio)) / ratio
+    exact = amplitude / stiffness * np.sqrt(direct**2 - (share * lost) ** 2)
+    # No stops: only the two turns of each period are slow.
+    slow = np.abs(np.diff(tail)) / step < 0.02 * omega * exact
+    assert np.mean(slow) < 0.03
+    # Friction turns round half a step early (it answers the speed at the end of the step): of the order of
+    # pi / period = 4e-3; without friction the amplitude would be 3 to 22 % larger.
+    assert abs(direct) * amplitude / stiffness / exact > 1.03
+    assert 0.5 * np.ptp(tail) == pytest.approx(exact, rel=4e-3)
+
+
+@pytest.mark.parametrize("velocity", [1e-3, 0.01, 0.03, 0.06, 0.3])
+def test_stribeck_limit_follows_the_velocity(velocity):
+    # On a mass that nothing stops the friction row must hold the limit at its velocity.
+    run = strut(mass=1e6, viscous=0.0, limit=65.0, static=125.0)
+    run.data.qvel[0] = velocity
+    run.step(1, run.position)
+    force = run.data.efc_force[run.rows.elements.frictions][0]
+    exact = 65.0 + 60.0 * np.exp(-((velocity / 0.03) ** 3.5))
+    assert -force == pytest.approx(exact, rel=1e-5)
+    law = Stribeck(sliding_limit=65.0, static_limit=125.0, stribeck_velocity=0.03, exponent=3.5, steepness=SMOOTHING)
+    assert exact == pytest.approx(float(law.limit(velocity)), rel=1e-12)
+
+
+def test_stribeck_holds_up_to_its_static_limit():
+    held, gone = (strut(limit=65.0, static=125.0, viscous=0.0) for _ in range(2))
+    assert held.step(300, lambda: held.data.qvel[0], push(held, lambda _: 120.0))[-1] < 2e-5
+    assert gone.step(300, lambda: gone.data.qvel[0], push(gone, lambda _: 130.0))[-1] > 0.1
+
+
+@pytest.mark.parametrize("static", [20.0, 60.0])
+def test_friction_only_removes_energy(static):
+    mass, stiffness = 40.0, 6000.0
+    run = strut(mass=mass, viscous=0.0, limit=20.0, static=static, stiffness=stiffness)
+    run.data.qpos[0] = 0.08
+    # Position is of the step, velocity of half a step before: the pair after the step has x between both.
+    samples = run.step(4000, lambda: (run.data.qpos[0], run.data.qvel[0], run.data.qacc[0]))
+    x, v = samples[:-1, 0], samples[:-1, 1] + 0.5 * run.h * samples[1:, 2]
+    energy = 0.5 * mass * v**2 + 0.5 * stiffness * x**2
+    # Sampled energy of the exact motion only falls; that of the scheme ripples by (w h)2 / 24 = 6e-6 of it.
+    assert np.max(np.diff(energy)) < 2e-5 * energy[0]
+    assert energy[-1] < 0.01 * energy[0]

@@ -1,0 +1,100 @@
+"""Gravity and static trim: the car stands in its design position and stays there."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import pytest
+
+from vehicle.car import Car
+from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.names import acceleration_channels
+from vehicle.simulation.elements import read_elements
+
+
+def at_rest(seconds):
+    time = uniform_time(samples=int(1000 * seconds) + 1, timestep=1e-3)
+    return Signal(time=time, displacement={"fr": np.zeros(time.size)})
+
+
+def test_the_residual_is_below_a_micrometre(car):
+    assert car.model.static.residual < 1e-6
+
+
+def test_the_loads_carry_the_weight(car):
+    static, model = car.model.static, car.model.model
+    loads = np.array([*static.tyre_load.values(), *static.rear_support_load.values()])
+    # The modal coordinates have 9e-9 kg of MuJoCo's own.
+    weight = car.vehicle.gravity * model.body_mass.sum()
+    assert loads.sum() == pytest.approx(weight, rel=1e-9)
+    assert np.all(loads > 1000.0)
+
+
+def test_ground_forces_and_weight_are_in_equilibrium(car):
+    # All six components: the forces of tyres and rubber blocks at their points, the weight of every body at its place.
+    model, static = car.model.model, car.model.static
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    elements = read_elements(model)
+    force, moment = np.zeros(3), np.zeros(3)
+    for name, rows in zip(elements.names, elements.rows, strict=True):
+        if name.startswith(("bushing/tyre", "bushing/rear_support")):
+            load = static.preload[rows]
+            force += load
+            moment += np.cross(data.site(f"{name}/moving").xpos, load)
+            # The law of a weld is a torque about the same point.
+            rotation = elements.rotation_rows[list(elements.names).index(name)]
+            moment += 0.5 * static.preload[rotation]
+    for body in range(1, model.nbody):
+        weight = model.body_mass[body] * model.opt.gravity
+        force += weight
+        moment += np.cross(data.xipos[body], weight)
+    total = car.vehicle.gravity * model.body_mass.sum()
+    assert np.max(np.abs(force)) < 1e-9 * total
+    assert np.max(np.abs(moment)) < 1e-8 * total
+
+
+def test_the_ground_pulls_nowhere_sideways(car):
+    # On plates and rubber blocks a parked car relaxes: rolled into place and shaken, it is not pinched by thousands of
+    # newtons sideways. Then the vertical loads follow from the moments alone.
+    model, static = car.model.model, car.model.static
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    points = car.vehicle.hardpoints.all_points()
+    front, rear = points["tyre_patch_fr"][0], points["rear_support_right"][0]
+    weight = car.vehicle.gravity * model.body_mass.sum()
+    place = np.sum(model.body_mass * data.xipos[:, 0]) / model.body_mass.sum()
+    axle = weight * (rear - place) / (rear - front)
+    # One per cent for the torques of the 100 N m/rad bushings.
+    assert sum(static.tyre_load.values()) == pytest.approx(axle, rel=0.01)
+
+
+def test_left_and_right_carry_nearly_the_same(car):
+    # Only engine mounts and torque arm stand off the middle plane, and they are inner forces: the masses are mirrored.
+    static = car.model.static
+    assert static.tyre_load["fr"] == pytest.approx(static.tyre_load["fl"], rel=1e-3)
+    assert static.rear_support_load["right"] == pytest.approx(static.rear_support_load["left"], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "settings", [[], ["body.flexible=false"], ["body.attachment_flexibility=false"], ["body.inertia_variant=improved"]]
+)
+def test_without_input_nothing_moves(settings):
+    run = Car.load(None, settings).run(at_rest(1.0))
+    largest = max(np.max(np.abs(run[channel])) for channel in acceleration_channels())
+    assert largest < 1e-6
+    assert max(np.max(np.abs(run[f"damper_{wheel}_velocity"])) for wheel in ("fr", "fl")) < 1e-9
+    static = run.car.model.static
+    np.testing.assert_allclose(run["tyre_fr_force_z"], static.tyre_load["fr"], rtol=1e-6)
+    assert run.recording.statistics.energies.residual < 1e-3 or abs(run.recording.statistics.energies.work_in) < 1e-9
+
+
+def test_wrong_preloads_would_be_seen(car, monkeypatch):
+    # The same run without preloads sinks: the test above can fail.
+    static = dataclasses.replace(car.model.static, preload=np.zeros_like(car.model.static.preload))
+    broken = Car(car.vehicle)
+    broken.__dict__["model"] = dataclasses.replace(car.model, static=static)
+    run = broken.run(at_rest(0.2))
+    assert np.max(np.abs(run["seat_rail_acc_z"])) > 1.0

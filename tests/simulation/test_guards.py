@@ -1,0 +1,129 @@
+"""What MuJoCo would pass over in silence stops a run: too long steps, lost states, lift-off; nothing is left behind."""
+
+from __future__ import annotations
+
+import re
+
+import mujoco
+import numpy as np
+import pytest
+
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.excitation.random_road import random_road
+from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.simulation.run import record_every
+
+SHORT = random_road(rms=1e-4, seed=1, duration=1.5)
+
+
+@pytest.mark.parametrize(
+    "setting", ["bushings.tyre.stiffness=[1.5e5, 1.5e5, 1e12]", "bushings.torque_arm_engine.stiffness=[1e12, 1e5, 6e5]"]
+)
+def test_item_23_a_step_too_long_is_refused_with_the_needed_one(setting):
+    with pytest.raises(ConfigurationError) as caught:
+        _ = Car.load(None, [setting]).model
+    found = re.fullmatch(
+        r"solver\.timestep: found (\S+) s, but the stiffest part of this car vibrates at (\d+) Hz; "
+        r"give at most (\S+) s, or a lower stiffness where it is a mistake",
+        str(caught.value),
+    )
+    assert found, str(caught.value)
+    step, frequency, needed = (float(number) for number in found.groups())
+    assert needed < step
+    # What the message asks for is accepted and stable: w h = 2.2 there.
+    assert 2.0 * np.pi * frequency * needed == pytest.approx(2.2, rel=0.05)  # two digits of the step
+    # The rule of the element rows: sqrt(6) / w is the limit.
+    mild = Car.load(None, ["bushings.tyre.stiffness=[1.5e5, 1.5e5, 2e7]", "solver.timestep=0.00025"])
+    run = mild.run(SHORT)
+    assert np.isfinite(run["knuckle_fr_acc_z"]).all()
+
+
+def test_the_step_is_checked_against_the_stiffness_and_not_refused_by_default(car):
+    assert car.model.model.opt.timestep == car.vehicle.solver.timestep
+    _ = Car.load(None, ["solver.timestep=0.001", "solver.record_rate=1000"]).model
+
+
+def test_item_36_a_lost_state_stops_with_time_and_joint(car, monkeypatch, tmp_path):
+    # A plate that jumps by a thousand kilometres: finite numbers in, a lost state out, whatever loop steps the car.
+    monkeypatch.chdir(tmp_path)
+    jump = np.where(SHORT.time < 0.7, 0.0, 1e6)
+    with pytest.raises(SimulationError) as caught:
+        car.run(Signal(time=SHORT.time, displacement={"fr": jump}))
+    message = str(caught.value)
+    found = re.search(r"no longer finite at t = (\S+) s", message)
+    assert found, message
+    time = float(found.group(1))
+    # The spline through the samples swings before the jump, by a factor of 4 less each sample.
+    assert time == pytest.approx(0.7, abs=0.02)
+    assert re.search(r"\(joint [a-z_0-9]+\); reduce solver\.timestep or check the parameters", message)
+    assert caught.value.state is not None
+    assert 0.6 < float(caught.value.state["time"]) <= time
+    assert np.isfinite(caught.value.state["qpos"]).all()
+    assert mujoco.get_mjcb_control() is None
+    assert list(tmp_path.iterdir()) == [], "no MUJOCO_LOG.TXT"
+
+
+def test_an_exception_in_the_middle_of_a_run_leaves_no_callbacks(car):
+    def stop(fraction):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        car.run(SHORT, progress=stop)
+    assert mujoco.get_mjcb_control() is None
+    # The next run is untouched by it.
+    assert np.isfinite(car.run(SHORT)["seat_rail_acc_z"]).all()
+
+
+def test_lift_off_is_reported_with_the_time(car):
+    # The static deflection of the tyre is 3500 N / 2.5e5 N/m = 14 mm: 40 mm within 67 ms throw the wheel up.
+    time = uniform_time(samples=1501, timestep=1e-3)
+    pulse = 0.02 * (1.0 - np.cos(2.0 * np.pi * 15.0 * (time - 0.2)))
+    height = np.where((time > 0.2) & (time < 0.2 + 1.0 / 15.0), pulse, 0.0)
+    run = car.run(Signal(time=time, displacement={"fr": height}))
+    warnings = run.recording.statistics.warnings
+    assert len(warnings) == 1 and "fr" in warnings[0]
+    found = re.fullmatch(
+        r"tyre fr would lift off its plate at t = (\S+) s \(lowest load (\S+) N at (\S+) s\); "
+        r"the model pulls there, so the result is out of its validity",
+        warnings[0],
+    )
+    assert found
+    load = run["tyre_fr_force_z"]
+    first = int(np.argmax(load < 0.0))
+    assert float(found.group(1)) == pytest.approx(run.time[first], abs=1e-3)
+    assert float(found.group(2)) == pytest.approx(load.min(), abs=1.0)
+    assert float(found.group(3)) == pytest.approx(run.time[np.argmin(load)], abs=2e-3)
+    assert not car.run(SHORT).recording.statistics.warnings
+
+
+@pytest.mark.parametrize("rate", ["300", "3000"])
+def test_rates_that_do_not_divide_are_refused(rate):
+    car = Car.load(None, [f"solver.record_rate={rate}"])
+    with pytest.raises(ConfigurationError) as caught:
+        record_every(car.model)
+    assert str(caught.value) == (
+        f"solver.record_rate: found {rate} Hz, must be the step rate {1.0 / car.vehicle.solver.timestep:g} Hz or a "
+        "whole fraction of it"
+    )
+
+
+def test_recording_at_a_lower_rate_is_a_part_of_the_full_one():
+    coarse = Car.load(None, ["solver.timestep=0.001", "solver.record_rate=500"]).run(SHORT)
+    fine = Car.load(None, ["solver.timestep=0.001", "solver.record_rate=1000"]).run(SHORT)
+    for channel in ("knuckle_fr_acc_z", "seat_rail_acc_x", "damper_fr_velocity", "tyre_fr_force_z"):
+        np.testing.assert_array_equal(coarse[channel], fine[channel][::2])
+
+
+def test_item_21_a_car_that_nothing_holds_is_refused():
+    settings = [f"bushings.{name}.stiffness=[0.0, 0.0, {k}]" for name, k in (("tyre", 2.5e5), ("rear_support", 1.3e5))]
+    rotation = [f"bushings.{name}.rotational_stiffness=0" for name in ("tyre", "rear_support")]
+    with pytest.raises(SimulationError, match="static trim: the car can move without resistance"):
+        _ = Car.load(None, settings + rotation).model
+
+
+def test_friction_off_is_a_car_too():
+    # The viscous damper alone: what the comparison with the matrices calls "friction off".
+    run = Car.load(None, ["damper.coulomb_friction=0"]).run(SHORT)
+    force, velocity = run["damper_fr_force"], run["damper_fr_velocity"]
+    np.testing.assert_allclose(force, run.car.vehicle.damper.viscous * velocity, atol=1e-3 * np.max(np.abs(force)))

@@ -1,0 +1,197 @@
+"""The element laws in explicit loops: the same arithmetic as `ElementRows.__call__`, for numba.
+
+One small function for each part, in the order of the numpy form, which explains them and stays as the reference.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+
+from vehicle.simulation.native_arrays import Constants, Fields, Indices, State
+
+
+def _modal_rows(d: Fields, e: Indices, c: Constants) -> None:
+    """J -> J +- R Phi_n, r -> r +- R Phi_n q, r' -> r' +- R Phi_n q' for the rows at flexible nodes."""
+    body, modes, column, place = e.modal[0, 0], e.modal[1, 0], e.modal[2, 0], e.modal[3, 0]
+    turn = d.xmat[body]
+    for node in range(e.node_rows.shape[1]):
+        for i in range(3):
+            row = e.node_rows[i, node]
+            moved, moving = 0.0, 0.0
+            for k in range(modes):
+                at = node * modes + k
+                shape = (
+                    turn[3 * i] * c.node_shapes[0, at]
+                    + turn[3 * i + 1] * c.node_shapes[1, at]
+                    + turn[3 * i + 2] * c.node_shapes[2, at]
+                )
+                d.efc_J[row, column + k] = shape
+                moved += shape * d.qpos[place + k, 0]
+                moving += shape * d.qvel[column + k, 0]
+            d.efc_pos[row, 0] += moved
+            d.efc_vel[row, 0] += moving
+
+
+def _springs(d: Fields, e: Indices, c: Constants, s: State) -> None:
+    """Main springs: modal columns along the line of the spring, and the elastic force."""
+    body, modes, column, place = e.modal[0, 0], e.modal[1, 0], e.modal[2, 0], e.modal[3, 0]
+    turn = d.xmat[body]
+    for spring in range(e.springs.shape[0]):
+        row = e.springs[spring, 0]
+        residual = d.efc_pos[row, 0]
+        if modes > 0:
+            lower, upper = d.site_xpos[e.spring_sites[spring, 0]], d.site_xpos[e.spring_sites[spring, 1]]
+            x, y, z = upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]
+            length = np.sqrt(x * x + y * y + z * z)
+            x, y, z = x / length, y / length, z / length
+            for k in range(modes):
+                shape = 0.0
+                for j in range(3):
+                    along = x * turn[j] + y * turn[3 + j] + z * turn[6 + j]
+                    shape += along * c.spring_shapes[spring, j * modes + k]
+                d.efc_J[row, column + k] = shape
+                residual += shape * d.qpos[place + k, 0]
+        s.explicit[0, row] = c.spring_preload[spring, 0] - c.spring_stiffness[spring, 0] * residual
+        d.efc_D[row, 0] = c.spring_impedance[spring, 0]
+        d.efc_aref[row, 0] = 0.0
+
+
+def _local_axes(d: Fields, e: Indices, s: State) -> None:
+    """Residual and rate of every element in its own axes, with the velocity of the plates taken off."""
+    for n in range(e.rows.shape[0]):
+        frame = d.xmat[e.carriers[n, 0]]
+        for i in range(3):
+            s.residual[n, i] = 0.0
+            s.force[n, i] = d.efc_vel[e.rows[n, i], 0]
+            for j in range(3):
+                s.residual[n, i] += frame[3 * j + i] * d.efc_pos[e.rows[n, j], 0]
+    for tyre in range(e.tyres.shape[0]):
+        for i in range(3):
+            s.force[e.tyres[tyre, 0], i] -= s.plate_velocity[tyre, i]
+    for n in range(e.rows.shape[0]):
+        frame = d.xmat[e.carriers[n, 0]]
+        for i in range(3):
+            s.rate[n, i] = frame[i] * s.force[n, 0] + frame[3 + i] * s.force[n, 1] + frame[6 + i] * s.force[n, 2]
+
+
+def _advance_branches(time: float, c: Constants, s: State) -> None:
+    """Carry the Maxwell branches over the step that has just been completed."""
+    last = s.last_time[0, 0]
+    if time == last:
+        return
+    for n in range(s.rate.shape[0]):
+        for i in range(3):
+            rate = s.rate[n, i]
+            if last >= 0.0:
+                acceleration = (rate - s.last_rate[n, i]) / c.scalars[0, 0]
+                s.branch_force[n, i] = s.branch_past[n, i] + c.branch_slope[n, i] * acceleration
+                s.branch_past[n, i] = c.decay[n, i] * s.branch_force[n, i] + c.branch_gain[n, i] * rate
+            s.last_rate[n, i] = rate
+    s.last_time[0, 0] = time
+
+
+def _elements(d: Fields, e: Indices, c: Constants, s: State) -> None:
+    """f0 = preload - K r - B r' - f2, turned into world axes; impedance and reference of the rows."""
+    for n in range(e.rows.shape[0]):
+        for i in range(3):
+            rate, past = s.rate[n, i], s.branch_past[n, i]
+            curvature = (c.decay[n, i] - 2.0) * past + c.branch_gain[n, i] * rate + s.branch_force[n, i]
+            branch = past + c.branch_average[n, i] * curvature
+            s.force[n, i] = (
+                c.element_preload[n, i] - c.stiffness[n, i] * s.residual[n, i] - c.damping[n, i] * rate - branch
+            )
+    for tyre in range(e.tyres.shape[0]):
+        for i in range(3):
+            s.force[e.tyres[tyre, 0], i] += c.inertial[tyre, i] * s.plate_acceleration[tyre, i]
+    for n in range(e.rows.shape[0]):
+        frame = d.xmat[e.carriers[n, 0]]
+        for i in range(3):
+            row = e.rows[n, i]
+            s.explicit[0, row] = (
+                frame[3 * i] * s.force[n, 0] + frame[3 * i + 1] * s.force[n, 1] + frame[3 * i + 2] * s.force[n, 2]
+            )
+            d.efc_D[row, 0] = c.impedance[n, i]
+            d.efc_aref[row, 0] = 0.0
+
+
+def _rotations(d: Fields, e: Indices, c: Constants, s: State) -> None:
+    """Rotational rows of the mounts."""
+    for n in range(e.rotation_rows.shape[0]):
+        for i in range(3):
+            row = e.rotation_rows[n, i]
+            turned = c.rotation_stiffness[n, 0] * d.efc_pos[row, 0]
+            s.explicit[0, row] = c.rotation_preload[n, i] - turned
+            d.efc_D[row, 0] = c.rotation_impedance[n, 0]
+            d.efc_aref[row, 0] = 0.0
+
+
+def _ideal_joints(d: Fields, e: Indices, c: Constants, s: State) -> None:
+    """Ball joints without a law: MuJoCo's own reference, with the modal coordinates."""
+    for n in range(e.hard_rows.shape[0]):
+        for i in range(3):
+            row = e.hard_rows[n, i]
+            s.explicit[0, row] = c.hard_preload[n, i]
+            law = d.efc_KBIP[row]
+            d.efc_aref[row, 0] = -law[1] * d.efc_vel[row, 0] - law[0] * law[2] * d.efc_pos[row, 0]
+
+
+def _dampers(d: Fields, e: Indices, c: Constants, s: State) -> None:
+    """Viscous and friction rows of the dampers."""
+    for n in range(e.dampers.shape[0]):
+        row = e.dampers[n, 0]
+        d.efc_D[row, 0] = c.damper_impedance[n, 0]
+        d.efc_aref[row, 0] = 0.0
+    step, empty, stribeck = c.scalars[0, 0], c.scalars[1, 0], c.scalars[2, 0]
+    for n in range(e.frictions.shape[0]):
+        row = e.frictions[n, 0]
+        sliding = d.qvel[e.damper_dofs[n, 0], 0]
+        if stribeck != 0.0:
+            weight = np.exp(-(np.abs(sliding / c.stribeck_velocity[n, 0]) ** c.exponent[n, 0]))
+            s.limits[0, n] = c.sliding_limit[n, 0] + (c.static_limit[n, 0] - c.sliding_limit[n, 0]) * weight
+        limit = s.limits[0, n]
+        slope = (2.0 / np.pi) * limit * c.smoothing[n, 0]
+        d.efc_D[row, 0] = max(slope * step, empty)
+        d.efc_aref[row, 0] = -sliding / step
+        d.efc_frictionloss[row, 0] = limit
+
+
+def _generalised_forces(d: Fields, s: State) -> None:
+    """R = 1 / D, and the explicit forces of the rows on the coordinates, J' f0."""
+    dofs = d.efc_J.shape[1]
+    total = d.qfrc_applied[0]
+    for j in range(dofs):
+        total[j] = 0.0
+    for row in range(d.efc_J.shape[0]):
+        d.efc_R[row, 0] = 1.0 / d.efc_D[row, 0]
+        force = s.explicit[0, row]
+        if force != 0.0:
+            for j in range(dofs):
+                total[j] += force * d.efc_J[row, j]
+
+
+def _rewrite(time: float, d: Fields, e: Indices, c: Constants, s: State) -> None:
+    """Rewrite the rows of one state."""
+    if e.modal[1, 0] > 0:
+        modal_rows(d, e, c)
+    local_axes(d, e, s)
+    advance_branches(time, c, s)
+    elements(d, e, c, s)
+    rotations(d, e, c, s)
+    springs(d, e, c, s)
+    ideal_joints(d, e, c, s)
+    dampers(d, e, c, s)
+    generalised_forces(d, s)
+
+
+def _compiled(function: Any) -> Any:
+    """A function for the compiled callback: no fast mathematics, division as numpy has it."""
+    return numba.njit(fastmath=False, boundscheck=False, error_model="numpy")(function)
+
+
+modal_rows, springs, local_axes = _compiled(_modal_rows), _compiled(_springs), _compiled(_local_axes)
+advance_branches, elements, rotations = _compiled(_advance_branches), _compiled(_elements), _compiled(_rotations)
+ideal_joints, dampers = _compiled(_ideal_joints), _compiled(_dampers)
+generalised_forces, rewrite = _compiled(_generalised_forces), _compiled(_rewrite)
