@@ -64,7 +64,7 @@ def write_claims(
         data: further numbers for the JSON file, under their own keys.
     """
     agree = sum(claim.within for claim in claims)
-    lines = [f"# {title}", "", f"{agree} of {len(claims)} printed statements agree with the equations.", ""]
+    lines = [f"# {title}", "", f"{agree} of {len(claims)} statements, printed or our own check, agree.", ""]
     lines += ["| name | published | ours | deviation | within | why |", "|---|---|---|---|---|---|"]
     for claim in claims:
         deviation = "" if claim.deviation is None else f"{100.0 * claim.deviation:+.1f} %"

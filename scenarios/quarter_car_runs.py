@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.excitation.random_road import random_road
+from vehicle.excitation.signal import Signal
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.switch import Switch
 from vehicle.lumped.drive import Sampled, Sine
@@ -97,9 +98,9 @@ class Runs:
         """Equations of a composition of parts."""
         return state_space(quarter_car(self.car, vary=vary, **parts))
 
-    def road_profile(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Array:
-        """Road displacement [m] at uniform steps [s]; its lowest line fits the record once."""
-        signal = random_road(
+    def road_signal(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Signal:
+        """Random road of an RMS displacement [m] at uniform steps [s]; its lowest line fits the record once."""
+        return random_road(
             rms=rms,
             seed=seed,
             duration=self.duration,
@@ -107,16 +108,22 @@ class Runs:
             lower_band_edge=1.0 / self.duration,
             upper_band_edge=UPPER_EDGE_HZ,
         )
-        return np.asarray(signal.displacement["fr"])
+
+    def road_profile(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Array:
+        """Displacement of that road [m]."""
+        return np.asarray(self.road_signal(rms, seed=seed, step=step).displacement["fr"])
 
     def road(self, rms: float, vary: Mapping[str, Any] | None = None, **parts: Any) -> History:
         """Friction model on a random road of an RMS displacement [m], from rest."""
-        profile = self.road_profile(rms)
-        times = STEP * np.arange(profile.size)
         return self._once(
             f"road {rms} {vary} {sorted(parts.items())}",
-            lambda: stiff_solution(self.model(vary, damper="friction", **parts), times, road=Sampled(profile, STEP)),
+            lambda: self.road_of(self.model(vary, damper="friction", **parts), rms),
         )
+
+    def road_of(self, model: StateSpace, rms: float) -> History:
+        """Any model on a random road of an RMS displacement [m], from rest."""
+        profile = self.road_profile(rms)
+        return stiff_solution(model, STEP * np.arange(profile.size), road=Sampled(profile, STEP))
 
     @property
     def march_step(self) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.lumped.stick_slip import ExactStickSlip
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.stribeck import Stribeck
 from vehicle.laws.switch import Switch
@@ -182,6 +182,22 @@ def test_switch_and_smooth_law_agree_above_the_published_velocity():
     assert np.abs(vs).max() == pytest.approx(4e-3, rel=1e-4)
     # It sticks while |F| < 50 N: (2/pi) asin(50/110) of the time, to two samples at each of four ends.
     assert np.mean(np.abs(vs) <= p.stick_band) == pytest.approx(2 / math.pi * math.asin(50 / 110), abs=8 / 5001)
+
+
+def test_the_switch_model_gives_up_after_its_steps():
+    p = CAR.mass_on_damper
+    model = oscillator(p.friction_limit, mass=p.mass, stiffness=0.0, damping=p.damping)
+    law = Switch(limit=p.friction_limit, band=p.stick_band, return_time=p.return_time)
+    drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)
+    with pytest.raises(SimulationError) as caught:
+        switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, most_steps=100)
+    message = str(caught.value)
+    assert message.startswith("switch model: stopped at t = 0.0")  # 700 steps for the whole half second
+    assert message.endswith(
+        "s of 0.5 s after most_steps = 100 steps; widen the stick band, lengthen the return time, or allow more steps"
+    )
+    with pytest.raises(ConfigurationError, match=r"^most_steps: found 0, must be at least 1$"):
+        switch_solution(model, law, [0.0, 0.5], most_steps=0)
 
 
 def test_the_switch_model_refuses_a_belt():

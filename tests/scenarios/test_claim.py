@@ -21,7 +21,7 @@ def test_files_hold_rows_notes_and_data(tmp_path):
     rows = [number_claim("a | b", 2.0, 2.1, 0.2, "w"), statement_claim("c", "rises", "falls", False, "v")]
     write_claims(tmp_path, "Title", rows, ["A note."], {"extra": [1.0, float("inf")]})
     text = (tmp_path / "results.md").read_text(encoding="utf-8")
-    assert "1 of 2 printed statements agree with the equations." in text
+    assert "1 of 2 statements, printed or our own check, agree." in text
     assert "| a \\| b | 2 | 2.1 | +5.0 % | yes | w |" in text
     assert "| c | rises | falls |  | NO | v |" in text
     assert text.endswith("A note.\n")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,6 @@ from vehicle.laws.switch import Switch
 from vehicle.lumped.drive import AtRest, Drive
 from vehicle.lumped.history import Array, History
 from vehicle.lumped.state_space import StateSpace
-
 
 MOST_STEPS = 200_000
 """Half a minute of solving; the published half second of the mass on a damper takes 700 steps."""
@@ -105,17 +105,20 @@ def switch_solution(
     absolute = np.full(size, 1e-2 * float(law.band))
     # Positions move by velocity times time: a thousandth of the band's velocity over a millisecond.
     absolute[:n] = 1e-6 * float(law.band)
-    solution: Any = solve_ivp(
-        right_hand_side,
-        (times[0], times[-1]),
-        start,
-        method=_LimitedLSODA,
-        most_steps=most_steps,
-        t_eval=times,
-        rtol=relative,
-        atol=absolute,
-        max_step=longest_step,
-    )
+    with warnings.catch_warnings():
+        # LSODA warns beside its status; the status is what is reported.
+        warnings.simplefilter("ignore", UserWarning)
+        solution: Any = solve_ivp(
+            right_hand_side,
+            (times[0], times[-1]),
+            start,
+            method=_LimitedLSODA,
+            most_steps=most_steps,
+            t_eval=times,
+            rtol=relative,
+            atol=absolute,
+            max_step=longest_step,
+        )
     if not solution.success or not np.isfinite(solution.y).all():
         raise SimulationError(f"switch model: {solution.message} Widen the stick band or lengthen the return time.")
     states = solution.y.T

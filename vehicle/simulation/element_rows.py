@@ -121,7 +121,9 @@ class ElementRows:
         mujoco.mj_fullM(model, data, mass)
         rows = data.efc_J.reshape(-1, model.nv)[self.elements.rows.ravel()]
         inverse = np.einsum("ij,ji->i", rows, np.linalg.solve(mass, rows.T))
-        return np.asarray(1.0 / inverse).reshape(self.elements.rows.shape)
+        # A row that nothing can move moves an infinite mass.
+        moved = np.divide(1.0, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0.0)
+        return np.asarray(moved).reshape(self.elements.rows.shape)
 
     def reset(self) -> None:
         """Forget the past: no branch forces, no rates."""

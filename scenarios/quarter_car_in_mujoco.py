@@ -1,0 +1,97 @@
+"""The quarter car stepped by MuJoCo with the element rows of the complete car, beside the lumped model of the same."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.assembly.quarter_car import quarter_car_spec
+from vehicle.excitation.signal import Signal
+from vehicle.laws.coulomb import RegularisedCoulomb
+from vehicle.lumped.quarter_car import quarter_car
+from vehicle.lumped.state_space import StateSpace, state_space
+from vehicle.parameters.quarter_car import QuarterCar
+from vehicle.simulation.callbacks import installed
+from vehicle.simulation.element_rows import ElementRows, prepare_model
+from vehicle.simulation.plate_arrays import PlateArrays
+
+Array = npt.NDArray[np.float64]
+
+DEFAULT_STEP = 5e-4
+"""Step of the complete car [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Motion:
+    """Sampled motion at every step, by place: `body`, `wheel` and, with friction, `damper`."""
+
+    time: Array
+    """[s], shape (T,)."""
+    displacement: Mapping[str, Array]
+    """[m], shape (T,)."""
+    acceleration: Mapping[str, Array]
+    """[m/s2], shape (T,)."""
+    sliding_velocity: Array
+    """Velocity of the damper [m/s], shape (T,); zero where the damper slips or sticks for good."""
+
+
+def in_mujoco(
+    car: QuarterCar,
+    signal: Signal,
+    *,
+    timestep: float = DEFAULT_STEP,
+    damper: Literal["slip", "stick", "friction"] = "friction",
+) -> Motion:
+    """Step the quarter car on its plate from rest.
+
+    Args:
+        car: the parameters.
+        signal: displacement of the front right plate.
+        timestep: step [s].
+        damper: as of `quarter_car_spec`.
+
+    Returns:
+        The motion from 0 to the end of the signal, every step.
+
+    Raises:
+        ConfigurationError: an unknown damper model or a bad step.
+        SimulationError: another simulation of this process holds the callbacks.
+    """
+    model = quarter_car_spec(car, timestep=timestep, damper=damper).compile()
+    prepare_model(model)
+    data = mujoco.MjData(model)
+    rows = ElementRows(model)
+    times: Array = timestep * np.arange(int(np.floor(signal.duration / timestep + 1e-6)) + 1, dtype=np.float64)
+    plate = PlateArrays.of(signal, times)
+    position, velocity = np.zeros((times.size, model.nv)), np.zeros((times.size, model.nv))
+    sensors = np.zeros((times.size, model.nsensordata))
+    with installed(rows):
+        for index in range(times.size):
+            data.mocap_pos[0, 2] = plate.displacement[index, 0]
+            rows.plate_velocity[0, 2] = plate.velocity[index, 0]
+            rows.plate_acceleration[0, 2] = plate.acceleration[index, 0]
+            position[index] = data.qpos
+            mujoco.mj_step(model, data)
+            sensors[index] = data.sensordata
+            # After the step MuJoCo's velocity is that of its middle.
+            velocity[index] = data.qvel - 0.5 * timestep * data.qacc
+    displacement = {"body": position[:, 0], "wheel": position[:, 1]}
+    sliding = np.zeros(times.size)
+    if damper == "friction":
+        displacement["damper"] = position[:, 1] + position[:, 2]
+        sliding = velocity[:, 2]
+    acceleration = {name: sensors[:, model.sensor(f"{name}_acc").adr[0] + 2] for name in displacement}
+    return Motion(time=times, displacement=displacement, acceleration=acceleration, sliding_velocity=sliding)
+
+
+def friction_of_the_rows(car: QuarterCar) -> StateSpace:
+    """The friction model (2.6) with the law that a friction row answers: min(Fd, max(-Fd, c v)), c = (2/pi) Fd eps."""
+    network = quarter_car(car, damper="friction")
+    law = RegularisedCoulomb(limit=car.friction.limit, steepness=car.friction.steepness)
+    return state_space(dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),)))
