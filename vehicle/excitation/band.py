@@ -10,11 +10,11 @@ from vehicle.errors import ConfigurationError
 LOWER_BAND_EDGE_HZ = 2.0
 """Lower edge of generated roads [Hz] where none is given."""
 
-SHAKER_EDGE_HZ = 5.0
+SHAKER_EDGE_HZ = 6.0
 """Lower edge of the shipped shaker inputs [Hz], half power. The source gives no band; fitted to its six slip shares
 together with `damper.slip_velocity`: with an edge at 2 Hz the left damper slips 4 % of the time in the high level."""
 
-SHAKER_ROLL_OFF_ORDER = 4
+SHAKER_ROLL_OFF_ORDER = 2
 """Order of the Butterworth edge of the shipped inputs. Assumed: an electrodynamic shaker with limited stroke follows a
 constant velocity no further down, but it does not stop at a line either; FRFs from 1 Hz stay defined."""
 
