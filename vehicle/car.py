@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
 from vehicle.analysis.frf import FrequencyResponse, frequency_response
-from vehicle.analysis.local_polynomial import local_polynomial_response
+from vehicle.analysis.local_rational import local_rational_response
 from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.signal import Signal
@@ -149,7 +149,7 @@ class Run:
         plate = self.recording[f"plate_{self.wheel}_displacement"]
         step = self.recording.timestep
         if window is None:
-            return local_polynomial_response(step, plate, responses, names=names)
+            return local_rational_response(step, plate, responses, names=names)
         return frequency_response(step, plate, responses, window_s=window, names=names)
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:

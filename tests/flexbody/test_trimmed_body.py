@@ -89,7 +89,8 @@ def test_the_body_is_nearly_the_same_on_both_sides(body):
                 allowed = 0.25 if "mount" in name else 0.15  # the engine mounts are 82 mm from mirrored
                 assert one == pytest.approx(other, rel=allowed), f"{name}, mode {mode + 1}"
     right, left = (np.abs(body.shape_at(f"strut_top_{wheel}")[2]) for wheel in ("fr", "fl"))
-    np.testing.assert_allclose(right, left, rtol=0.05)  # these couple with the wheels
+    # These couple with the wheels; 3e-4 is a hundredth of the mean motion 813^-1/2 and couples with nothing.
+    np.testing.assert_allclose(right, left, rtol=0.05, atol=3e-4)
     seat = body.node_mass[[body.node_index("seat"), body.node_index("seat_rail")]].sum()
     assert seat == pytest.approx(body.node_mass[body.node_index("seat_rail_right")], rel=0.06)
 

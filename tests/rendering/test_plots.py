@@ -38,7 +38,7 @@ def response():
         averages=7.0,
         segments=1,
         window="none",
-        estimator="local polynomial",
+        estimator="local rational model",
         resolution_hz=0.1,
         reasons=(),
     )
@@ -63,7 +63,7 @@ def every_axis(figure):
 
 
 def test_frf_plot_names_quantities_and_caption(long_run, response, tmp_path, figures):
-    plot_frf(tmp_path / ".123.frf.png", long_run, response, "shake.csv, RMS 0.25 mm; estimator: local polynomial")
+    plot_frf(tmp_path / ".123.frf.png", long_run, response, "shake.csv, RMS 0.25 mm; estimator: local rational model")
     axes = every_axis(figures[0])
     assert {axis.get_ylabel() for axis in axes} - {""} == {
         "acceleration / plate displacement [(m/s²)/m]",
@@ -73,7 +73,7 @@ def test_frf_plot_names_quantities_and_caption(long_run, response, tmp_path, fig
     assert {axis.get_xlabel() for axis in axes} - {""} == {"frequency [Hz]"}
     assert axes[0].get_xscale() == axes[0].get_yscale() == "log"
     assert axes[0].get_xlim() == (1.0, 50.0)
-    assert figures[0].get_supxlabel() == "shake.csv, RMS 0.25 mm; estimator: local polynomial"
+    assert figures[0].get_supxlabel() == "shake.csv, RMS 0.25 mm; estimator: local rational model"
     shown = {text.get_text() for axis in axes[:2] for text in axis.get_legend().get_texts()}
     assert shown >= {
         "knuckle at damper bottom",

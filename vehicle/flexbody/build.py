@@ -24,7 +24,7 @@ _PROVENANCE = (
     "shape is published, and a body with them has lopsided modes; so the elastic model is symmetric about y = 0, and "
     "the rigid inertia of the car takes the published products. "
     "Assumed: geometry, nominal sections, guess of the mass distribution, modal damping 0.02, attachment stiffness. "
-    "Fitted: section factors, to the first and last frequency and to a torsion mode at 30 Hz; the latter, and the "
+    "Fitted: section factors, to the first and last frequency and to a torsion mode at 31 Hz; the latter, and the "
     "strut tops' stiffness along z, to the vertical wheel mode at 28 Hz of the complete car; the stiffness at the "
     "engine mounts, to the engine modes of 10 to 20 Hz. "
     "Written by python -m vehicle.flexbody.build."

@@ -1,16 +1,16 @@
-"""FRF of a random record without leakage: the local polynomial method.
+"""FRF of a random record without leakage: the local rational model.
 
 A lightly damped car leaks in every windowed average: a body mode at 3.6 Hz with 3 % damping rings for longer than the
 usual window of 4 s, and the coherence falls although nothing is nonlinear. On the spectrum of the whole record the
 leakage is a smooth function of frequency and can be estimated beside the FRF. Over the lines k + r, |r| <= n,
 
-    Y(k + r) = (h0 + h1 r + h2 r2 + h3 r3) U(k + r) + (t0 + t1 r + t2 r2 + t3 r3) + noise,
+    (1 + a r) Y(k + r) = (b0 + b1 r) U(k + r) + (t0 + t1 r) + noise,
 
-least squares give the FRF h0 and, from the residual, the noise power: the coherence is the share of the response
-power that the FRF explains.
+one pole (which follows a resonance however sharp), a line for what lies behind it, and the transient. Least squares
+give the FRF b0 and, from the residual, the noise power: the coherence is the share of the power that b explains.
 
-Source: Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, section 7.2;
-Schoukens et al., Nonparametric preprocessing in system identification, 2006.
+Source: McKelvey and Guerin, Non-parametric frequency response estimation using a local rational model, IFAC SYSID 2012;
+Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, section 7.2.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.samples import checked_signals, checked_time_step
 from vehicle.errors import DataError
 
-ORDER = 3
-"""Degree of both polynomials: over 13 lines of a minute, a mode at 3.1 Hz with 1.7 % damping is no parabola."""
+UNKNOWNS = 5
+"""b0, b1, t0, t1 and a."""
 
 LEAST_HALF_WIDTH = 6
-"""Lines n on each side at least: 13 lines, 8 unknowns, 5 complex degrees of freedom for the noise."""
+"""Lines n on each side at least: 13 lines, 5 unknowns, 8 complex degrees of freedom for the noise."""
 
 RELATIVE_WIDTH = 0.03
-"""Width of the stretch over its frequency: half the bandwidth of a mode with 3 % damping, which a cubic follows."""
+"""Width of the stretch over its frequency: half the bandwidth of a mode with 3 % damping."""
 
 WORST_CONDITION = 1e-3
 """Smallest over largest singular value of a stretch; below it too few of its lines are excited to tell the FRF."""
@@ -46,7 +46,7 @@ SMALLEST_SHARE = 1e-8
 """Excitation power of a stretch of lines over that of the strongest line, below which nothing drives the car there."""
 
 
-def local_polynomial_response(
+def local_rational_response(
     time_step: float,
     excitation: ArrayLike,
     responses: ArrayLike,
@@ -92,36 +92,59 @@ def local_polynomial_response(
         half = int(np.clip(round(0.5 * RELATIVE_WIDTH * centre), LEAST_HALF_WIDTH, MOST_HALF_WIDTH))
         half = min(half, int(centre) - 1, spectrum.size - int(centre) - 1)
         offsets = np.arange(-half, half + 1)
-        powers = (offsets / half)[:, None] ** np.arange(ORDER + 1)
         lines = centre + offsets
         drive = spectrum[lines]
         power = float(np.mean(np.abs(drive) ** 2))
         if power < SMALLEST_SHARE * strongest:
             continue
-        scale = np.sqrt(power)
-        regressors = np.hstack([powers * (drive / scale)[:, None], powers])
-        solution, _, rank, singular = np.linalg.lstsq(regressors, answers[:, lines].T, rcond=None)
-        if singular[-1] < WORST_CONDITION * singular[0]:
-            continue
-        residual = answers[:, lines].T - regressors @ solution
-        freedom = offsets.size - int(rank)
-        noise = np.sum(np.abs(residual) ** 2, axis=0) / freedom
-        explained = np.mean(np.abs(regressors[:, : ORDER + 1] @ solution[: ORDER + 1]) ** 2, axis=0)
-        total = explained + noise
-        response[:, index] = solution[0] / scale
-        with np.errstate(invalid="ignore", divide="ignore"):
-            coherence[:, index] = np.where(total > 0.0, explained / total, np.nan)
+        response[:, index], coherence[:, index] = _fit(offsets / half, drive / np.sqrt(power), answers[:, lines])
+        response[:, index] /= np.sqrt(power)
     return FrequencyResponse(
         frequency=centres * line,
         response=response,
         coherence=coherence,
-        averages=float(2 * LEAST_HALF_WIDTH + 1 - 2 * (ORDER + 1)),
+        averages=float(2 * LEAST_HALF_WIDTH + 1 - UNKNOWNS),
         segments=1,
         window="none (whole record)",
-        estimator="local polynomial",
+        estimator="local rational model",
         resolution_hz=line * (2 * LEAST_HALF_WIDTH + 1),
         reasons=(*_coarse(line), *_reasons(centres * line, response, names)),
     )
+
+
+def _fit(
+    offset: NDArray[np.float64], drive: NDArray[np.complex128], answers: NDArray[np.complex128]
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """FRF and coherence of every response over one stretch of lines.
+
+    Args:
+        offset: r / n, shape (lines,).
+        drive: scaled input, shape (lines,).
+        answers: responses, shape (k, lines).
+
+    Returns:
+        b0 and the coherence, shape (k,); NaN where too few lines are excited, and a NaN coherence for a zero response.
+    """
+    response = np.full(len(answers), np.nan, dtype=complex)
+    coherence = np.full(len(answers), np.nan)
+    smooth = np.stack([drive, offset * drive, np.ones_like(drive), offset.astype(complex)], axis=1)
+    singular = np.linalg.svd(smooth, compute_uv=False)
+    if singular[-1] < WORST_CONDITION * singular[0]:
+        return response, coherence
+    for row, answer in enumerate(answers):
+        level = float(np.sqrt(np.mean(np.abs(answer) ** 2)))
+        if level == 0.0:
+            response[row] = 0.0
+            continue
+        scaled = answer / level
+        regressors = np.column_stack([smooth, -offset * scaled])
+        solution = np.linalg.lstsq(regressors, scaled, rcond=None)[0]
+        pole = 1.0 + solution[4] * offset
+        noise = np.sum(np.abs((scaled - regressors @ solution) / pole) ** 2) / (offset.size - UNKNOWNS)
+        explained = np.mean(np.abs(smooth[:, :2] @ solution[:2] / pole) ** 2)
+        response[row] = solution[0] * level
+        coherence[row] = explained / (explained + noise)
+    return response, coherence
 
 
 def _coarse(line: float) -> tuple[str, ...]:
