@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
+from vehicle.output_folder import write_whole
 
 
 def prepare_folder(folder: Path, *, force: bool) -> Path:
@@ -42,7 +41,7 @@ def write_text(path: Path, text: str) -> None:
     Raises:
         OutputError: the file cannot be written.
     """
-    _write(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+    write_whole(path, lambda temporary: _put(temporary, text))
 
 
 def write_figure(path: Path, figure: Any) -> None:
@@ -51,15 +50,8 @@ def write_figure(path: Path, figure: Any) -> None:
     Raises:
         OutputError: the file cannot be written.
     """
-    _write(path, lambda temporary: figure.savefig(temporary, format="png", dpi=110))
+    write_whole(path, lambda temporary: figure.savefig(temporary, format="png", dpi=110))
 
 
-def _write(path: Path, write: Callable[[Path], object]) -> None:
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        write(temporary)
-        temporary.replace(path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
+def _put(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")

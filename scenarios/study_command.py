@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from vehicle.errors import VehicleError
-
-INTERRUPTED = 130
+from vehicle.command_line import Parser, run_command
 
 
 def study_parser(name: str, description: str) -> argparse.ArgumentParser:
@@ -19,12 +16,19 @@ def study_parser(name: str, description: str) -> argparse.ArgumentParser:
         name: module name; results go to runs/<name> without --output.
         description: one line.
     """
-    parser = argparse.ArgumentParser(prog=f"python -m scenarios.{name}", description=description)
+    parser = Parser(prog=f"python -m scenarios.{name}", description=description)
     parser.add_argument("--output", type=Path, default=Path("runs") / name, metavar="DIR", help="folder of the results")
     parser.add_argument(
         "--parameters", type=Path, metavar="FILE.toml", help="own parameters, named as the shipped ones"
     )
     parser.add_argument("--quick", action="store_true", help="fewer points on the curves")
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        default=1,
+        metavar="N",
+        help="worker processes; these studies batch their runs in one process, so it changes nothing",
+    )
     parser.add_argument("--force", action="store_true", help="overwrite an existing folder")
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     return parser
@@ -39,17 +43,6 @@ def run_study(parser: argparse.ArgumentParser, study: Callable[[argparse.Namespa
         argv: arguments without the program name.
 
     Returns:
-        Exit code: 0, that of the `VehicleError`, or 130 when interrupted.
+        Exit code, as of `run_command`.
     """
-    options = parser.parse_args(argv)
-    try:
-        print(study(options))
-    except VehicleError as error:
-        if options.debug:
-            raise
-        print(f"error: {error}", file=sys.stderr)
-        return error.exit_code
-    except KeyboardInterrupt:
-        print("interrupted; the results are incomplete", file=sys.stderr)
-        return INTERRUPTED
-    return 0
+    return run_command(lambda: print(study(parser.parse_args(argv))), debug="--debug" in argv)

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
-import traceback
 from collections.abc import Sequence
 from typing import Any
 
-from vehicle.errors import DataError, VehicleError
-
-INTERRUPTED = 130
-"""exit code after Ctrl-C"""
+from vehicle.command_line import Parser, run_command
+from vehicle.errors import DataError
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> Parser:
     """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m vehicle.comfort",
         description="Weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums of a record of acceleration.",
         allow_abbrev=False,
@@ -104,28 +100,16 @@ def _table(result: dict[str, Any]) -> str:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command; return its exit code (0, 2 usage, 3 bad data, 6 output, 130 interrupted)."""
-    options = _parser().parse_args(argv)
-    try:
-        result = _evaluate(options)
-        print(json.dumps(result, indent=2, allow_nan=False) if options.json else _table(result), flush=True)
-        for remark in (*result["notices"], *result["reasons"]):
-            print(f"notice: {remark}", file=sys.stderr)
-    except VehicleError as error:
-        if options.debug:
-            traceback.print_exc()
-        print(f"error: {error}", file=sys.stderr)
-        return error.exit_code
-    except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return INTERRUPTED
-    except BrokenPipeError:
-        # the reader of a pipe has gone: keep Python's own flush at exit quiet
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 6
-    except OSError as error:
-        print(f"error: standard output: cannot be written ({error.strerror}); nothing was saved", file=sys.stderr)
-        return 6
-    return 0
+    debug = "--debug" in (sys.argv[1:] if argv is None else argv)
+    return run_command(lambda: _job(_parser().parse_args(argv)), debug=debug)
+
+
+def _job(options: argparse.Namespace) -> None:
+    """Evaluate and print."""
+    result = _evaluate(options)
+    print(json.dumps(result, indent=2, allow_nan=False) if options.json else _table(result), flush=True)
+    for remark in (*result["notices"], *result["reasons"]):
+        print(f"notice: {remark}", file=sys.stderr)
 
 
 if __name__ == "__main__":

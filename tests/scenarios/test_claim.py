@@ -65,12 +65,12 @@ def test_errors_become_exit_codes(error, code, capsys):
     assert capsys.readouterr().out == ""
 
 
-def test_debug_shows_the_traceback():
+def test_debug_shows_the_traceback(capsys):
     def fail(options: argparse.Namespace) -> str:
         raise ConfigurationError("c")
 
-    with pytest.raises(ConfigurationError):
-        run_study(study_parser("x", "x"), fail, ["--debug"])
+    assert run_study(study_parser("x", "x"), fail, ["--debug"]) == 2
+    assert "Traceback" in capsys.readouterr().err
 
 
 def test_default_folder_is_named_after_the_study():

@@ -8,37 +8,11 @@ from typing import Final
 import numpy as np
 
 from vehicle.errors import ConfigurationError
+from vehicle.names import CENTER_POINTS, SIDE_POINTS, WHEELS
 from vehicle.shapes.shape import Array
 
-SIDES: Final = ("fr", "fl")
-SIDE_POINTS: Final = (
-    "wheel_center",
-    "tyre_patch",
-    "lower_ball",
-    "arm_front",
-    "arm_rear",
-    "strut_top",
-    "damper_bottom",
-    "spring_lower",
-    "tie_outer",
-    "tie_inner",
-    "stab_body",
-    "stab_end",
-    "stab_rod_top",
-)
-CENTRE_POINTS: Final = (
-    "engine_cog",
-    "hydromount",
-    "linear_mount",
-    "bottom_engine",
-    "bottom_body",
-    "seat_rail",
-    "seat",
-    "roof_left_rear",
-    "body_front",
-    "rear_support_right",
-    "rear_support_left",
-)
+SIDES: Final = WHEELS
+CENTRE_POINTS: Final = (*CENTER_POINTS, "rear_support_right", "rear_support_left")
 DIMENSIONS: Final[dict[str, float]] = {
     "tyre_section_width": 0.195,  # 195/60 R15
     "tyre_deflection": 0.0125,  # free radius 0.3075 m of 195/60 R15 minus the loaded 0.295 m
