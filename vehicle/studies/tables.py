@@ -38,11 +38,12 @@ def write_frf(path: Path, response: FrequencyResponse, channels: Sequence[str], 
     head = ["frequency [Hz]"]
     columns = [response.frequency]
     for row, channel in enumerate(channels):
-        head += [f"{channel}_magnitude [m/s2/m]", f"{channel}_phase [deg]", f"{channel}_coherence [-]"]
+        head += [f"{channel}_magnitude", f"{channel}_phase [deg]", f"{channel}_coherence"]
         values = response.response[row]
         columns += [np.abs(values), np.degrees(np.angle(values)), response.coherence[row]]
     lines = [
-        f"# acceleration over plate displacement; {response.estimator} estimate; frame: {frame}",
+        f"# acceleration over plate displacement, magnitude in m/s2 per m, coherence without unit; "
+        f"{response.estimator}; frame: {frame}",
         ",".join(head),
     ]
     for line in np.column_stack(columns):
