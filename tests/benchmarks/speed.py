@@ -26,13 +26,15 @@ from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS, acceleration_channels
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows, prepare_model
+from vehicle.simulation.native import native_callback
 from vehicle.simulation.plate_arrays import PlateArrays
 
 SHOWN = {
     "rows": "constraint rows",
     "dof": "degrees of freedom",
     "timestep": "default step [s]",
-    "step_us": "step with callbacks, in motion [us]",
+    "step_us": "step with the callbacks that a run uses, in motion [us]",
+    "python_step_us": "step with the callbacks in Python, in motion [us]",
     "plain_step_us": "step of the same model without callbacks, in motion [us]",
     "realtime_factor": "simulated over computing time, recording included",
     "rms_error": "largest RMS error of an acceleration channel against an eighth of the step",
@@ -67,8 +69,18 @@ def piece(seconds: float) -> Signal:
     return Signal(time=signal.time[:count], displacement={"fr": signal.displacement["fr"][:count]})
 
 
-def stepping_time(car: Car, signal: Signal, steps: int, *, laws: bool) -> float:
-    """Time of a step [us] of the moving car; without the laws MuJoCo's own welds hold it on the moving plates."""
+def stepping_time(car: Car, signal: Signal, steps: int, form: str) -> float:
+    """Time of a step [us] of the moving car, one call of mj_step each.
+
+    Args:
+        car: the car.
+        signal: motion of the plates.
+        steps: number of steps.
+        form: "native" (Python where it cannot be had), "python", or "plain": MuJoCo's own welds hold the car.
+
+    Returns:
+        Mean over the steps.
+    """
     model = car.model.spec.compile()
     model.qpos_spring[:] = car.model.model.qpos_spring
     prepare_model(model)
@@ -87,11 +99,15 @@ def stepping_time(car: Car, signal: Signal, steps: int, *, laws: bool) -> float:
             mujoco.mj_step(model, data)
         return 1e6 * (time.perf_counter() - started) / steps
 
-    if laws:
-        with installed(rows):
-            spent = go()
-    else:
+    if form == "plain":
         spent = go()
+    else:
+        found = native_callback(rows) if form == "native" else "not asked for"
+        native = None if isinstance(found, str) else found
+        with installed(rows, native):
+            if native is not None:
+                native.attach(data)
+            spent = go()
     if not np.isfinite(data.qpos).all() or not np.any(data.qvel):
         raise RuntimeError("the car is lost or does not move: nothing was measured")
     return spent
@@ -105,11 +121,12 @@ def measure(effort: Effort) -> dict[str, float]:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     steps = min(effort.steps, int(signal.duration / model.opt.timestep))
-    with_laws, plain, factors = [], [], []
+    native, python, plain, factors = [], [], [], []
     run = car.run(signal)
     for _ in range(effort.repeats):
-        with_laws.append(stepping_time(car, signal, steps, laws=True))
-        plain.append(stepping_time(car, signal, steps, laws=False))
+        native.append(stepping_time(car, signal, steps, "native"))
+        python.append(stepping_time(car, signal, steps, "python"))
+        plain.append(stepping_time(car, signal, steps, "plain"))
         run = car.run(signal)
         factors.append(run.recording.statistics.realtime_factor)
     fine = Car.load(None, [f"solver.timestep={car.vehicle.solver.timestep / 8}"]).run(signal)
@@ -117,7 +134,8 @@ def measure(effort: Effort) -> dict[str, float]:
         "rows": int(data.nefc),
         "dof": int(model.nv),
         "timestep": float(model.opt.timestep),
-        "step_us": median(with_laws),
+        "step_us": median(native),
+        "python_step_us": median(python),
         "plain_step_us": median(plain),
         "realtime_factor": median(factors),
         "rms_error": max(abs(_rms(run[name]) / _rms(fine[name]) - 1.0) for name in acceleration_channels()),
