@@ -9,6 +9,7 @@ run.comfort().overall                 # comfort value of source 1
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,16 +20,17 @@ import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
 from vehicle.analysis.frf import FrequencyResponse, frequency_response
+from vehicle.analysis.frf_mimo import frequency_response_mimo
 from vehicle.analysis.local_rational import local_rational_response
 from vehicle.analysis.slip import first_slip, slip_share
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.library import find_superelement
 from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.frequency_response import matrix_response
 from vehicle.linear.matrices import CarMatrices, car_matrices
 from vehicle.linear.modes import Mode, car_modes
-from vehicle.names import AXES, acceleration_channels
+from vehicle.names import AXES, WHEELS, acceleration_channels
 from vehicle.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.simulation.car_model import CarModel, build_model
 from vehicle.simulation.recording import Recording
@@ -49,6 +51,7 @@ class Car:
     def __init__(self, vehicle: Vehicle | None = None, *, folder: Path | None = None) -> None:
         self.vehicle = load_vehicle() if vehicle is None else vehicle
         self.folder = folder
+        self.origin: dict[str, object] = {"file": None, "overrides": []}
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
@@ -65,7 +68,10 @@ class Car:
             ConfigurationError: the file, a name or a value is wrong.
         """
         file = None if path is None else Path(path)
-        return cls(load_vehicle(file, overrides), folder=None if file is None else file.parent)
+        changes = list(overrides)
+        car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
+        car.origin = {"file": None if file is None else str(file), "overrides": changes}
+        return car
 
     @cached_property
     def trimmed_body(self) -> Superelement:
@@ -148,9 +154,39 @@ class Run:
         responses = np.array([self.recording[name] for name in names])
         plate = self.recording[f"plate_{self.wheel}_displacement"]
         step = self.recording.timestep
+        if len(self.recording.excited) > 1:
+            return self._two_plate_frf(names, responses, 4.0 if window is None else window)
         if window is None:
             return local_rational_response(step, plate, responses, names=names)
         return frequency_response(step, plate, responses, window_s=window, names=names)
+
+    def _two_plate_frf(
+        self, names: Sequence[str], responses: npt.NDArray[np.float64], window: float
+    ) -> FrequencyResponse:
+        """FRFs to the plate of `wheel` while both plates move: their parts are separated (H1 of two inputs)."""
+        step = self.recording.timestep
+        plates = [f"plate_{wheel}_displacement" for wheel in self.recording.excited]
+        inputs = np.array([self.recording[plate] for plate in plates])
+        try:
+            both = frequency_response_mimo(step, inputs, responses, window_s=window, input_names=plates, names=names)
+        except DataError as error:
+            if "fully correlated" not in str(error):
+                raise
+            common = local_rational_response(step, inputs[0], responses, names=names)
+            note = "both plates move alike: the FRFs are those to their common motion"
+            return dataclasses.replace(common, reasons=(note, *common.reasons))
+        note = f"both plates move: the FRFs are those to {plates[0]} alone, the coherence is that with both"
+        return FrequencyResponse(
+            frequency=both.frequency,
+            response=both.response[:, 0],
+            coherence=both.multiple_coherence,
+            averages=both.averages,
+            segments=0,
+            window=both.window,
+            estimator=f"{both.estimator}, two inputs",
+            resolution_hz=both.resolution_hz,
+            reasons=(note, *both.reasons),
+        )
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
         """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""
@@ -159,12 +195,19 @@ class Run:
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
         """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""
+        _check_wheel(wheel)
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
         return slip_share(self.recording[f"damper_{wheel}_velocity"], limit)
 
     def first_slip(self, wheel: str, velocity: float = SATURATED_VELOCITY) -> float | None:
         """First time [s] with |damper velocity| above a velocity [m/s]; None where there is none."""
+        _check_wheel(wheel)
         return first_slip(self.time, self.recording[f"damper_{wheel}_velocity"], velocity)
+
+
+def _check_wheel(wheel: str) -> None:
+    if wheel not in WHEELS:
+        raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(WHEELS)}")
 
 
 def _is_stuck(damper: str) -> bool:

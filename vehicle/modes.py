@@ -17,7 +17,9 @@ def parser() -> Parser:
         prog="python -m vehicle.modes", description="Modes up to 60 Hz of the assembled car, from its matrices."
     )
     found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
-    found.add_argument("--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE")
+    found.add_argument(
+        "--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help="override a parameter"
+    )
     found.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers")
     found.add_argument("--json", action="store_true", help="print JSON")
     found.add_argument("--debug", action="store_true", help="show the traceback of an error")
@@ -49,7 +51,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
             {
                 "frequency_hz": mode.frequency,
                 "damping_ratio": mode.damping_ratio,
-                "description": mode.description,
+                "description": _named(mode.description, body.mode_names),
                 "energy": mode.energy,
             }
             for mode in car.modes(damper)
@@ -60,6 +62,15 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
             "with_spring_seats_hz": [float(value) for value in body.frequencies * car.vehicle.body.frequency_scale],
         },
     }
+
+
+def _named(description: str, names: tuple[str, ...]) -> str:
+    """The description with the name of the flexible mode behind its number."""
+    head, separator, rest = description.partition("flexible body, mode ")
+    if not separator or head:
+        return description
+    number = rest.split(",")[0]
+    return f"{separator}{number} ({names[int(number) - 1]}){rest[len(number) :]}"
 
 
 def report(found: dict[str, Any]) -> str:

@@ -16,7 +16,7 @@ def parser() -> Parser:
     found = Parser(
         prog="python -m vehicle.shaker",
         description="Put a shaker signal under one wheel of the complete car.",
-        epilog="Exit codes: 0 all done, 2 usage, 3 bad data, 4 simulation failed, 5 something is missing, 6 output.",
+        epilog="Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write.",
     )
     found.add_argument("--input", required=True, metavar="FILE", help="CSV file, or the name of a shipped one: low.csv")
     found.add_argument("--output", type=Path, metavar="DIR", help="folder of the run; runs/<input stem> by default")
@@ -30,7 +30,9 @@ def parser() -> Parser:
         help="override one parameter, as damper.coulomb_friction=93.75; may be repeated",
     )
     found.add_argument(
-        "--wheel", choices=sorted(WHEEL_OF_OPTION), default="front_right", help="wheel of a plain displacement column"
+        "--wheel",
+        choices=sorted(WHEEL_OF_OPTION),
+        help="wheel of a plain displacement column; front_right by default",
     )
     found.add_argument("--timestep", type=float, metavar="S", help="step of the integration [s]")
     found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
@@ -91,13 +93,17 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, overrides)
     signal = read_signal(
         source,
-        wheel=WHEEL_OF_OPTION[options.wheel],
+        wheel=WHEEL_OF_OPTION[options.wheel or "front_right"],
         interpolate=options.interpolate,
         resample_hz=options.resample,
         remove_mean=options.remove_mean,
         accept_implausible=options.road,
     )
 
+    if options.wheel is not None and len(signal.wheels) > 1:
+        raise ConfigurationError(
+            f"--wheel {options.wheel}: {source} names the wheels of its columns; leave --wheel out"
+        )
     if video_name is not None and options.video_start is not None:
         latest = signal.duration - options.video_duration / options.slow_motion
         if not 0.0 <= options.video_start <= latest:
@@ -144,7 +150,7 @@ def report(summary: dict[str, Any], output: Path) -> str:
         f"damper      in slip for {100 * share['fr']:.2f} % (right) and {100 * share['fl']:.2f} % (left) of the time, "
         f"|v| > {1e3 * share['slip_velocity']:g} mm/s",
         f"            friction saturated (|v| > 1 mm/s) for {100 * saturated['fr']:.2f} % and "
-        f"{100 * saturated['fl']:.2f} %; first at {_time(first['fr'])} and {_time(first['fl'])}",
+        f"{100 * saturated['fl']:.2f} %; first {_time(first['fr'])} (right), {_time(first['fl'])} (left)",
     ]
     for channel in (f"knuckle_{summary['input']['wheel']}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
         strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
@@ -169,7 +175,7 @@ def report(summary: dict[str, Any], output: Path) -> str:
 
 
 def _time(value: float | None) -> str:
-    return "never" if value is None else f"{value:.3f} s"
+    return "never" if value is None else f"at {value:.3f} s"
 
 
 if __name__ == "__main__":

@@ -64,7 +64,7 @@ def check_level(path: Path, displacement: Mapping[str, NDArray[np.float64]], tim
                 f"{path}: plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s "
                 f"(below {ACCELERATION_BAND:g} Hz); "
                 f"allowed {LARGEST_ACCELERATION:g} m/s2; looks like mm? Otherwise look there for a jump or a spike "
-                "in the record"
+                "in the record, or give --road if it is a road and no shaker signal"
             )
 
 

@@ -19,7 +19,7 @@ Vector = npt.NDArray[np.float64]
 BAND = (1.0, 50.0)
 TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
 
-DRIVEN = 4e-3
+DRIVEN = 2e-4
 """Share of the largest velocity power density of the plate below which a frequency counts as not driven;
 the leakage of the ends of a record lies below it."""
 

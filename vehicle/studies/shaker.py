@@ -133,6 +133,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
         "frame": FRAME,
         "vehicle": {
             "name": run.car.vehicle.name,
+            **run.car.origin,
             "inertia_variant": run.car.vehicle.body.inertia_variant,
             "inertia": inertia,
             "superelement": run.car.model.superelement.provenance,
@@ -141,12 +142,14 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
             "file": Path(run.signal.source).name,
             "sha256": run.signal.sha256,
             "rms_m": run.signal.rms(run.wheel),
+            "plate_rms_m": {wheel: run.signal.rms(wheel) for wheel in WHEELS},
             "duration_s": run.signal.duration,
             "wheel": run.wheel,
         },
         "slip_share": {wheel: run.slip_share(wheel) for wheel in WHEELS} | {"slip_velocity": damper.slip_velocity},
         "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in WHEELS},
         "first_slip_s": {wheel: run.first_slip(wheel) for wheel in WHEELS},
+        "saturated_velocity": SATURATED_VELOCITY,
         "peaks": _peaks(response),
         "comfort": {place: _comfort(run, place) for place in COMFORT_PLACES},
         "static": {
