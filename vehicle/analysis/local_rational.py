@@ -69,7 +69,7 @@ def local_rational_response(
         The FRF on the record's own lines nearest to the wanted frequencies; NaN where nothing is excited.
 
     Raises:
-        DataError: the record is shorter than twice the lines of one estimate, or the input is zero.
+        DataError: the record holds too few lines below the upper frequency, or the input is zero.
     """
     step = checked_time_step(time_step)
     inputs = checked_signals("excitation", excitation)[0]

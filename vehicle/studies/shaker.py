@@ -38,7 +38,6 @@ class ShakerOptions:
         video: writes the film of a run to a path; None without a film.
         video_name: file name of the film, or a path of its own.
         input_file: file that the signal was read from.
-        asked_wheel: wheel that a plain displacement column drove.
     """
 
     output: Path
@@ -216,10 +215,11 @@ def _unsettled(run: Run) -> list[str]:
 
 def _caption(run: Run, response: FrequencyResponse) -> str:
     """One line under the FRF plot: input, level, estimator."""
+    # One piece is the whole record, whose stretches widen with the frequency; windows have one resolution.
+    widening = " or 3 % of the frequency" if response.segments == 1 else ""
     return (
         f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}, "
-        f"{run.signal.duration:g} s; estimator: {response.estimator}, stretches of {response.resolution_hz:.2g} Hz "
-        f"or 3 % of the frequency"
+        f"{run.signal.duration:g} s; estimator: {response.estimator}, resolution {response.resolution_hz:.2g} Hz{widening}"
     )
 
 
