@@ -219,7 +219,8 @@ def _caption(run: Run, response: FrequencyResponse) -> str:
     widening = " or 3 % of the frequency" if response.segments == 1 else ""
     return (
         f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}, "
-        f"{run.signal.duration:g} s; estimator: {response.estimator}, resolution {response.resolution_hz:.2g} Hz{widening}"
+        f"{run.signal.duration:g} s; estimator: {response.estimator}, "
+        f"resolution {response.resolution_hz:.2g} Hz{widening}"
     )
 
 
