@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -34,14 +34,15 @@ class Statistics:
     """How the run was computed.
 
     Attributes:
-        engine: "mujoco".
+        engine: "mujoco" or "reduced".
         callback: form of the element laws, "native" or "python".
         timestep: [s].
         steps: number of steps.
         wall_time: computing time [s].
         warnings: sentences about the validity of the results.
-        energies: energy balance.
+        energies: energy balance; None of the reduced engine, whose matrices know no parts.
         notices: sentences about the way of computing.
+        within_validity: False where the motion left what the engine holds for, so that another one should answer.
     """
 
     engine: str
@@ -50,8 +51,9 @@ class Statistics:
     steps: int
     wall_time: float
     warnings: tuple[str, ...]
-    energies: Energies
+    energies: Energies | None
     notices: tuple[str, ...] = ()
+    within_validity: bool = True
 
     @property
     def realtime_factor(self) -> float:
@@ -87,6 +89,14 @@ class Recording:
             return self.channels[channel]
         except KeyError:
             raise ConfigurationError(f"no channel {channel!r}; the recording has {', '.join(self.channels)}") from None
+
+    def only(self, channels: Sequence[str]) -> Recording:
+        """The same recording with fewer channels."""
+        return replace(
+            self,
+            channels={name: self[name] for name in channels},
+            units={name: self.units[name] for name in channels},
+        )
 
     @property
     def timestep(self) -> float:

@@ -38,6 +38,7 @@ class ShakerOptions:
         video: writes the film of a run to a path; None without a film.
         video_name: file name of the film, or a path of its own.
         input_file: file that the signal was read from.
+        engine: as of `Car.run`.
     """
 
     output: Path
@@ -46,6 +47,7 @@ class ShakerOptions:
     video: Callable[[Run, Path], None] | None = None
     video_name: Path | None = None
     input_file: Path | None = None
+    engine: str = "mujoco"
 
 
 def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[[float], None]) -> dict[str, Any]:
@@ -67,7 +69,7 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
     _ = car.model
     with output_folder(options.output, force=options.force, protect=options.input_file) as folder:
         try:
-            run = car.run(signal, progress)
+            run = car.run(signal, progress, engine=options.engine)
         except SimulationError as error:
             raise _with_saved_state(error, options.output) from None
         response = run.frf()
@@ -126,6 +128,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
         Plain numbers, texts, lists and dictionaries; None where a value does not exist.
     """
     statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
+    energies = statistics.energies
     notices = [*run.signal.notices, *response.reasons, *_unsettled(run), *statistics.notices]
     inertia = rigid_body(run.car.vehicle.body).report
     return {
@@ -164,10 +167,10 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
             "wall_s": statistics.wall_time,
             "realtime_factor": statistics.realtime_factor,
             "warnings": list(statistics.warnings),
-            "energy_residual": statistics.energies.residual,
-            "work_in_j": statistics.energies.work_in,
-            "dissipated_j": statistics.energies.dissipated,
-            "stored_j": statistics.energies.stored,
+            "energy_residual": energies.residual if energies else None,
+            "work_in_j": energies.work_in if energies else None,
+            "dissipated_j": energies.dissipated if energies else None,
+            "stored_j": energies.stored if energies else None,
         },
         "frf": {
             "estimator": response.estimator,
@@ -220,7 +223,7 @@ def _caption(run: Run, response: FrequencyResponse) -> str:
     return (
         f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}, "
         f"{run.signal.duration:g} s; estimator: {response.estimator}, "
-        f"resolution {response.resolution_hz:.2g} Hz{widening}"
+        f"resolution {response.resolution_hz:.2g} Hz{widening}; engine: {run.recording.statistics.engine}"
     )
 
 

@@ -1,0 +1,136 @@
+"""The car as a sum over its poles: on the rig all that is nonlinear is the force of the two dampers.
+
+With the matrices of `vehicle.linear` (dampers sliding, ideal joints eliminated) the state x = (y, y', f_b) obeys
+
+    x' = A x + B_z z + B_c z' + E f
+
+with the plate heights z and the nonlinear damper forces f (friction, and what a degressive law adds to D v).
+A = V diag(s) V^-1 turns that into one scalar equation for each pole, xi' = s xi + b_z z + b_c z' + e f, and every
+channel into a sum over the poles plus what z, z' and f give directly. Of a conjugate pair only one pole is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg
+
+from vehicle.linear.matrices import CarMatrices
+from vehicle.linear.modes import state_matrix
+from vehicle.names import WHEELS
+
+Vector = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Outputs:
+    """Linear outputs w = Re(poles xi) + height z + velocity z' + force f.
+
+    Attributes:
+        poles: (outputs, p), twice the row for a pole that stands for a pair.
+        height, velocity, force: (outputs, 2) each, in the order of WHEELS.
+    """
+
+    poles: Complex
+    height: Vector
+    velocity: Vector
+    force: Vector
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PoleModel:
+    """Scalar equations of the poles, and what can be read from them.
+
+    Attributes:
+        poles: s [rad/s] with imag(s) >= 0, complex ones first; (p,).
+        pairs: number of complex ones.
+        height, velocity, force: b_z, b_c and e; (p, 2) each, in the order of WHEELS.
+        slip: rows of the damper velocities, real part taken; (2, p).
+        modal: displacements u = Re(modal xi) of the velocity coordinates of MuJoCo; (n, p).
+        matrices: what the model was made from.
+    """
+
+    poles: Complex
+    pairs: int
+    height: Complex
+    velocity: Complex
+    force: Complex
+    slip: Complex
+    modal: Complex
+    matrices: CarMatrices
+    _rates: Complex
+    _push: Vector
+    _drag: Vector
+    _grip: Vector
+
+    def outputs(self, channels: Sequence[str]) -> Outputs:
+        """Rows of acceleration and tyre force channels (without the static tyre load).
+
+        Args:
+            channels: names of `vehicle.names`.
+        """
+        found = [self._tyre(name) if name.startswith("tyre_") else self._acceleration(name) for name in channels]
+        count = len(self.poles)
+        return Outputs(
+            poles=np.array([row[0] for row in found]).reshape(-1, count),
+            height=np.array([row[1] for row in found]).reshape(-1, 2),
+            velocity=np.array([row[2] for row in found]).reshape(-1, 2),
+            force=np.array([row[3] for row in found]).reshape(-1, 2),
+        )
+
+    def _acceleration(self, channel: str) -> tuple[Complex, Vector, Vector, Vector]:
+        row = self.matrices.outputs[channel]
+        return row @ self._rates, row @ self._push, row @ self._drag, row @ self._grip
+
+    def _tyre(self, channel: str) -> tuple[Complex, Vector, Vector, Vector]:
+        """Tyre force on the wheel: k (z - J u) + c (z' - J u')."""
+        m, index = self.matrices, WHEELS.index(channel.split("_")[1])
+        spring = m.plate_stiffness[index] @ self.modal
+        drag = m.plate_damping[index] @ (self.modal * self.poles)
+        here = np.zeros(2)
+        here[index] = 1.0
+        return -(spring + drag), m.tyre_stiffness[index] * here, m.tyre_damping[index] * here, np.zeros(2)
+
+
+def pole_model(matrices: CarMatrices) -> PoleModel:
+    """Poles, residues and outputs of a car.
+
+    Args:
+        matrices: of the assembled car.
+
+    Returns:
+        The model, in continuous time.
+    """
+    state, basis = state_matrix(matrices, stuck=False)
+    size = basis.shape[1]
+    mass = scipy.linalg.cho_factor(basis.T @ matrices.mass @ basis)
+    push = scipy.linalg.cho_solve(mass, basis.T @ matrices.plate_stiffness.T)
+    drag = scipy.linalg.cho_solve(mass, basis.T @ matrices.plate_damping.T)
+    grip = scipy.linalg.cho_solve(mass, basis[matrices.dampers].T)
+    inputs = np.zeros((len(state), 6))
+    inputs[size : 2 * size] = np.hstack([push, drag, grip])
+    poles, vectors = np.linalg.eig(state)
+    kept = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
+    pairs = int(np.count_nonzero(poles.imag > 0.0))
+    residues = np.linalg.solve(vectors, inputs.astype(complex))[kept]
+    # A kept pole of a pair stands for its conjugate too.
+    weighted = vectors[:, kept] * np.where(np.arange(len(kept)) < pairs, 2.0, 1.0)
+    accelerations = state[size : 2 * size] @ weighted
+    return PoleModel(
+        poles=poles[kept].astype(complex),
+        pairs=pairs,
+        height=residues[:, :2],
+        velocity=residues[:, 2:4],
+        force=residues[:, 4:],
+        slip=basis[matrices.dampers] @ weighted[size : 2 * size],
+        modal=basis @ weighted[:size],
+        matrices=matrices,
+        _rates=basis @ accelerations,
+        _push=basis @ push,
+        _drag=basis @ drag,
+        _grip=basis @ grip,
+    )

@@ -1,0 +1,206 @@
+"""A run with the reduced engine: the same recording as the MuJoCo path, in a small part of its time."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.names import WHEELS, channel_units
+from vehicle.parameters.elements import Damper
+from vehicle.reduced.march import LAW_ROWS, March, compiled_march
+from vehicle.reduced.plate_samples import plate_samples
+from vehicle.reduced.pole_model import PoleModel
+from vehicle.reduced.readout import Readout
+from vehicle.reduced.step_factors import StepFactors, step_factors
+from vehicle.reduced.validity import ValidityWatch
+from vehicle.simulation.recording import Recording, Statistics
+
+Vector = npt.NDArray[np.float64]
+
+LONGEST_STEP = 1.25e-4
+"""Longest time step [s]. Linear parts are exact at any step; this one places the instants of sticking and slipping and
+resolves the friction force, which is constant over a step. Against MuJoCo at the same step every channel of the shipped
+inputs agrees within 0.5 % RMS; at 0.2 ms the lateral acceleration of the damper top is 0.7 % off."""
+
+BLOCK = 2048
+"""Samples that are turned into channels at once: they stay in the cache, and memory does not grow with the record."""
+
+
+def simulate_reduced(
+    model: PoleModel,
+    signal: Signal,
+    *,
+    damper: Damper,
+    record_rate: float,
+    tyre_load: Mapping[str, float],
+    channels: Sequence[str] | None = None,
+) -> Recording:
+    """Run a car on its plates with the reduced engine.
+
+    Args:
+        model: the car as a sum over its poles.
+        signal: displacement of the plates.
+        damper: laws of its dampers; their viscous part is in the model already.
+        record_rate: rate of the samples [Hz].
+        tyre_load: static tyre loads [N] by wheel.
+        channels: names of the recorded channels; all by default.
+
+    Returns:
+        The recording; without poses, and without an energy balance.
+
+    Raises:
+        MissingPartError: numba is not installed.
+    """
+    units = channel_units()
+    names = tuple(units) if channels is None else tuple(channels)
+    march = compiled_march()
+    interval = 1.0 / record_rate
+    every = int(np.ceil(interval / LONGEST_STEP - 1e-9))
+    samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
+    step = interval / every
+    plates = plate_samples(signal, step, (samples - 1) * every)
+    run = _Run(model, step_factors(model, step), damper, signal.wheels)
+    # No step at all: compiling is no part of the time of the run.
+    run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
+    started = clock.perf_counter()
+    linear = [name for name in names if not name.startswith(("damper_fr_", "damper_fl_", "plate_"))]
+    readout = Readout(model.outputs(linear), run.factors, model.pairs, run.columns)
+    watch = ValidityWatch(model, run.factors, run.columns, tyre_load)
+    table = np.empty((len(linear), samples))
+    table[:, 0] = readout.at(run.state()[None], plates[:1], run.before[:1])[:, 0] if linear else 0.0
+    run.fill(march, plates, every, readout, table, watch)
+    channel = dict(zip(linear, table, strict=True)) | run.wheel_channels(model, plates[::every])
+    for wheel in WHEELS:
+        if f"tyre_{wheel}_force_z" in channel:
+            channel[f"tyre_{wheel}_force_z"] = channel[f"tyre_{wheel}_force_z"] + tyre_load[wheel]
+    wall = clock.perf_counter() - started
+    return Recording(
+        time=uniform_time(samples=samples, timestep=interval),
+        channels={name: channel[name] for name in names},
+        units={name: units[name] for name in names},
+        excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),
+        pose_time=np.zeros(0),
+        poses=np.zeros((0, 0)),
+        statistics=Statistics(
+            engine="reduced",
+            callback="native",
+            timestep=step,
+            steps=(samples - 1) * every,
+            wall_time=wall,
+            warnings=watch.warnings(),
+            within_validity=watch.small_angles,
+            energies=None,
+        ),
+    )
+
+
+def law_table(damper: Damper) -> Vector:
+    """Constants of the damper laws as the march takes them; (LAW_ROWS, 2), both sides alike."""
+    static = damper.stribeck_friction if damper.friction_law == "stribeck" else damper.coulomb_friction
+    column = np.array(
+        [
+            damper.coulomb_friction,
+            static,
+            damper.stribeck_velocity,
+            damper.stribeck_exponent,
+            damper.smoothing,
+            0.0,
+            0.0,
+        ]
+    )
+    return np.repeat(column.reshape(LAW_ROWS, 1), 2, axis=1)
+
+
+class _Run:
+    """Arrays of one run, as the compiled march takes them.
+
+    Args:
+        model: the car.
+        factors: of its step.
+        damper: laws of the dampers.
+        wheels: driven wheels.
+    """
+
+    def __init__(self, model: PoleModel, factors: StepFactors, damper: Damper, wheels: tuple[str, ...]) -> None:
+        self.factors, self.pairs = factors, model.pairs
+        self.laws = law_table(damper)
+        self.wheels = wheels
+        self.columns = [column for wheel in wheels for column in (WHEELS.index(wheel), 2 + WHEELS.index(wheel))]
+        decay = factors.decay[:, None]
+        rows = np.hstack([decay, model.slip.T, decay * factors.force, factors.plate[:, self.columns]])
+        pairs, reals = rows[: model.pairs], rows[model.pairs :]
+        self.pair_factors = np.ascontiguousarray(np.stack([pairs.real, pairs.imag], axis=2).reshape(model.pairs, -1).T)
+        self.real_factors = np.ascontiguousarray(reals.real.T)
+        self.slip_plate = np.ascontiguousarray((model.slip @ factors.ahead[:, self.columns]).real)
+        self.gain = np.ascontiguousarray((model.slip @ factors.force).real)
+        self.pair, self.real = np.zeros((2, len(pairs))), np.zeros(len(reals))
+        self.force = np.zeros(2)
+        self.velocities = self.before = self.after = np.zeros((1, 2))
+
+    def state(self) -> Vector:
+        """eta of the pairs, real and imaginary, and of the real poles; (2 p + q,)."""
+        return np.concatenate([self.pair[0], self.pair[1], self.real])
+
+    def advance(self, march: March, piece: Vector, every: int, sample: int, states: Vector) -> None:
+        """Take the steps between the rows of `piece`; the first sample they end at is `sample`."""
+        march(
+            self.pair_factors,
+            self.real_factors,
+            self.slip_plate,
+            self.gain,
+            self.laws,
+            piece,
+            self.pair,
+            self.real,
+            self.force,
+            every,
+            sample,
+            states,
+            self.velocities,
+            self.before,
+            self.after,
+        )
+
+    def fill(
+        self,
+        march: March,
+        plates: Vector,
+        every: int,
+        readout: Readout,
+        table: Vector,
+        watch: ValidityWatch,
+    ) -> None:
+        """Fill the table of outputs, (outputs, samples), and the arrays of the dampers."""
+        samples = table.shape[1]
+        self.velocities, self.before, self.after = np.zeros((3, samples, 2))
+        states = np.zeros((BLOCK, len(self.state())))
+        done = 1
+        while done < samples:
+            size = min(BLOCK, samples - done)
+            first, here = (done - 1) * every, slice(done, done + size)
+            piece = plates[first : first + size * every + 1]
+            self.advance(march, piece, every, done, states)
+            ends = piece[every::every]
+            table[:, here] = readout.at(states[:size], ends, self.before[here])
+            watch.look(states[:size], ends, self.before[here])
+            done += size
+        self.after[-1] = self.before[-1]
+        # The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
+        table += readout.force @ (0.5 * (self.before + self.after)).T
+
+    def wheel_channels(self, model: PoleModel, plates: Vector) -> dict[str, Vector]:
+        """Plate displacements, damper velocities and damper forces at the samples."""
+        found = {}
+        for column, wheel in enumerate(WHEELS):
+            driven = wheel in self.wheels
+            height = plates[:, 2 * self.wheels.index(wheel)] if driven else np.zeros(len(plates))
+            velocity = self.velocities[:, column]
+            friction = 0.5 * (self.before[:, column] + self.after[:, column])
+            found[f"plate_{wheel}_displacement"] = height.copy()
+            found[f"damper_{wheel}_velocity"] = velocity.copy()
+            found[f"damper_{wheel}_force"] = model.matrices.viscous[column] * velocity - friction
+        return found
