@@ -1,0 +1,189 @@
+"""The same physics twice: two quarter cars through the reduced engine, against a stiff solver of the lumped model."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from scenarios.quarter_car_in_mujoco import friction_of_the_rows
+from vehicle.analysis.slip import slip_share
+from vehicle.excitation.random_road import random_road
+from vehicle.excitation.signal import Signal
+from vehicle.laws.coulomb import RegularisedCoulomb
+from vehicle.linear.matrices import CarMatrices
+from vehicle.lumped.drive import Sampled
+from vehicle.lumped.quarter_car import quarter_car
+from vehicle.lumped.state_space import state_space
+from vehicle.lumped.stiff_solution import stiff_solution
+from vehicle.parameters.quarter_car import load_quarter_car
+from vehicle.parameters.vehicle import load_vehicle
+from vehicle.reduced.pole_model import pole_model
+from vehicle.reduced.run import simulate_reduced
+
+CAR = load_quarter_car()
+ROAD = random_road(rms=2e-3, seed=2006, duration=8.0, lower_band_edge=0.5, upper_band_edge=50.0)
+NONE = np.zeros((0, 6))
+
+
+def matrices():
+    """Two quarter cars beside each other; coordinates body, wheel, damper over wheel, for the right and the left."""
+    side = {
+        "mass": np.diag([CAR.body.mass, CAR.wheel.mass, 0.0]),
+        "stiffness": np.zeros((3, 3)),
+    }
+    damper, spring, mount = np.array([0.0, 1.0, 1.0]), np.array([1.0, -1.0, 0.0]), np.array([1.0, -1.0, -1.0])
+    side["mass"] += CAR.damper.mass * np.outer(damper, damper)
+    side["stiffness"] += CAR.spring.stiffness * np.outer(spring, spring) + CAR.mount.stiffness * np.outer(mount, mount)
+    side["stiffness"][1, 1] += CAR.wheel.tyre_stiffness
+    both = {name: np.kron(np.eye(2), matrix) for name, matrix in side.items()}
+    wheels = np.array([[0.0, 1, 0, 0, 0, 0], [0, 0, 0, 0, 1, 0]])
+    outputs = {}
+    for wheel, first in (("fr", 0), ("fl", 3)):
+        row = np.zeros(6)
+        row[first + 1] = 1.0
+        outputs[f"knuckle_{wheel}_acc_z"] = row.copy()
+        row[first + 2] = 1.0
+        outputs[f"damper_top_{wheel}_acc_z"] = row
+        outputs[f"suspension_mount_{wheel}_acc_z"] = np.eye(6)[first]
+    return CarMatrices(
+        mass=both["mass"],
+        damping=np.zeros((6, 6)),
+        stiffness=both["stiffness"],
+        constraints=NONE,
+        dampers=np.array([2, 5]),
+        viscous=np.full(2, CAR.damper.damping),
+        branch_rows=NONE,
+        branch_stiffness=np.zeros(0),
+        branch_time=np.zeros(0),
+        plate_stiffness=CAR.wheel.tyre_stiffness * wheels,
+        plate_damping=np.zeros((2, 6)),
+        tyre_stiffness=np.full(2, CAR.wheel.tyre_stiffness),
+        tyre_damping=np.zeros(2),
+        outputs=outputs,
+        body_rows={"body": np.zeros((6, 6))},
+        body_masses={"body": np.eye(6)},
+        modal=slice(0, 0),
+    )
+
+
+def damper(**changes):
+    law = dataclasses.replace(
+        load_vehicle().damper,
+        viscous=CAR.damper.damping,
+        coulomb_friction=CAR.friction.limit,
+        smoothing=CAR.friction.steepness,
+    )
+    return dataclasses.replace(law, **changes)
+
+
+def reduced(signal, **changes):
+    return simulate_reduced(
+        pole_model(matrices()),
+        signal,
+        damper=damper(**changes),
+        record_rate=1000.0,
+        tyre_load={"fr": 1e6, "fl": 1e6},
+        channels=[*matrices().outputs, "damper_fr_velocity", "damper_fl_velocity", "damper_fr_force"],
+    )
+
+
+@pytest.fixture(scope="module")
+def solved():
+    return stiff_solution(friction_of_the_rows(CAR), ROAD.time, road=Sampled(ROAD.displacement["fr"], 1e-3))
+
+
+def compare(found, expected, bounds):
+    for name, bound in bounds.items():
+        b = expected[name]
+        a = found[name][: b.size]
+        assert np.sqrt(np.mean((a - b) ** 2)) < bound * np.sqrt(np.mean(b**2)), name
+
+
+def test_friction_against_the_stiff_solver(solved):
+    run = reduced(ROAD)
+    expected = {
+        "suspension_mount_fr_acc_z": solved.acceleration("body"),
+        "knuckle_fr_acc_z": solved.acceleration("wheel"),
+        "damper_top_fr_acc_z": solved.acceleration("damper"),
+        "damper_fr_velocity": solved.sliding_velocity(),
+    }
+    share = slip_share(expected["damper_fr_velocity"], 1e-3)
+    assert 0.2 < share < 0.95  # it sticks and it slips
+    # Point by point. The damper of 1 kg jumps at the instants of sticking and slipping, which the step rounds.
+    compare(
+        run.channels,
+        expected,
+        {
+            "suspension_mount_fr_acc_z": 1e-3,
+            "knuckle_fr_acc_z": 3e-3,
+            "damper_fr_velocity": 3e-3,
+            "damper_top_fr_acc_z": 5e-2,
+        },
+    )
+    ratio = np.std(run["damper_top_fr_acc_z"]) / np.std(expected["damper_top_fr_acc_z"])
+    assert ratio == pytest.approx(1.0, abs=5e-3)
+    assert slip_share(run["damper_fr_velocity"], 1e-3) == pytest.approx(share, abs=2e-3)
+    # The left car stands still; equal poles of two equal cars mix them in the last digits.
+    assert np.max(np.abs(run["knuckle_fl_acc_z"])) < 1e-9 * np.max(np.abs(run["knuckle_fr_acc_z"]))
+
+
+def test_another_friction_is_another_motion(solved):
+    run = reduced(ROAD, coulomb_friction=0.8 * CAR.friction.limit)
+    wrong = run["knuckle_fr_acc_z"] - solved.acceleration("wheel")
+    assert np.sqrt(np.mean(wrong**2)) > 0.02 * np.std(solved.acceleration("wheel"))
+
+
+def test_both_plates_are_two_cars_at_once(solved):
+    z = ROAD.displacement["fr"]
+    both = reduced(Signal(time=ROAD.time, displacement={"fr": z, "fl": -0.5 * z}))
+    right, left = reduced(ROAD), reduced(Signal(time=ROAD.time, displacement={"fl": -0.5 * z}))
+    for name in ("knuckle_fr_acc_z", "damper_top_fr_acc_z", "damper_fr_velocity"):
+        # The two cars are not connected; sums over their poles are rounded in another order.
+        np.testing.assert_allclose(both[name], right[name], atol=1e-6 * np.max(np.abs(right[name])))
+        other = name.replace("_fr_", "_fl_")
+        np.testing.assert_allclose(both[other], left[other], atol=1e-6 * np.max(np.abs(left[other])))
+
+
+def test_stribeck_against_the_stiff_solver():
+    """A smooth Stribeck law, mild enough that both see the same steepness at rest."""
+    from vehicle.laws.stribeck import Stribeck
+
+    changes = {
+        "friction_law": "stribeck",
+        "coulomb_friction": 40.0,
+        "stribeck_friction": 75.0,
+        "stribeck_velocity": 0.03,
+        "stribeck_exponent": 3.5,
+    }
+
+    class Clamped(Stribeck):
+        """min(limit, c |v|) with the limit of the law: what the friction row answers."""
+
+        def force(self, velocity):
+            limit = self.limit(velocity)
+            share = RegularisedCoulomb(limit=1.0, steepness=self.steepness).force(velocity)
+            return limit * share
+
+        def slope(self, velocity):
+            difference = 1e-9 * (1.0 + np.abs(velocity))
+            return (self.force(velocity + difference) - self.force(velocity - difference)) / (2.0 * difference)
+
+    law = Clamped(
+        sliding_limit=40.0,
+        static_limit=75.0,
+        stribeck_velocity=0.03,
+        exponent=3.5,
+        steepness=CAR.friction.steepness,
+    )
+    network = quarter_car(CAR, damper="friction")
+    network = dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),))
+    solved = stiff_solution(state_space(network), ROAD.time[:3001], road=Sampled(ROAD.displacement["fr"], 1e-3))
+    run = reduced(ROAD, **changes)
+    # The limit is that of the velocity at the beginning of a step: first order in 0.125 ms.
+    compare(
+        run.channels,
+        {"knuckle_fr_acc_z": solved.acceleration("wheel"), "suspension_mount_fr_acc_z": solved.acceleration("body")},
+        {"knuckle_fr_acc_z": 1e-2, "suspension_mount_fr_acc_z": 5e-3},
+    )
