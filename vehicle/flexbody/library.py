@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from importlib import resources
 from pathlib import Path
 
@@ -34,8 +35,16 @@ def find_superelement(name: str, folder: Path | None = None) -> Superelement:
                 raise ConfigurationError(
                     f"body.superelement: {name} is a link that leads out of {place}; put the file itself there"
                 )
-            return read_superelement(file)
+            status = file.stat()
+            return _read_once(file, status.st_mtime_ns, status.st_size)
     known = sorted(file.name for file in PACKAGE_FOLDER.glob("*.toml"))
     raise ConfigurationError(
         f"body.superelement: no file {name!r} beside the vehicle file nor in the package, which has {', '.join(known)}"
     )
+
+
+# A sweep builds thousands of cars on one body; a superelement cannot be changed once it is read.
+@lru_cache(maxsize=8)
+def _read_once(file: Path, modified: int, size: int) -> Superelement:
+    """Read a superelement again only where its file has changed."""
+    return read_superelement(file)

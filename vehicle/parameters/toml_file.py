@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import functools
 import re
 import tomllib
 import types
@@ -55,7 +56,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     Raises:
         ConfigurationError: an unknown name (with the nearest known one), a missing name or a wrong type.
     """
-    hints = typing.get_type_hints(cls)
+    hints = _type_hints(cls)
     fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
@@ -255,3 +256,9 @@ def _copy(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _join(path: str, name: str) -> str:
     return f"{path}.{name}" if path else name
+
+
+@functools.cache
+def _type_hints(kind: type[Any]) -> dict[str, Any]:
+    """Types of the fields of a dataclass; a sweep asks for them thousands of times."""
+    return typing.get_type_hints(kind)
