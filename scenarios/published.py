@@ -1,0 +1,217 @@
+"""Every published result of source 1 beside ours: runs all scenarios, or reads finished ones, and says where we stand.
+
+python -m scenarios.published [--output DIR] [--quick] [--jobs N] [--reuse]
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import sys
+import time as clock
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from scenarios.claim import Claim
+from scenarios.output_folder import prepare_folder, write_text
+from vehicle.command_line import Parser, run_command
+from vehicle.errors import DataError, SimulationError
+
+CAR_SCENARIOS = ("levels", "inertia", "bump", "stribeck", "comfort_sensitivity", "tornado", "tuning")
+LUMPED_SCENARIOS = ("quarter_car",)
+SCENARIOS = CAR_SCENARIOS + LUMPED_SCENARIOS
+"""Scenarios in the order of the table; the first ones take the options of the complete car."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Row:
+    """A published result and the rows of the scenarios that answer it.
+
+    Attributes:
+        name: the row of the table of published results.
+        patterns: names of claims that answer it, `scenario: name` with wild cards.
+    """
+
+    name: str
+    patterns: tuple[str, ...]
+
+
+COMPLETE_CAR = (
+    Row(name="slip share, low / mid / high", patterns=("levels: slip share of the *",)),
+    Row(name="vertical wheel mode", patterns=("levels: vertical wheel mode*",)),
+    Row(name="damper top and knuckle FRF", patterns=("levels: damper top against knuckle*",)),
+    Row(name="roll mode of the body", patterns=("inertia: roll mode*",)),
+    Row(name="six rigid body modes", patterns=("inertia: six rigid body modes",)),
+    Row(name="engine modes", patterns=("inertia: engine modes",)),
+    Row(name="flexible body modes", patterns=("inertia: flexible modes*",)),
+    Row(name="bump 7.5 mm, first slip", patterns=("bump: bump 7.5 mm, first slip*",)),
+    Row(name="bump 1.5 mm, no slip, rings down slowly", patterns=("bump: bump 1.5 mm*", "bump: *ring*down*")),
+    Row(name="Stribeck law, extra peak", patterns=("stribeck: *",)),
+    Row(name="road slip share", patterns=("comfort_sensitivity: *slip share*",)),
+    Row(name="comfort against Fd", patterns=("comfort_sensitivity: *Fd*",)),
+    Row(name="comfort against mount damping", patterns=("comfort_sensitivity: *mount damping*",)),
+    Row(name="comfort against mount stiffness", patterns=("comfort_sensitivity: *mount stiffness*",)),
+)
+"""Rows of "Published results: what the model must reproduce", and where they are answered."""
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = Parser(
+        prog="python -m scenarios.published", description="Every published result of the complete car beside ours."
+    )
+    found.add_argument(
+        "--output", type=Path, default=Path("renders/published"), metavar="DIR", help="folder of the table"
+    )
+    found.add_argument(
+        "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the scenarios' own results"
+    )
+    found.add_argument("--reuse", action="store_true", help="read scenarios that are finished there, run the others")
+    found.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
+    found.add_argument("--jobs", type=int, default=1, metavar="N", help="processes for independent runs; 1 by default")
+    found.add_argument("--force", action="store_true", help="overwrite existing results")
+    found.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    argv = sys.argv[1:] if arguments is None else arguments
+    return run_command(lambda: _job(parser().parse_args(argv)), debug="--debug" in argv)
+
+
+def _job(options: argparse.Namespace) -> None:
+    folder = prepare_folder(options.output, force=options.force)
+    started = clock.perf_counter()
+    results, seconds = {}, {}
+    for number, name in enumerate(SCENARIOS, start=1):
+        print(f"{number}/{len(SCENARIOS)} {name}", flush=True)
+        began = clock.perf_counter()
+        results[name] = scenario_results(name, options)
+        seconds[name] = clock.perf_counter() - began
+    rows = collect(results)
+    uncovered = missing_rows(rows)
+    write(folder, rows, results, uncovered, quick=options.quick)
+    agree = sum(bool(row["within"]) for row in rows)
+    print(
+        f"{folder}: {agree} of {len(rows)} rows agree; see results.md; {clock.perf_counter() - started:.0f} s ("
+        + ", ".join(f"{name} {value:.0f}" for name, value in seconds.items())
+        + ")"
+    )
+
+
+def scenario_results(name: str, options: argparse.Namespace) -> dict[str, Any]:
+    """Content of `results.json` of a scenario, run now unless a finished one may be read.
+
+    Raises:
+        SimulationError: the scenario failed; its own message is printed above.
+        DataError: its file cannot be read.
+    """
+    folder = options.runs / name
+    path = folder / "results.json"
+    if not (options.reuse and path.exists()):
+        arguments = ["--output", str(folder), "--force", "--jobs", str(options.jobs)]
+        if options.quick:
+            arguments.append("--quick")
+        code = importlib.import_module(f"scenarios.{name}").main(arguments)
+        if code:
+            raise SimulationError(f"scenarios.{name}: ended with exit code {code}; its message is above")
+    try:
+        content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise DataError(f"{path}: cannot be read ({error}); run without --reuse") from None
+    return content
+
+
+def collect(results: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of all scenarios with the scenario before their names; those not judged in this run too."""
+    rows = []
+    for scenario, content in results.items():
+        for row in content["rows"]:
+            rows.append({**row, "name": f"{scenario}: {row['name']}"})
+        for name, why in content.get("not_judged", {}).items():
+            rows.append(
+                asdict(
+                    Claim(
+                        name=f"{scenario}: {name}",
+                        published="see the scenario",
+                        ours="not judged in this run",
+                        deviation=None,
+                        within=False,
+                        why=why,
+                    )
+                )
+            )
+    return rows
+
+
+def missing_rows(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Rows of the table of published results that no claim answers."""
+    names = [str(row["name"]) for row in rows]
+    return [
+        row.name
+        for row in COMPLETE_CAR
+        if not any(fnmatchcase(name, pattern) for name in names for pattern in row.patterns)
+    ]
+
+
+def write(
+    folder: Path,
+    rows: Sequence[Mapping[str, Any]],
+    results: Mapping[str, Mapping[str, Any]],
+    uncovered: Sequence[str],
+    *,
+    quick: bool,
+) -> None:
+    """Write `results.md` and `results.json`."""
+    agree = sum(bool(row["within"]) for row in rows)
+    lines = ["# Published results of the complete car and of the quarter car, and ours", ""]
+    lines.append(
+        f"{agree} of {len(rows)} rows agree. A row agrees by the rule that its last column gives; rows that do not say "
+        "why. `deviation` is (ours - published) / published where both are numbers."
+    )
+    if quick:
+        lines += ["", "Made with `--quick`: short signals, numbers differ from those of the full study."]
+    if uncovered:
+        lines += ["", "Published results that no row answers: " + "; ".join(uncovered) + "."]
+    for scenario, content in results.items():
+        own = [row for row in rows if str(row["name"]).startswith(f"{scenario}: ")]
+        good = sum(bool(row["within"]) for row in own)
+        lines += [
+            "",
+            f"## {content['title']}",
+            "",
+            f"`python -m scenarios.{scenario}`: {good} of {len(own)} agree.",
+            "",
+        ]
+        lines += ["| result | published | ours | deviation | within | why |", "|---|---|---|---|---|---|"]
+        lines += [_line(row, scenario) for row in own]
+        for note in content.get("notes", ()):
+            lines += ["", str(note)]
+    write_text(folder / "results.md", "\n".join(lines) + "\n")
+    write_text(folder / "results.json", json.dumps(list(rows), indent=1, allow_nan=False) + "\n")
+
+
+def _line(row: Mapping[str, Any], scenario: str) -> str:
+    deviation = "" if row["deviation"] is None else f"{100.0 * row['deviation']:+.1f} %"
+    cells = (
+        str(row["name"]).removeprefix(f"{scenario}: "),
+        _text(row["published"]),
+        _text(row["ours"]),
+        deviation,
+        "yes" if row["within"] else "NO",
+        str(row["why"]),
+    )
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def _text(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

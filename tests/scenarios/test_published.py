@@ -1,0 +1,104 @@
+"""The table of everything: rows collected, none left out, finished scenarios read."""
+
+from __future__ import annotations
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from scenarios import published
+
+
+def row(name, within=True, **changes):
+    return {
+        "name": name, "published": 1.0, "ours": 1.02, "deviation": 0.02, "within": within, "why": "5 %", **changes
+    }  # fmt: skip
+
+
+CONTENT = {
+    "levels": [row("slip share of the right damper, high [%]"), row("vertical wheel mode, low [Hz]", within=False)],
+    "quarter_car": [row("stick modes [Hz]", published="4.8 | 25", ours="4.8, 25.1", deviation=None)],
+}
+
+
+@pytest.fixture
+def scenarios(monkeypatch, tmp_path):
+    """Two scenarios that write a file and count their runs."""
+    calls: dict[str, list[list[str]]] = {name: [] for name in CONTENT}
+
+    def module(name):
+        def main(arguments):
+            calls[name].append(arguments)
+            folder = tmp_path / "runs" / name
+            assert arguments[:2] == ["--output", str(folder)]
+            folder.mkdir(parents=True, exist_ok=True)
+            content = {"title": f"title of {name}", "rows": CONTENT[name], "notes": [f"made by {name}"]}
+            if name == "levels":
+                content["not_judged"] = {"slip share, mid": "too short"}
+            (folder / "results.json").write_text(json.dumps(content), encoding="utf-8")
+            return 0
+
+        return SimpleNamespace(main=main)
+
+    monkeypatch.setattr(published, "SCENARIOS", tuple(CONTENT))
+    monkeypatch.setattr(published.importlib, "import_module", lambda name: module(name.split(".")[1]))
+    return calls
+
+
+def command(tmp_path, *more):
+    return published.main(["--output", str(tmp_path / "table"), "--runs", str(tmp_path / "runs"), *more])
+
+
+def test_every_row_of_every_scenario_is_in_the_table(scenarios, tmp_path, capsys):
+    assert command(tmp_path, "--quick", "--jobs", "2") == 0
+    assert scenarios["levels"] == [["--output", str(tmp_path / "runs" / "levels"), "--force", "--jobs", "2", "--quick"]]
+    rows = json.loads((tmp_path / "table" / "results.json").read_text(encoding="utf-8"))
+    assert [row["name"] for row in rows] == [
+        "levels: slip share of the right damper, high [%]",
+        "levels: vertical wheel mode, low [Hz]",
+        "levels: slip share, mid",
+        "quarter_car: stick modes [Hz]",
+    ]
+    assert all(set(row) == {"name", "published", "ours", "deviation", "within", "why"} for row in rows)
+    text = (tmp_path / "table" / "results.md").read_text(encoding="utf-8")
+    assert "2 of 4 rows agree" in text and "2 of 4 rows agree" in capsys.readouterr().out
+    assert "| vertical wheel mode, low [Hz] | 1 | 1.02 | +2.0 % | NO | 5 % |" in text
+    assert "| slip share, mid | see the scenario | not judged in this run |  | NO | too short |" in text
+    assert "| stick modes [Hz] | 4.8 \\| 25 | 4.8, 25.1 |  | yes | 5 % |" in text
+    assert "made by quarter_car" in text and "Made with `--quick`" in text
+
+
+def test_published_results_without_a_row_are_named(scenarios, tmp_path):
+    assert command(tmp_path) == 0
+    text = (tmp_path / "table" / "results.md").read_text(encoding="utf-8")
+    missing = text.split("Published results that no row answers: ")[1].split(".\n")[0].split("; ")
+    answered = {"slip share, low / mid / high", "vertical wheel mode"}
+    assert missing == [row.name for row in published.COMPLETE_CAR if row.name not in answered]
+
+
+def test_finished_scenarios_are_read_and_missing_ones_run(scenarios, tmp_path):
+    assert command(tmp_path) == 0
+    (tmp_path / "runs" / "levels" / "results.json").unlink()
+    assert command(tmp_path, "--reuse", "--force") == 0
+    assert {name: len(calls) for name, calls in scenarios.items()} == {"levels": 2, "quarter_car": 1}
+
+
+def test_an_occupied_folder_is_refused_before_anything_runs(scenarios, tmp_path, capsys):
+    assert command(tmp_path) == 0
+    assert command(tmp_path) == 2
+    assert "holds files already" in capsys.readouterr().err
+    assert len(scenarios["levels"]) == 1
+
+
+def test_a_failed_scenario_ends_the_command(scenarios, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(published.importlib, "import_module", lambda name: SimpleNamespace(main=lambda arguments: 3))
+    assert command(tmp_path) == 4
+    assert "scenarios.levels: ended with exit code 3" in capsys.readouterr().err
+
+
+def test_a_broken_file_is_named(scenarios, tmp_path, capsys):
+    assert command(tmp_path) == 0
+    (tmp_path / "runs" / "levels" / "results.json").write_text("{", encoding="utf-8")
+    assert command(tmp_path, "--reuse", "--force") == 3
+    assert "results.json: cannot be read" in capsys.readouterr().err
