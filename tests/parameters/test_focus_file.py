@@ -123,6 +123,19 @@ def test_overrides_change_one_value_and_not_the_table():
     assert load_vehicle(None, ["damper.friction_law=stribeck"]).damper.friction_law == "stribeck"
 
 
+def test_an_override_may_name_an_axis():
+    table = read_table(FOCUS_FILE)
+    path = "bushings.suspension_mount.stiffness"
+    changed = load_vehicle(None, [f"{path}.z=5e5", f"{path}.x=1e6"]).bushings.suspension_mount.stiffness
+    assert changed == (1e6, table["bushings"]["suspension_mount"]["stiffness"][1], 5e5)
+    assert override(table, ["hardpoints.seat_rail.y=-0.4"])["hardpoints"]["seat_rail"][1] == -0.4
+    for wrong in (f"{path}.w=1", f"{path}.z.x=1", "damper.viscous.z=1"):
+        with pytest.raises(ConfigurationError, match="no parameter"):
+            load_vehicle(None, [wrong])
+    with pytest.raises(ConfigurationError, match="must be at least 0.0"):
+        load_vehicle(None, [f"{path}.z=-1"])
+
+
 @pytest.mark.parametrize(
     ("assignment", "message"),
     [

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
+from vehicle.names import AXES
 
 T = TypeVar("T")
 
@@ -56,7 +57,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     Raises:
         ConfigurationError: an unknown name (with the nearest known one), a missing name or a wrong type.
     """
-    hints = _type_hints(cls)
+    hints = _type_hints(cls)  # type: ignore[arg-type]
     fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
@@ -86,7 +87,8 @@ def override(table: dict[str, Any], assignments: Iterable[str]) -> dict[str, Any
 
     Args:
         table: as of `read_table`; not changed.
-        assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML.
+        assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML. A component of a
+            list of three has its axis behind the path: "bushings.suspension_mount.stiffness.z=5e5".
 
     Returns:
         A new table.
@@ -101,18 +103,25 @@ def override(table: dict[str, Any], assignments: Iterable[str]) -> dict[str, Any
             raise ConfigurationError(f"--set {assignment}: needed is PATH=VALUE, as in damper.coulomb_friction=93.75")
         keys = path.strip().split(".")
         inner: Any = result
+        outer: Any = result
+        axis = None
         for depth, key in enumerate(keys):
+            if depth == len(keys) - 1 and key in AXES and isinstance(inner, list) and len(inner) == len(AXES):
+                axis = AXES.index(key)
+                break
             if not isinstance(inner, dict) or key not in inner:
                 known = _paths(result)
                 near = difflib.get_close_matches(path.strip(), known, n=1, cutoff=0.0)
                 raise ConfigurationError(f"--set {assignment}: no parameter {path.strip()}; the nearest is {near[0]}")
-            if depth < len(keys) - 1:
-                inner = inner[key]
-        old = inner[keys[-1]]
-        if isinstance(old, dict):
-            inside = ", ".join(_join(path.strip(), key) for key in list(old)[:6])
+            outer, inner = inner, inner[key]
+        if isinstance(inner, dict):
+            inside = ", ".join(_join(path.strip(), key) for key in list(inner)[:6])
             raise ConfigurationError(f"--set {assignment}: {path.strip()} is a group; set one of {inside}")
-        inner[keys[-1]] = _value(assignment, text.strip(), old)
+        if axis is None:
+            outer[keys[-1]] = _value(assignment, text.strip(), inner)
+        else:
+            value = _value(assignment, text.strip(), inner[axis])
+            outer[keys[-2]] = [value if index == axis else member for index, member in enumerate(inner)]
     return result
 
 

@@ -1,0 +1,88 @@
+"""`python -m vehicle.sweep` as a user runs it."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+
+from vehicle.sweep import every_combination, main, read_table
+
+
+@pytest.fixture
+def signal(tmp_path):
+    from vehicle.excitation.random_road import random_road
+
+    road = random_road(rms=3e-4, seed=1, duration=3.0)
+    path = tmp_path / "road.csv"
+    lines = [f"{t:.3f},{z:.9g}" for t, z in zip(road.time, road.displacement["fr"], strict=True)]
+    path.write_text("time [s],displacement [m]\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def table_of(folder):
+    with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_variations_make_a_table(signal, tmp_path, capsys):
+    output = tmp_path / "out"
+    arguments = ["--input", str(signal), "--output", str(output), "--skip", "0.5", "--engine", "reduced"]
+    arguments += ["--set", "damper.viscous=2000", "--vary", "damper.coulomb_friction=62.5, 250"]
+    assert main([*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]) == 0
+    assert "2 runs, 0 failed" in capsys.readouterr().out
+    rows = table_of(output)
+    assert [row["damper.coulomb_friction"] for row in rows] == ["62.5", "250"]
+    assert {row["damper.viscous"] for row in rows} == {"2000"} and {row["input"] for row in rows} == {"road"}
+    assert float(rows[0]["comfort_overall [m/s2]"]) != float(rows[1]["comfort_overall [m/s2]"]) > 0.0
+    assert {row["engine"] for row in rows} == {"reduced"}
+    # A second time it is refused, goes on, or starts anew.
+    again = [*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]
+    assert main(again) == 2
+    assert "holds a sweep; --resume goes on, --force starts anew" in capsys.readouterr().err
+    assert main([*again, "--resume", "--quiet"]) == 0
+    assert "# 0 runs computed" in (output / "timing.csv").read_text(encoding="utf-8")
+    assert table_of(output) == rows
+
+
+def test_a_table_of_variations(tmp_path):
+    file = tmp_path / "variations.csv"
+    file.write_text("damper.viscous, damper.coulomb_friction\n# a remark\n1500,75\n2250,125\n", encoding="utf-8")
+    assert read_table(file) == (["damper.viscous", "damper.coulomb_friction"], [("1500", "75"), ("2250", "125")])
+    assert every_combination(["a=1,2", "b=x"]) == (["a", "b"], [("1", "x"), ("2", "x")])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message", "code"),
+    [
+        ([], "give either --vary", 2),
+        (["--vary", "damper.viscous"], "needed is PATH=V1,V2", 2),
+        (["--vary", "damper.viscous=1,,2"], "needed is PATH=V1,V2", 2),
+        (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "3"], "road is only 3 s long", 2),
+        (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
+        (["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"], "the nearest is damper.viscous", 2),
+        (["--vary", "damper.viscous=1000", "--executor", "here"], "allowed are dask://host:port", 2),
+        (["--table", "missing.csv"], "cannot be read", 3),
+    ],
+)
+def test_bad_usage(arguments, message, code, signal, tmp_path, capsys):
+    assert main(["--input", str(signal), "--output", str(tmp_path / "out"), *arguments]) == code
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out" / "rows.jsonl").exists()
+
+
+def test_bad_tables(tmp_path, signal, capsys):
+    file = tmp_path / "variations.csv"
+    for text, message in (("a\n", "at least one row"), ("a,b\n1\n", "row 1: 1 cells, the header has 2")):
+        file.write_text(text, encoding="utf-8")
+        assert main(["--input", str(signal), "--output", str(tmp_path / "out"), "--table", str(file)]) == 3
+        assert message in capsys.readouterr().err
+
+
+def test_a_folder_with_other_files_is_refused(signal, tmp_path, capsys):
+    output = tmp_path / "out"
+    output.mkdir()
+    (output / "thesis.txt").write_text("mine", encoding="utf-8")
+    assert main(["--input", str(signal), "--output", str(output), "--vary", "damper.viscous=1", "--force"]) == 2
+    assert "holds other files" in capsys.readouterr().err

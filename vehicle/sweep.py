@@ -1,0 +1,165 @@
+"""`python -m vehicle.sweep`: a table of parameter variations and inputs, and a table of comfort and slip back."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from vehicle.command_line import Parser, ProgressLine, run_command
+from vehicle.names import WHEEL_OF_OPTION
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = Parser(
+        prog="python -m vehicle.sweep",
+        description="Run the car with varied parameters on one or several inputs.",
+        epilog="Exit codes: 0 done (failed runs are rows with their reason), 2 usage, 3 bad data, 5 library missing, "
+        "6 cannot write.",
+    )
+    found.add_argument(
+        "--input", action="append", required=True, metavar="FILE", help="CSV file or a shipped one; may be repeated"
+    )
+    found.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="PATH=V1,V2,...",
+        help="values of a parameter, as damper.coulomb_friction=62.5,125; repeated: every combination",
+    )
+    found.add_argument(
+        "--table", type=Path, metavar="FILE.csv", help="columns are parameter paths, rows are variations"
+    )
+    found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
+    found.add_argument(
+        "--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help="override one parameter"
+    )
+    found.add_argument(
+        "--wheel", choices=sorted(WHEEL_OF_OPTION), default="front_right", help="wheel of a plain displacement column"
+    )
+    found.add_argument("--road", action="store_true", help="accept levels beyond a shaker: a road, not a measurement")
+    found.add_argument(
+        "--engine",
+        choices=("auto", "reduced", "mujoco"),
+        default="auto",
+        help="auto: the reduced engine, MuJoCo where the motion leaves its validity",
+    )
+    found.add_argument(
+        "--skip", type=float, default=2.0, metavar="S", help="seconds left out at the start; 2 by default"
+    )
+    found.add_argument("--jobs", type=int, default=1, metavar="N", help="processes on this machine; 1 by default")
+    found.add_argument(
+        "--executor", metavar="WHERE", help="dask://host:port, or module:factory for an executor of your own"
+    )
+    found.add_argument("--output", type=Path, default=Path("runs/sweep"), metavar="DIR", help="folder of the table")
+    found.add_argument("--resume", action="store_true", help="go on in that folder; finished rows are kept")
+    found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")
+    found.add_argument("--force", action="store_true", help="replace the rows in that folder")
+    found.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    found.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    debug = "--debug" in (sys.argv[1:] if arguments is None else arguments)
+    return run_command(lambda: _job(parser().parse_args(arguments)), debug=debug)
+
+
+def _job(options: argparse.Namespace) -> None:
+    # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.errors import ConfigurationError
+    from vehicle.excitation.input_files import find_input
+    from vehicle.parameters.vehicle import load_vehicle
+    from vehicle.sweeps.case import SignalFile, signal_of, table_cases
+    from vehicle.sweeps.executors import executor_factory
+    from vehicle.sweeps.measure import ComfortMeasure
+    from vehicle.sweeps.store import sweep_folder
+    from vehicle.sweeps.sweep import sweep
+
+    if bool(options.vary) == bool(options.table):
+        raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
+    paths, rows = read_table(options.table) if options.table else every_combination(options.vary)
+    load_vehicle(options.vehicle, options.overrides)
+    fixed = [tuple(text.split("=", 1)) for text in options.overrides]
+    wheel = WHEEL_OF_OPTION[options.wheel]
+    inputs = [
+        SignalFile(path=find_input(name).resolve(), wheel=wheel, accept_implausible=options.road)
+        for name in options.input
+    ]
+    for source in inputs:
+        duration = signal_of(source).duration
+        if options.skip >= duration:
+            raise ConfigurationError(f"--skip {options.skip:g} s: {source.name} is only {duration:g} s long")
+    cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=fixed)
+    make = executor_factory(options.executor, options.jobs)
+    folder = sweep_folder(options.output, resume=options.resume, force=options.force)
+    table = sweep(
+        cases,
+        ComfortMeasure(skip=options.skip),
+        executor=make,
+        folder=folder,
+        retry_failed=options.retry_failed,
+        progress=ProgressLine("sweep     ", enabled=not options.quiet),
+    )
+    if not options.quiet:
+        print(f"{folder}: {len(cases)} runs, {len(table.failed)} failed; table.csv, sweep.json, rows.jsonl, timing.csv")
+        for case, reason in table.failed[:5]:
+            print(f"failed      {case.label}: {reason}")
+
+
+def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Paths and rows of `--vary` options, the last one varying fastest.
+
+    Raises:
+        ConfigurationError: an option is not PATH=V1,V2,...
+    """
+    from itertools import product
+
+    from vehicle.errors import ConfigurationError
+
+    paths, values = [], []
+    for text in texts:
+        path, separator, listed = text.partition("=")
+        items = [item.strip() for item in listed.split(",")]
+        if not separator or not path.strip() or not all(items):
+            raise ConfigurationError(
+                f"--vary {text}: needed is PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; one component of a "
+                "vector has its axis behind the path: bushings.tyre.stiffness.z=2e5,2.5e5"
+            )
+        if path.strip() in paths:
+            raise ConfigurationError(f"--vary {path.strip()}: given twice; list all its values in one option")
+        paths.append(path.strip())
+        values.append(items)
+    return paths, list(product(*values))
+
+
+def read_table(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Paths and rows of a CSV file of variations.
+
+    Raises:
+        DataError: it cannot be read, has no rows, or a row has another number of cells than the header.
+    """
+    from vehicle.errors import DataError
+
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"--table {path}: cannot be read ({error})") from None
+    if len(lines) < 2:
+        raise DataError(f"--table {path}: needed are a header of parameter paths and at least one row of values")
+    header = [cell.strip() for cell in lines[0]]
+    for number, line in enumerate(lines[1:], start=1):
+        if len(line) != len(header) or not all(cell.strip() for cell in line):
+            raise DataError(
+                f"--table {path}, row {number}: {len(line)} cells, the header has {len(header)}; none is empty"
+            )
+    return header, [tuple(cell.strip() for cell in line) for line in lines[1:]]
+
+
+if __name__ == "__main__":
+    sys.exit(main())

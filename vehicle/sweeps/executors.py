@@ -1,0 +1,122 @@
+"""Where the runs of a sweep are carried out: processes here, a Dask cluster, or any executor of your own."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from multiprocessing import connection, get_context, parent_process
+from typing import Any
+
+from vehicle.errors import ConfigurationError, MissingPartError
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+"""Environment variables that number the threads of a process."""
+
+DASK = "dask://"
+
+WATCH = "parent watch"
+
+
+def executor_factory(text: str | None, jobs: int) -> Callable[[], Executor]:
+    """How to make the executor of a sweep, again if its workers have died.
+
+    Args:
+        text: None for processes on this machine; "dask://host:port" for an existing Dask cluster;
+            "module:factory" for a function without arguments that returns an executor.
+        jobs: number of processes on this machine.
+
+    Raises:
+        ConfigurationError: the text is none of these, or `jobs` is below 1.
+        MissingPartError: Dask is asked for and not installed.
+    """
+    if jobs < 1:
+        raise ConfigurationError(f"--jobs {jobs}: must be at least 1")
+    if text is None:
+        return partial(process_pool, jobs)
+    if text.startswith(DASK):
+        return _dask(text.removeprefix(DASK))
+    if text.count(":") == 1 and all(text.split(":")):
+        return _own(*text.split(":"))
+    raise ConfigurationError(f"--executor {text!r}: allowed are dask://host:port and module:factory")
+
+
+def process_pool(jobs: int) -> ProcessPoolExecutor:
+    """Processes on this machine with one thread each: sums are rounded alike whatever the number of workers."""
+    with one_thread_each():
+        pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_ready)
+        # The processes inherit the environment when they start, which is now and not at the first run.
+        for future in [pool.submit(_ready) for _ in range(jobs)]:
+            future.result()
+    return pool
+
+
+@contextmanager
+def one_thread_each() -> Iterator[None]:
+    """Have processes that start now use one thread; numerical libraries read this when they are loaded."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def _ready() -> None:
+    """Load what every run needs; leave an interruption to the parent, and end when it is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    importlib.import_module("vehicle.car")
+    parent = parent_process()
+    if parent is not None and not any(thread.name == WATCH for thread in threading.enumerate()):
+        threading.Thread(target=_end_with, args=(parent.sentinel,), name=WATCH, daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    """End this process with its parent, which may have been killed and then tells nobody."""
+    connection.wait([sentinel])
+    os._exit(1)
+
+
+def _dask(address: str) -> Callable[[], Executor]:
+    """Executor of an existing cluster."""
+    try:
+        distributed: Any = importlib.import_module("distributed")
+    except ImportError:
+        raise MissingPartError(
+            "--executor dask://...: needs Dask; install the extra 'cluster' (pip install 'vehicle[cluster]')"
+        ) from None
+
+    def make() -> Executor:
+        try:
+            client = distributed.Client(address, timeout="10s", set_as_default=False)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise ConfigurationError(f"--executor dask://{address}: no scheduler answers there ({error})") from None
+        executor: Executor = client.get_executor(pure=False)
+        return executor
+
+    return make
+
+
+def _own(module: str, name: str) -> Callable[[], Executor]:
+    """Executor of a function of the user's."""
+    try:
+        factory = getattr(importlib.import_module(module), name)
+    except (ImportError, AttributeError) as error:
+        raise ConfigurationError(f"--executor {module}:{name}: {error}") from None
+
+    def make() -> Executor:
+        executor = factory()
+        if not isinstance(executor, Executor):
+            raise ConfigurationError(
+                f"--executor {module}:{name}: returned {type(executor).__name__}, needed is a "
+                "concurrent.futures.Executor"
+            )
+        return executor
+
+    return make

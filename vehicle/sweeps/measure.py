@@ -1,0 +1,89 @@
+"""What is kept of a run: a few numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from vehicle.analysis.comfort import comfort_value, rms_standard_error
+from vehicle.analysis.slip import slip_share
+from vehicle.car import SATURATED_VELOCITY, Run
+from vehicle.errors import ConfigurationError
+from vehicle.names import AXES, WHEELS, channel_units
+
+
+class Measure(Protocol):
+    """Turns a run into numbers; must be picklable, and its `repr` must tell it from others."""
+
+    @property
+    def channels(self) -> tuple[str, ...] | None:
+        """Channels that are needed; None for all."""
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name of each number to its unit."""
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """The numbers of a run, NaN where one does not exist."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ComfortMeasure:
+    """Comfort values of a place, slip shares, and the RMS of further channels.
+
+    Attributes:
+        place: where comfort is measured.
+        skip: seconds at the beginning that are left out: the car starts at rest.
+        rms_of: further channels whose RMS about the mean is kept.
+    """
+
+    place: str = "seat_rail"
+    skip: float = 2.0
+    rms_of: tuple[str, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        for name in self._needed():
+            if name not in channel_units():
+                raise ConfigurationError(f"measure: no channel {name!r}; there are {', '.join(channel_units())}")
+
+    def _needed(self) -> tuple[str, ...]:
+        places = [f"{self.place}_acc_{axis}" for axis in AXES]
+        return tuple(dict.fromkeys([*places, *(f"damper_{wheel}_velocity" for wheel in WHEELS), *self.rms_of]))
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are needed."""
+        return self._needed()
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name of each number to its unit."""
+        comfort = {f"comfort_{axis}": "m/s2" for axis in (*AXES, "overall")} | {"comfort_error": "-"}
+        slip = {f"{kind}_{wheel}": "-" for kind in ("slip_share", "saturated_share") for wheel in WHEELS}
+        return comfort | slip | {f"{name}_rms": channel_units()[name] for name in self.rms_of}
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip shares, RMS values."""
+        interval = run.recording.timestep
+        kept = slice(round(self.skip / interval), None)
+        xyz = np.array([run[f"{self.place}_acc_{axis}"][kept] for axis in AXES])
+        value = comfort_value(interval, xyz)
+        squares = np.array([value.x, value.y, value.z]) ** 2
+        # Errors of the axes as if they were independent: d(overall)/overall = sum(rms_i^2 error_i) / overall^2 at most.
+        error = float(
+            np.sqrt(np.sum((squares * rms_standard_error(interval, xyz)) ** 2)) / max(np.sum(squares), 1e-300)
+        )
+        numbers = {"comfort_x": value.x, "comfort_y": value.y, "comfort_z": value.z, "comfort_overall": value.overall}
+        numbers["comfort_error"] = error
+        for kind, velocity in (
+            ("slip_share", run.car.vehicle.damper.slip_velocity),
+            ("saturated_share", SATURATED_VELOCITY),
+        ):
+            for wheel in WHEELS:
+                numbers[f"{kind}_{wheel}"] = slip_share(run[f"damper_{wheel}_velocity"][kept], velocity)
+        for name in self.rms_of:
+            numbers[f"{name}_rms"] = float(np.std(run[name][kept]))
+        return numbers

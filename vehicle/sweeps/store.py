@@ -1,0 +1,104 @@
+"""Finished rows on disk: one line of JSON each, written as they arrive, read again when a sweep goes on."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import asdict
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError, DataError, OutputError
+from vehicle.sweeps.worker import Result
+
+ROWS = "rows.jsonl"
+
+
+def sweep_folder(folder: Path, *, resume: bool, force: bool) -> Path:
+    """Make or take up the folder of a sweep.
+
+    Args:
+        folder: where to.
+        resume: keep the rows that are there.
+        force: throw them away.
+
+    Raises:
+        ConfigurationError: it holds rows, and neither is asked for; or it holds files but no sweep.
+        OutputError: it cannot be made.
+    """
+    rows = folder / ROWS
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if rows.exists() and not (resume or force):
+            raise ConfigurationError(f"--output {folder}: holds a sweep; --resume goes on, --force starts anew")
+        if not rows.exists() and any(folder.iterdir()):
+            raise ConfigurationError(f"--output {folder}: holds other files; give another folder")
+        if force and not resume:
+            rows.unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None
+    return folder
+
+
+class Store:
+    """The file `rows.jsonl` of a sweep.
+
+    Args:
+        path: the file; its folder must exist. Lines that are there are kept.
+
+    Raises:
+        DataError: a line in the middle of the file is damaged.
+        OutputError: the file cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.finished = _read(path)
+        try:
+            self._file = path.open("a", encoding="utf-8")
+        except OSError as error:
+            raise OutputError(f"{path}: cannot be written: {error.strerror}; give another folder") from None
+
+    def add(self, key: str, label: str, result: Result) -> None:
+        """Keep a row; when this returns it is on the disk.
+
+        Raises:
+            OutputError: the disk refuses it.
+        """
+        self.finished[key] = result
+        # JSON writes a float with all digits it has, so that a row read again is the same row; NaN is its own word.
+        line = json.dumps({"key": key, "case": label, **asdict(result)})
+        try:
+            self._file.write(line + "\n")
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise OutputError(f"{self.path}: cannot be written: {error.strerror}; {len(self.finished)} rows") from None
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def _read(path: Path) -> dict[str, Result]:
+    """Rows of a file by key; a last line that was cut off in the middle is dropped, and cut from the file."""
+    if not path.exists():
+        return {}
+    finished = {}
+    content = path.read_bytes()
+    whole, _, rest = content.rpartition(b"\n")
+    for number, line in enumerate(whole.split(b"\n") if whole else [], start=1):
+        try:
+            row = json.loads(line)
+            key = str(row["key"])
+            finished[key] = Result(
+                values={str(name): float(value) for name, value in row["values"].items()},
+                engine=str(row["engine"]),
+                reason=str(row["reason"]),
+                seconds=float(row["seconds"]),
+            )
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise DataError(f"{path}, line {number}: not a row of a sweep ({error}); start anew with --force") from None
+    if rest:
+        with path.open("r+b") as file:
+            file.truncate(len(content) - len(rest))
+    return finished

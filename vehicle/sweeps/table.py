@@ -1,0 +1,79 @@
+"""The result of a sweep: a row for each case, in the order of the cases."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError
+from vehicle.output_folder import write_json, write_whole
+from vehicle.sweeps.case import Case
+from vehicle.sweeps.worker import Result
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SweepTable:
+    """Cases, their results, and how they were made.
+
+    Attributes:
+        cases: in the order they were given.
+        results: one for each case.
+        units: name of each number to its unit.
+        made: what the rows depend on, for `sweep.json`.
+    """
+
+    cases: Sequence[Case]
+    results: Sequence[Result]
+    units: Mapping[str, str]
+    made: Mapping[str, Any]
+
+    def column(self, name: str) -> npt.NDArray[np.float64]:
+        """Numbers of a column, NaN where a run failed; (cases,)."""
+        if name not in self.units:
+            raise ConfigurationError(f"no column {name!r}; the table has {', '.join(self.units)}")
+        return np.array([result.values.get(name, math.nan) for result in self.results])
+
+    @property
+    def failed(self) -> list[tuple[Case, str]]:
+        """Cases that failed, with their reasons."""
+        pairs = zip(self.cases, self.results, strict=True)
+        return [(case, result.reason) for case, result in pairs if result.reason]
+
+    def paths(self) -> list[str]:
+        """All parameter paths that are changed in some case, in the order of their first use."""
+        return list(dict.fromkeys(path for case in self.cases for path, _ in case.overrides))
+
+    def text(self) -> str:
+        """The table as CSV, units in the header; the same bytes for the same cases, whoever computed them."""
+        paths, file = self.paths(), io.StringIO()
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(
+            ["input", *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), "engine", "failed because"]
+        )
+        for case, result in zip(self.cases, self.results, strict=True):
+            changed = dict(case.overrides)
+            numbers = [repr(result.values[name]) if name in result.values else "" for name in self.units]
+            writer.writerow(
+                [case.source.name, *(changed.get(path, "") for path in paths), *numbers, result.engine, result.reason]
+            )
+        return file.getvalue()
+
+    def write(self, folder: Path) -> None:
+        """Write `table.csv`, `sweep.json` and `timing.csv`."""
+        text = self.text()
+        write_whole(folder / "table.csv", lambda path: _put(path, text))
+        write_json(folder / "sweep.json", {**self.made, "failed": [case.label for case, _ in self.failed]})
+        times = "case,seconds [s]\n" + "".join(f"{i},{r.seconds:.4f}\n" for i, r in enumerate(self.results))
+        write_whole(folder / "timing.csv", lambda path: _put(path, times))
+
+
+def _put(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,46 @@
+"""What happens in a worker: build the car of a case, run it, measure it; every failure becomes a reason."""
+
+from __future__ import annotations
+
+import threading
+import time as clock
+from dataclasses import dataclass, field
+
+from vehicle.car import Car
+from vehicle.errors import VehicleError
+from vehicle.sweeps.case import Case, signal_of
+from vehicle.sweeps.measure import Measure
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Result:
+    """Numbers of a run, or why there are none.
+
+    Attributes:
+        values: name to number; empty where the run failed.
+        engine: engine that answered; empty where the run failed.
+        reason: why it failed; empty where it did not.
+        seconds: computing time, building the car included [s].
+    """
+
+    values: dict[str, float] = field(default_factory=dict)
+    engine: str = ""
+    reason: str = ""
+    seconds: float = 0.0
+
+
+_ONE_AT_A_TIME = threading.Lock()
+"""MuJoCo's callbacks belong to the whole process, and an executor of threads may be given."""
+
+
+def carry_out(case: Case, measure: Measure) -> Result:
+    """Carry out one run of a sweep."""
+    started = clock.perf_counter()
+    try:
+        with _ONE_AT_A_TIME:
+            car = Car.load(case.vehicle, case.texts())
+            run = car.run(signal_of(case.source), engine=case.engine, channels=measure.channels)
+        values = {name: float(value) for name, value in measure(run).items()}
+    except (VehicleError, ArithmeticError, ValueError, MemoryError) as error:
+        return Result(reason=f"{type(error).__name__}: {error}", seconds=clock.perf_counter() - started)
+    return Result(values=values, engine=run.recording.statistics.engine, seconds=clock.perf_counter() - started)
