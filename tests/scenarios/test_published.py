@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 from types import SimpleNamespace
 
@@ -20,6 +21,16 @@ CONTENT = {
     "levels": [row("slip share of the right damper, high [%]"), row("vertical wheel mode, low [Hz]", within=False)],
     "quarter_car": [row("stick modes [Hz]", published="4.8 | 25", ours="4.8, 25.1", deviation=None)],
 }
+
+
+def replace_scenarios(monkeypatch, module):
+    """Have `scenarios.NAME` be what `module(NAME)` returns."""
+    real = importlib.import_module
+
+    def instead(name, package=None):
+        return module(name.split(".")[1]) if name.startswith("scenarios.") else real(name, package)
+
+    monkeypatch.setattr("importlib.import_module", instead)
 
 
 @pytest.fixture
@@ -42,7 +53,7 @@ def scenarios(monkeypatch, tmp_path):
         return SimpleNamespace(main=main)
 
     monkeypatch.setattr(published, "SCENARIOS", tuple(CONTENT))
-    monkeypatch.setattr(published.importlib, "import_module", lambda name: module(name.split(".")[1]))
+    replace_scenarios(monkeypatch, module)
     return calls
 
 
@@ -92,7 +103,7 @@ def test_an_occupied_folder_is_refused_before_anything_runs(scenarios, tmp_path,
 
 
 def test_a_failed_scenario_ends_the_command(scenarios, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(published.importlib, "import_module", lambda name: SimpleNamespace(main=lambda arguments: 3))
+    replace_scenarios(monkeypatch, lambda name: SimpleNamespace(main=lambda arguments: 3))
     assert command(tmp_path) == 4
     assert "scenarios.levels: ended with exit code 3" in capsys.readouterr().err
 

@@ -265,7 +265,7 @@ def test_without_dask_the_extra_is_named(monkeypatch):
     def without(name):
         raise ImportError(name)
 
-    monkeypatch.setattr(executors.importlib, "import_module", without)
+    monkeypatch.setattr("importlib.import_module", without)
     with pytest.raises(
         MissingPartError, match=r"needs Dask; install the extra 'cluster' \(pip install 'vehicle\[cluster\]'\)"
     ):

@@ -1,0 +1,138 @@
+"""Figures of the bumps: time histories as in figures 3.13 to 3.20, friction limits as in figure 3.12, ring-down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.bump_claims import PUBLISHED_FRICTION, BumpNumbers
+from scenarios.car_charts import figure_file, rows_of
+from scenarios.car_study import computed_by
+from scenarios.relative_acceleration import relative_acceleration
+from scenarios.ring_down import SHARE, ring_down_time
+from vehicle.car import Run
+from vehicle.excitation.bump import BUMP_START_S
+from vehicle.rendering.figure import COLOURS
+
+VERTICAL = {
+    "seat rail (3.13)": "seat_rail_acc_z",
+    "seat (3.14)": "seat_acc_z",
+    "knuckle (3.15)": "knuckle_fr_acc_z",
+    "damper top": "damper_top_fr_acc_z",
+    "engine (3.17)": "engine_acc_z",
+    "roof left rear (3.18)": "roof_left_rear_acc_z",
+    "body front": "body_front_acc_z",
+}
+
+HORIZONTAL = {"seat rail x (3.19)": "seat_rail_acc_x", "seat rail y (3.20)": "seat_rail_acc_y"}
+
+RINGING = {"seat rail": "seat_rail", "engine": "engine", "roof left rear": "roof_left_rear"}
+
+NOISY, QUIET = "#9dbbe0", "#12365f"
+"""Colours of the run with noise and of the same bump alone."""
+
+SHOWN = 3.5
+"""Length of the time histories [s]; the source shows 3 s."""
+
+
+def history_figures(
+    folder: Path, bumps: Sequence[Run], still: Sequence[Run], sizes: Sequence[float], start: float
+) -> None:
+    """Write the time histories of all points, the low bump at the left and the high one at the right.
+
+    Args:
+        folder: where to.
+        bumps: low and high bump with noise.
+        still: the same without noise.
+        sizes: A of each [m].
+        start: of the bump [s].
+    """
+    for name, title, channels in (
+        ("histories_vertical", "Vertical accelerations", VERTICAL),
+        ("histories_horizontal", "Horizontal accelerations of the seat rail", HORIZONTAL),
+    ):
+        note = _caption(bumps[0], "light: with the random noise of 0.05 mm RMS, dark: the bump alone")
+        with figure_file(folder / f"{name}.png", (13.0, 1.0 + 1.45 * len(channels)), title, note) as figure:
+            axes = rows_of(figure, len(channels), 2)
+            for column, (noisy, quiet, size) in enumerate(zip(bumps, still, sizes, strict=True)):
+                axes[0, column].set_title(f"A = {1e3 * size:g} mm")
+                for axis, (label, channel) in zip(axes[:, column], channels.items(), strict=True):
+                    for run, colour, width in ((noisy, NOISY, 0.7), (quiet, QUIET, 1.1)):
+                        keep = (run.time >= start - 0.25) & (run.time <= start - 0.25 + SHOWN)
+                        shift = BUMP_START_S - start
+                        axis.plot(run.time[keep] + shift, run[channel][keep], color=colour, linewidth=width)
+                    if column == 0:
+                        axis.set_ylabel(f"{label}\n[m/s²]")
+    note = _caption(bumps[1], "relative acceleration along the strut axis; zero while the damper sticks")
+    title = "Acceleration of the damper top relative to the knuckle (figure 3.16)"
+    with figure_file(folder / "relative_acceleration.png", (11.0, 5.6), title, note) as figure:
+        axes = rows_of(figure, 2, 1)[:, 0]
+        for axis, run, size in zip(axes, bumps, sizes, strict=True):
+            keep = (run.time >= start - 0.05) & (run.time <= start + 0.8)
+            values = relative_acceleration(run)[keep]
+            axis.plot(run.time[keep] + BUMP_START_S - start, values, color=COLOURS[0])
+            axis.set(ylabel="relative acceleration\n[m/s²]", title=f"A = {1e3 * size:g} mm")
+
+
+def friction_figure(path: Path, runs: Mapping[float, Run], values: BumpNumbers, start: float) -> None:
+    """Write the relative acceleration for every friction limit, and the time of the first slip over it."""
+    from matplotlib import colormaps
+
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(runs)))
+    note = _caption(
+        next(iter(runs.values())),
+        "A = 7.5 mm; left: relative acceleration along the strut axis; right: first sample of the damper above 1 mm/s",
+    )
+    with figure_file(
+        path, (12.5, 4.6), "First slip after the 7.5 mm bump against friction (figure 3.12)", note
+    ) as figure:
+        history, times = figure.subplots(1, 2, width_ratios=(2.2, 1.0))
+        for (friction, run), shade in zip(runs.items(), shades, strict=True):
+            keep = (run.time >= start) & (run.time <= start + 0.15)
+            history.plot(
+                run.time[keep] + BUMP_START_S - start,
+                relative_acceleration(run)[keep],
+                color=shade,
+                linewidth=2.0 if friction == PUBLISHED_FRICTION else 1.1,
+                label=f"Fd {friction:g} N",
+            )
+        history.axvline(5.035, color="#555555", linewidth=0.9, linestyle="--", label="published, 125 N")
+        history.set(xlabel="time [s]", ylabel="relative acceleration [m/s²]")
+        history.legend(loc="best")
+        known = [(friction, time) for friction, time in values.first_slip.items() if time is not None]
+        times.plot(*zip(*known, strict=True), "o-", color=COLOURS[0], label="here")
+        times.errorbar([PUBLISHED_FRICTION], [5.035], yerr=[0.01], fmt="s", color=COLOURS[1], label="published, ±10 ms")
+        times.set(xlabel="friction limit Fd [N]", ylabel="first slip [s]")
+        times.ticklabel_format(axis="y", useOffset=False)
+        times.legend(loc="upper left")
+
+
+def ring_down_figure(path: Path, still: Sequence[Run], sizes: Sequence[float], end: float) -> None:
+    """Write how seat rail, engine and roof ring down after both bumps, relative to their largest value after it."""
+    note = _caption(
+        still[0],
+        "vertical acceleration without noise over its largest value after the bump; band: 20 %; dotted: the last time "
+        "outside it",
+    )
+    with figure_file(path, (12.5, 6.6), "Ring-down after the bump", note) as figure:
+        axes = rows_of(figure, len(RINGING), 1, sharey=True)[:, 0]
+        for axis, (label, place) in zip(axes, RINGING.items(), strict=True):
+            for run, size, colour in zip(still, sizes, COLOURS, strict=False):
+                motion = run[f"{place}_acc_z"]
+                after = (run.time >= end) & (run.time <= end + 4.0)
+                relative = motion / np.max(np.abs(motion[run.time >= end]))
+                axis.plot(run.time[after] - end, relative[after], color=colour, label=f"A = {1e3 * size:g} mm")
+                axis.axvline(ring_down_time(run.time, motion, end), color=colour, linestyle=":", linewidth=1.3)
+            axis.axhspan(-SHARE, SHARE, color="#e2e2e2", zorder=0)
+            axis.set(ylim=(-1.1, 1.1), ylabel=f"{label}\n[-]")
+        axes[0].legend(loc="upper right")
+        axes[-1].set_xlabel("time after the bump [s]")
+
+
+def _caption(run: Run, what: str) -> str:
+    return (
+        f"{what}. Bump under the right front wheel from t = {BUMP_START_S:g} s; time histories, no averages; "
+        f"{computed_by(run)}"
+    )

@@ -1,0 +1,131 @@
+"""Charts of the complete car: FRFs with phase and coherence, time histories; written whole or not at all."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.car import Run
+from vehicle.output_folder import write_whole
+from vehicle.rendering.figure import COLOURS, saved_figure
+from vehicle.rendering.frf_plot import BAND, TICKS, driven, wrapped_phase
+
+Vector = npt.NDArray[np.float64]
+
+LEVEL_COLOURS = (COLOURS[0], COLOURS[3], COLOURS[1])
+"""Blue, orange and red for low, mid and high; for two variants the first and the last."""
+
+INK = "#444444"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FrfCurve:
+    """One FRF to draw.
+
+    Attributes:
+        label: legend text.
+        frequency: [Hz], (m,).
+        response: [m/s2 per m], (m,); NaN where it is not drawn.
+        colour: of the line.
+        coherence: [-], (m,); None for a linear model, which has none.
+        style: of the line.
+    """
+
+    label: str
+    frequency: Vector
+    response: npt.NDArray[np.complex128]
+    colour: str
+    coherence: Vector | None = None
+    style: str = "-"
+
+
+def measured_curve(
+    run: Run, response: FrequencyResponse, row: int, label: str, colour: str, style: str = "-"
+) -> FrfCurve:
+    """Curve of one row of an estimated FRF, left out where the plate hardly moves."""
+    plate = run[f"plate_{run.wheel}_displacement"]
+    inside = driven(run.recording.timestep, plate, response.frequency)
+    return FrfCurve(
+        label=label,
+        frequency=response.frequency,
+        response=np.where(inside, response.response[row], np.nan),
+        coherence=np.where(inside, response.coherence[row], np.nan),
+        colour=colour,
+        style=style,
+    )
+
+
+def draw_frf(
+    path: Path,
+    title: str,
+    caption: str,
+    columns: Sequence[tuple[str, Sequence[FrfCurve]]],
+    marks: Sequence[tuple[str, float, str]] = (),
+) -> None:
+    """Write a figure of FRFs: magnitude (log), phase and coherence over 1 to 50 Hz, one column for each group.
+
+    Args:
+        path: PNG file.
+        title: over all columns.
+        caption: estimator, averages, level and engine.
+        columns: title and curves of each.
+        marks: label, frequency [Hz] and colour of vertical lines in all columns.
+    """
+    with figure_file(path, (max(7.2, 5.2 * len(columns)), 7.4), title, caption) as figure:
+        axes = figure.subplots(3, len(columns), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False)
+        for (heading, curves), (magnitude, phase, coherence) in zip(columns, axes.T, strict=True):
+            for curve in curves:
+                look = {"color": curve.colour, "linestyle": curve.style}
+                magnitude.plot(curve.frequency, np.abs(curve.response), label=curve.label, **look)
+                phase.plot(curve.frequency, wrapped_phase(curve.response), **look)
+                if curve.coherence is not None:
+                    coherence.plot(curve.frequency, curve.coherence, **look)
+            for label, frequency, colour in marks:
+                for axis in (magnitude, phase):
+                    axis.axvline(frequency, color=colour, linestyle="--", linewidth=0.9, label=label)
+            magnitude.set_title(heading)
+            magnitude.legend(loc="lower right")
+            coherence.set_xlabel("frequency [Hz]")
+        upper, middle, lower = axes[:, 0]
+        upper.set(xscale="log", yscale="log", xlim=BAND, ylabel="acceleration / plate displacement [(m/s²)/m]")
+        middle.set(ylim=(-180.0, 180.0), yticks=(-180, -90, 0, 90, 180), ylabel="phase [deg]")
+        lower.set(ylim=(0.0, 1.05), yticks=(0, 0.5, 1), ylabel="coherence [-]")
+        for axis in axes[2]:
+            axis.set_xticks(TICKS, [str(tick) for tick in TICKS])
+            axis.set_xticks([], minor=True)
+        figure.align_ylabels(axes[:, 0])
+
+
+@contextmanager
+def figure_file(path: Path, size: tuple[float, float], title: str, caption: str) -> Iterator[Any]:
+    """Give an empty figure with title and caption; write it under a temporary name and rename it when complete."""
+    draft = path.with_name(f".{path.name}.draft.png")
+    try:
+        with saved_figure(draft, size) as figure:
+            yield figure
+            figure.suptitle(title, fontsize=12)
+            figure.supxlabel("\n".join(textwrap.wrap(caption, width=int(14.5 * size[0]))), fontsize=8.5, color=INK)
+        write_whole(path, lambda temporary: _move(draft, temporary))
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def _move(source: Path, target: Path) -> None:
+    source.replace(target)
+
+
+def rows_of(figure: Any, count: int, columns: int, **options: Any) -> Any:
+    """Axes of a grid of time histories: one time axis a column, labels only at the bottom."""
+    axes = figure.subplots(count, columns, sharex="col", squeeze=False, **options)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]")
+    figure.align_ylabels(axes[:, 0])
+    return axes

@@ -1,0 +1,131 @@
+"""What the scenarios of the complete car share: options, findings, and how they are written down."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time as clock
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from scenarios.car_runs import CarRuns
+from scenarios.claim import Claim, write_claims
+from scenarios.output_folder import prepare_folder
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.car import ENGINES, Run
+from vehicle.command_line import Parser, run_command
+from vehicle.errors import ConfigurationError
+
+QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Findings:
+    """Result of a scenario.
+
+    Attributes:
+        title: first line of the text.
+        claims: published statements beside ours.
+        unjudged: statements that short signals cannot judge: name, and why.
+        notes: paragraphs below the table.
+        data: further numbers for `results.json`.
+    """
+
+    title: str
+    claims: Sequence[Claim]
+    unjudged: Mapping[str, str] = field(default_factory=dict)
+    notes: Sequence[str] = ()
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+    def write(self, folder: Path) -> None:
+        """Write `results.md` and `results.json`."""
+        left = [f"Not judged here: {name}: {why}." for name, why in self.unjudged.items()]
+        data = {"not_judged": dict(self.unjudged), **self.data}
+        write_claims(folder, self.title, self.claims, [*left, *self.notes], data)
+
+
+def car_parser(name: str, description: str) -> argparse.ArgumentParser:
+    """Parser with the options every scenario of the complete car has.
+
+    Args:
+        name: module name; results go to runs/<name> without --output.
+        description: one line.
+    """
+    parser = Parser(prog=f"python -m scenarios.{name}", description=description)
+    parser.add_argument("--output", type=Path, default=Path("runs") / name, metavar="DIR", help="folder of the results")
+    parser.add_argument(
+        "--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default"
+    )
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="override one parameter, as damper.viscous=2000; may be repeated",
+    )
+    parser.add_argument("--engine", choices=ENGINES, default="mujoco", help="what computes the runs; mujoco by default")
+    parser.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes for independent runs; 1 by default")
+    parser.add_argument("--force", action="store_true", help="overwrite an existing folder")
+    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    return parser
+
+
+def run_car_study(
+    parser: argparse.ArgumentParser,
+    study: Callable[[CarRuns, Path, argparse.Namespace], Findings],
+    arguments: list[str] | None,
+) -> int:
+    """Parse, run a scenario, write its results, and turn errors into one message and an exit code.
+
+    Args:
+        parser: of `car_parser`.
+        study: computes, draws into the folder and returns the findings.
+        arguments: without the program name; those of the process by default.
+
+    Returns:
+        Exit code, as of `run_command`.
+    """
+    argv = sys.argv[1:] if arguments is None else arguments
+
+    def job() -> None:
+        options = parser.parse_args(argv)
+        if options.jobs < 1:
+            raise ConfigurationError(f"--jobs {options.jobs}: must be at least 1")
+        started = clock.perf_counter()
+        runs = CarRuns(vehicle=options.vehicle, overrides=options.overrides, engine=options.engine, jobs=options.jobs)
+        # A wrong parameter is refused before the folder is made.
+        runs.car()
+        folder = prepare_folder(options.output, force=options.force)
+        found = study(runs, folder, options)
+        found.write(folder)
+        agree = sum(claim.within for claim in found.claims)
+        left = f", {len(found.unjudged)} not judged" if found.unjudged else ""
+        seconds = clock.perf_counter() - started
+        print(f"{folder}: {agree} of {len(found.claims)} statements agree{left}; see results.md; {seconds:.0f} s")
+
+    return run_command(job, debug="--debug" in argv)
+
+
+def computed_by(run: Run) -> str:
+    """Engine and step of a run, for captions and notes."""
+    statistics = run.recording.statistics
+    return f"engine {statistics.engine}, step {1e3 * statistics.timestep:g} ms"
+
+
+def estimator_text(response: FrequencyResponse) -> str:
+    """Estimator, averages and resolution of FRFs from whole records, for captions."""
+    return (
+        f"estimator: {response.estimator} on the whole record, {response.averages:g} averages (degrees of freedom), "
+        f"resolution {response.resolution_hz:.2g} Hz or 3 % of the frequency"
+    )
+
+
+def setting(runs: CarRuns, run: Run, quick: bool) -> list[str]:
+    """Paragraphs that say what all numbers were made with."""
+    file = "the car of source 1" if runs.vehicle is None else runs.vehicle.name
+    changes = f", changed: {', '.join(runs.overrides)}" if runs.overrides else ""
+    return [f"Made with {file}{changes}; {computed_by(run)}.", *([QUICK_NOTE] if quick else [])]

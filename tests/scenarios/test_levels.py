@@ -1,0 +1,92 @@
+"""`python -m scenarios.levels` as a user runs it, and how its numbers are read off."""
+
+import json
+
+import numpy as np
+import pytest
+
+from scenarios.levels import main
+from scenarios.levels_claims import (
+    PUBLISHED_SLIP,
+    LevelNumbers,
+    frequency_claims,
+    order_claims,
+    quarter_turn,
+    slip_claims,
+)
+from scenarios.levels_figures import DAMPER, OUTPUTS
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study") / "levels"
+    assert main(["--output", str(folder), "--quick"]) == 0
+    return folder
+
+
+def test_short_signals_judge_only_what_they_can(results):
+    content = json.loads((results / "results.json").read_text(encoding="utf-8"))
+    assert {path.name for path in results.iterdir()} == {
+        "results.md",
+        "results.json",
+        "seat_rail_z.png",
+        "damper_top_and_knuckle_z.png",
+    }
+    rows = {row["name"]: row["within"] for row in content["rows"]}
+    # These follow from the friction alone: a larger input slips more.
+    assert rows["damper top against knuckle, mid and high"] is True
+    assert rows["vertical wheel mode for mid and high against low, damping"] is True
+    left = set(content["not_judged"])
+    assert {f"slip share of the right damper, {level} [%]" for level in PUBLISHED_SLIP} <= left
+    assert not left & set(rows)
+    shares = [content["levels"][level]["slip"][0] for level in ("low", "mid", "high")]
+    assert shares == sorted(shares)
+    assert shares[0] < 0.005 < shares[2]
+    assert "| high | 21.8 |" in (results / "results.md").read_text(encoding="utf-8")
+
+
+def test_every_output_of_chapter_3_has_a_figure():
+    assert len(OUTPUTS) == 8
+    assert DAMPER[0] in OUTPUTS
+    assert {name for name, _ in OUTPUTS.values()} >= {"seat_z", "engine_z", "roof_left_rear_z", "seat_rail_x"}
+
+
+def test_the_resonance_is_where_the_phase_passes_ninety_degrees():
+    frequency = np.arange(20.0, 35.0, 0.1)
+    natural, damping = 27.34, 0.15
+    ratio = frequency / natural
+    # Acceleration over displacement of a mass on a spring whose other end moves: its real part is zero at the natural
+    # frequency whatever the damping, while the largest line is not there.
+    response = -((2 * np.pi * frequency) ** 2) / (1.0 - ratio**2 + 2j * damping * ratio).astype(complex)
+    magnitude = np.abs(response)
+    # Straight between lines 0.1 Hz apart: 0.1 ** 2 over the width of the peak.
+    assert quarter_turn(frequency, response, magnitude) == pytest.approx(natural, abs=0.005)
+    assert frequency[np.argmax(magnitude)] > natural + 0.3
+    assert np.isnan(quarter_turn(frequency[:20], response[:20], magnitude[:20]))
+
+
+def level(slip, wheel_hz, peak, ratio):
+    return LevelNumbers(
+        slip=slip,
+        saturated=slip,
+        wheel_hz=wheel_hz,
+        wheel_peak_hz=wheel_hz,
+        wheel_peak=peak,
+        body_peak=peak,
+        damper_ratio=ratio,
+    )
+
+
+def test_rows_disagree_where_the_numbers_do():
+    good = {
+        "low": level((0.0, 0.0), 28.0, 3.0, 1.0),
+        "mid": level((0.039, 0.0), 27.5, 2.0, 0.9),
+        "high": level((0.218, 0.0), 26.0, 1.0, 0.8),
+    }
+    assert all(claim.within for claim in (*slip_claims(good, 0.01), *frequency_claims(good), *order_claims(good)))
+    bad = {
+        "low": level((0.04, 0.04), 30.0, 1.0, 0.9),
+        "mid": level((0.08, 0.04), 30.0, 2.0, 0.9),
+        "high": level((0.17, 0.04), 30.0, 1.0, 0.9),
+    }
+    assert not any(claim.within for claim in (*slip_claims(bad, 0.01), *frequency_claims(bad), *order_claims(bad)))
