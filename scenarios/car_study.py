@@ -66,7 +66,9 @@ def car_parser(name: str, description: str) -> argparse.ArgumentParser:
         metavar="PATH=VALUE",
         help="override one parameter, as damper.viscous=2000; may be repeated",
     )
-    parser.add_argument("--engine", choices=ENGINES, default="mujoco", help="what computes the runs; mujoco by default")
+    parser.add_argument(
+        "--engine", choices=ENGINES, default="mujoco", help="what computes the runs; %(default)s by default"
+    )
     parser.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes for independent runs; 1 by default")
     parser.add_argument("--force", action="store_true", help="overwrite an existing folder")

@@ -40,7 +40,7 @@ TOP = {
     "command_line": set(),
     "car": {"analysis", "excitation", "flexbody", "linear", "parameters", "reduced", "simulation"},
     "studies": set(ROOMS) | {"car"} | OUTPUT,
-    "sweeps": {"analysis", "car", "excitation", "parameters", "rendering"},
+    "sweeps": {"analysis", "car", "excitation", "flexbody", "parameters"} | OUTPUT,
     "tuning": {"analysis", "car", "excitation", "linear", "parameters", "reduced", "rendering", "simulation"},
     "sweep": COMMAND | OUTPUT | {"car", "excitation", "parameters", "sweeps"},
     "shaker": COMMAND | OUTPUT | {"car", "excitation", "rendering", "studies"},

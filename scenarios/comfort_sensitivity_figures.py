@@ -1,0 +1,182 @@
+"""Figures of the comfort study: histories, spectra, relative comfort (4.1 to 4.12 of source 1), and the band edge."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.car_charts import figure_file
+from scenarios.comfort_observation import SEAT_RAIL, chosen_engine
+from scenarios.comfort_sensitivity_claims import PUBLISHED
+from scenarios.comfort_sensitivity_runs import Changes, ComfortRuns, Curves, Point, Variation
+from scenarios.road_signals import PUBLISHED_SLIP, RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.analysis.comfort import COMFORT_BAND
+from vehicle.analysis.spectra import power_spectral_density
+from vehicle.car import Run
+from vehicle.rendering.figure import COLOURS
+
+EXCERPT_S = (27.0, 27.5)
+"""Time shown by source 1 [s]."""
+
+WINDOW_S = 4.0
+"""Length of the windows of the spectra [s]."""
+
+ROAD_COLOURS = {"smooth": COLOURS[0], "rough": COLOURS[3]}
+
+SHOWN = 5
+"""Most values of a parameter whose histories and spectra are drawn."""
+
+
+def draw_variation(
+    path: Path,
+    comfort: ComfortRuns,
+    variation: Variation,
+    curves: Curves,
+    *,
+    base: Changes = (),
+    title: str = "",
+    beside: Mapping[str, Curves] | None = None,
+) -> None:
+    """Write the figure of a parameter: seat rail over time, its spectrum, relative comfort; a column for each road.
+
+    Args:
+        path: PNG file.
+        comfort: what runs the cars.
+        variation: the parameter.
+        curves: its points.
+        base: changes of all its cars.
+        title: of the figure; that of the variation by default.
+        beside: further curves of relative comfort, by label.
+    """
+    cars = comfort.cars(variation, base)
+    step = max(1, -(-len(cars) // SHOWN))
+    shown = {value: car for index, (value, car) in enumerate(cars.items()) if index % step == 0}
+    nominal = variation.nominal(comfort.runs.car().vehicle)
+    engine = chosen_engine("auto")
+    numbers = f"figures {variation.figures}" if variation.figures else "beyond the source"
+    heading = title or f"Comfort against {variation.label} ({numbers})"
+    spectra = f"spectra: Welch, Hann windows of {WINDOW_S:g} s, half overlapping, first record"
+    caption = (
+        f"Roads of {_levels()}, under the right front wheel. Histories and {spectra}, engine {engine}. "
+        f"Comfort: RMS of the seat rail, x, y and z, unfiltered, {COMFORT_BAND[0]:g} to {COMFORT_BAND[1]:g} Hz, "
+        f"relative to the reference on the same records; mean of {comfort.records.text()}, engine {comfort.engine}; "
+        f"bars: two standard errors over the records"
+    )
+    with figure_file(path, (10.4, 10.4), heading, caption) as figure:
+        axes = figure.subplots(3, 2)
+        for (history, spectrum, relative), road in zip(axes.T, ROAD_RMS, strict=True):
+            for (value, car), colour in zip(shown.items(), COLOURS, strict=False):
+                run = _first_record(comfort, car, road, engine)
+                look = {
+                    "color": colour,
+                    "label": f"{value:g}{' (reference)' if value == nominal else ''}",
+                    "linewidth": 1.0,
+                }
+                _history(history, run, look)
+                _spectrum(spectrum, run, comfort.records.lead, look)
+            history.set_title(f"{road} road")
+            _legend_above(history)
+            _comfort(relative, curves[road], ROAD_COLOURS[road], "this car" if beside else None)
+            for (label, others), style in zip((beside or {}).items(), ("--", ":"), strict=False):
+                _comfort(relative, others[road], "#555555", label, style)
+            ends = {} if base else PUBLISHED.get((variation.name, road), {})
+            if ends:
+                relative.plot(
+                    list(ends),
+                    list(ends.values()),
+                    "D",
+                    mfc="none",
+                    color=COLOURS[1],
+                    label="published, read off the axes",
+                )
+            if beside or ends:
+                relative.legend()
+            relative.set_xlabel(variation.label)
+        axes[0, 0].set_ylabel("seat rail, z [m/s²]")
+        axes[1, 0].set_ylabel("PSD of the seat rail, z [(m/s²)²/Hz]")
+        axes[2, 0].set_ylabel("relative comfort value [%]")
+        figure.align_ylabels(axes[:, 0])
+
+
+def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequence[Point]]) -> None:
+    """Write the figure of the slip shares over the band edge of the roads; `value` of the points is the edge [Hz]."""
+    slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
+    caption = (
+        f"Share of the time with the right damper above {1e3 * slip_velocity:g} mm/s (full) and above 1 mm/s (dotted), "
+        f"nominal car, {comfort.records.text()}, engine {comfort.engine}; bars: two standard errors over the records; "
+        "dashed: published"
+    )
+    with figure_file(
+        path, (7.6, 5.0), f"Lower band edge of the roads, fitted to {ROAD_EDGE_HZ:g} Hz", caption
+    ) as figure:
+        axis = figure.subplots()
+        for road, points in shares.items():
+            edge = [point.value for point in points]
+            colour = ROAD_COLOURS[road]
+            axis.errorbar(
+                edge,
+                [100.0 * point.slip for point in points],
+                yerr=_two_errors([point.slip_error for point in points]),
+                color=colour,
+                marker="o",
+                markersize=3.5,
+                label=f"{road}, {1e3 * ROAD_RMS[road]:g} mm RMS",
+            )
+            axis.plot(edge, [100.0 * point.saturated for point in points], color=colour, linestyle=":")
+            axis.axhline(100.0 * PUBLISHED_SLIP[road], color=colour, linestyle="--", linewidth=0.9)
+        axis.axvline(ROAD_EDGE_HZ, color="#555555", linewidth=0.9)
+        axis.set(xlabel="lower band edge [Hz]", ylabel="share of the time in slip [%]", ylim=(0.0, 100.0))
+        axis.legend(loc="lower right")
+
+
+def _first_record(comfort: ComfortRuns, car: Changes, road: str, engine: str) -> Run:
+    source = comfort.questions(car, road, count=1)[0].source
+    return comfort.runs.car(car).run(source.signal(), engine=engine, channels=SEAT_RAIL)
+
+
+def _history(axis: Any, run: Run, look: Mapping[str, Any]) -> None:
+    end = min(EXCERPT_S[1], float(run.time[-1]))
+    first, last = round((end - EXCERPT_S[1] + EXCERPT_S[0]) * RATE_HZ), round(end * RATE_HZ)
+    axis.plot(run.time[first : last + 1], run["seat_rail_acc_z"][first : last + 1], **look)
+    axis.set_xlabel("time [s]")
+
+
+def _legend_above(axis: Any) -> None:
+    """A legend in room of its own above the curves."""
+    low, high = axis.get_ylim()
+    axis.set_ylim(low, high + 0.3 * (high - low))
+    axis.legend(loc="upper center", ncols=3, fontsize=7)
+
+
+def _spectrum(axis: Any, run: Run, lead: float, look: Mapping[str, Any]) -> None:
+    record = run["seat_rail_acc_z"][round(lead * RATE_HZ) + 1 :]
+    found = power_spectral_density(run.recording.timestep, record, window_s=min(WINDOW_S, record.size / RATE_HZ))
+    inside = (found.frequency >= COMFORT_BAND[0]) & (found.frequency <= COMFORT_BAND[1])
+    axis.plot(found.frequency[inside], found.density[0, inside], **look)
+    axis.set(yscale="log", xlim=COMFORT_BAND, xlabel="frequency [Hz]")
+
+
+def _comfort(axis: Any, points: Sequence[Point], colour: str, label: str | None, style: str = "-") -> None:
+    axis.errorbar(
+        [point.value for point in points],
+        [100.0 * point.relative for point in points],
+        yerr=_two_errors([point.relative_error for point in points]),
+        color=colour,
+        linestyle=style,
+        marker="o",
+        markersize=3.5,
+        capsize=2.5,
+        label=label,
+    )
+
+
+def _two_errors(errors: Sequence[float]) -> list[float]:
+    """Two standard errors in percent; nothing where a single record tells none."""
+    return [200.0 * float(np.nan_to_num(error)) for error in errors]
+
+
+def _levels() -> str:
+    return " and ".join(f"{1e3 * rms:g} mm RMS ({road})" for road, rms in ROAD_RMS.items())

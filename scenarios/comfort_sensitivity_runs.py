@@ -1,0 +1,270 @@
+"""Comfort of the car on both roads under variations of its parameters, with statistical errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.car_runs import CarRuns
+from scenarios.comfort_observation import Observation, Question, RoadInput, chosen_engine, observe
+from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.parameters.vehicle import Vehicle
+
+Changes = tuple[str, ...]
+"""Overrides of one car, as "damper.coulomb_friction=62.5"."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Variation:
+    """A parameter and the values it takes.
+
+    Attributes:
+        name: of its files.
+        label: of its axis, with the unit.
+        path: of the parameter.
+        values: what it takes; in the unit of the parameter.
+        component: of a parameter with three components; None for a number.
+        figures: of source 1; empty beyond the source.
+    """
+
+    name: str
+    label: str
+    path: str
+    values: tuple[float, ...]
+    component: int | None = None
+    figures: str = ""
+
+    def nominal(self, vehicle: Vehicle) -> float:
+        """Value of the unchanged car."""
+        found = self._found(vehicle)
+        return float(found if self.component is None else found[self.component])
+
+    def changes(self, vehicle: Vehicle, value: float) -> Changes:
+        """Overrides that give the parameter a value; none for the value it has."""
+        if value == self.nominal(vehicle):
+            return ()
+        if self.component is None:
+            return (f"{self.path}={value!r}",)
+        members = list(self._found(vehicle))
+        members[self.component] = value
+        return (f"{self.path}={[float(member) for member in members]!r}",)
+
+    def _found(self, vehicle: Vehicle) -> Any:
+        found: Any = vehicle
+        for name in self.path.split("."):
+            found = getattr(found, name)
+        return found
+
+
+FRICTION = Variation(
+    name="coulomb_friction",
+    label="Coulomb friction Fd [N]",
+    path="damper.coulomb_friction",
+    values=(62.5, 93.75, 125.0, 187.5, 250.0),
+    figures="4.1 to 4.4",
+)
+
+MOUNT_DAMPING = Variation(
+    name="mount_damping",
+    label="suspension mount damping, z [N s/m]",
+    path="bushings.suspension_mount.damping",
+    component=2,
+    values=(0.0, 500.0, 1000.0, 2000.0),
+    figures="4.5 to 4.8",
+)
+
+MOUNT_STIFFNESS = Variation(
+    name="mount_stiffness",
+    label="suspension mount stiffness, z [N/m]",
+    path="bushings.suspension_mount.stiffness",
+    component=2,
+    values=(3.5e5, 5.25e5, 7.0e5, 10.5e5, 14.0e5),
+    figures="4.9 to 4.12",
+)
+
+BODY = Variation(
+    name="body_stiffness",
+    label="factor on the frequencies of the body modes [-]",
+    path="body.frequency_scale",
+    values=(0.8, 0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15, 1.2, 1.25),
+)
+
+SOURCE = (FRICTION, MOUNT_DAMPING, MOUNT_STIFFNESS)
+"""Variations of source 1: 14 points on 2 roads, 28 runs, the nominal car counted once for each parameter."""
+
+DEGRESSIVE: Changes = ("damper.viscous_law=degressive",)
+"""The damper that the source has for the quarter car only (appendix C.2)."""
+
+RIGID_BODY: Changes = ("body.flexible=false",)
+"""Leaves out the flexible modes of the body, whose shapes are assumed."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Records:
+    """Records of road that every point of a study runs on: common random numbers.
+
+    Attributes:
+        count: of records; record i has the seed i on both roads.
+        duration: evaluated length of each [s].
+        lead: left out before it [s].
+    """
+
+    count: int
+    duration: float = 60.0
+    lead: float = LEAD_S
+
+    def text(self) -> str:
+        """For captions."""
+        many = f"{self.count} records" if self.count > 1 else "1 record"
+        return f"{many} of {self.duration:g} s (seeds 0 to {self.count - 1}) after {self.lead:g} s left out"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Point:
+    """One car on one road: means over the records and their standard errors.
+
+    Attributes:
+        value: of the parameter.
+        relative: comfort value over that of the reference [-].
+        relative_error: standard error of that ratio, from the ratios of the single records [-].
+        comfort: comfort value [m/s2].
+        comfort_error: standard error, from the single records [m/s2].
+        gaussian_error: what a Gaussian road of this length would give, from the spectrum [m/s2].
+        slip, slip_error: share of the time above the slip velocity, right damper [-].
+        saturated, slip_left: share above 1 mm/s; share above the slip velocity, left damper [-].
+        lowest_load: of the tyre on the shaker [N].
+        pulling: share of the time with a negative load [-].
+    """
+
+    value: float
+    relative: float
+    relative_error: float
+    comfort: float
+    comfort_error: float
+    gaussian_error: float
+    slip: float
+    slip_error: float
+    saturated: float
+    slip_left: float
+    lowest_load: float
+    pulling: float
+
+
+Curves = Mapping[str, Sequence[Point]]
+"""Points of one variation by road."""
+
+
+def point(value: float, found: Sequence[Observation], reference: Sequence[Observation]) -> Point:
+    """Means over records, and the ratio to the reference on the same records."""
+    comfort, base = (np.array([one.comfort for one in many]) for many in (found, reference))
+    slip = np.array([one.slip for one in found])
+    gaussian = np.array([one.gaussian_error for one in found])
+    return Point(
+        value=value,
+        relative=float(np.mean(comfort / base)),
+        relative_error=standard_error(comfort / base),
+        comfort=float(np.mean(comfort)),
+        comfort_error=standard_error(comfort),
+        gaussian_error=float(np.sqrt(np.sum(gaussian**2)) / len(found)),
+        slip=float(np.mean(slip)),
+        slip_error=standard_error(slip),
+        saturated=float(np.mean([one.saturated for one in found])),
+        slip_left=float(np.mean([one.slip_left for one in found])),
+        lowest_load=float(min(one.lowest_load for one in found)),
+        pulling=float(np.mean([one.pulling for one in found])),
+    )
+
+
+def standard_error(values: npt.ArrayLike) -> float:
+    """Standard error of the mean of independent values, s / sqrt(n); NaN of a single one."""
+    array = np.asarray(values, dtype=np.float64)
+    return float(np.std(array, ddof=1) / np.sqrt(array.size)) if array.size > 1 else float("nan")
+
+
+class ComfortRuns:
+    """Observations on the roads, each made once.
+
+    Args:
+        runs: the car and how it is run.
+        records: of road.
+        folder: for the rows of an unfinished study and the table of a finished one; made if missing.
+    """
+
+    def __init__(self, runs: CarRuns, records: Records, folder: Path) -> None:
+        self.runs, self.records, self.folder = runs, records, folder
+        self.engine = chosen_engine(runs.engine)
+        self._done: dict[Question, Observation] = {}
+
+    @property
+    def computed(self) -> int:
+        """Number of runs so far."""
+        return len(self._done)
+
+    def cars(self, variation: Variation, base: Changes = ()) -> dict[float, Changes]:
+        """Cars of a variation by its values; `base` are changes that all have."""
+        vehicle = self.runs.car().vehicle
+        return {value: (*base, *variation.changes(vehicle, value)) for value in variation.values}
+
+    def questions(
+        self,
+        car: Changes,
+        road: str,
+        *,
+        edge: float = ROAD_EDGE_HZ,
+        engine: str | None = None,
+        count: int | None = None,
+    ) -> list[Question]:
+        """The runs of a car on a road, one for each record.
+
+        Args:
+            car: its changes.
+            road: "smooth" or "rough".
+            edge: lower band edge of the road [Hz].
+            engine: another one than that of the study.
+            count: fewer records.
+        """
+        return [
+            Question(
+                car=car,
+                source=RoadInput(
+                    name=f"{road} road, seed {seed}",
+                    rms=ROAD_RMS[road],
+                    seed=seed,
+                    duration=self.records.duration,
+                    lead=self.records.lead,
+                    lower_band_edge=edge,
+                ),
+                engine=engine or self.engine,
+            )
+            for seed in range(count or self.records.count)
+        ]
+
+    def __call__(self, questions: Sequence[Question]) -> list[Observation]:
+        """The answers, computed together where they are missing."""
+        missing = [question for question in dict.fromkeys(questions) if question not in self._done]
+        if missing:
+            self.folder.mkdir(exist_ok=True)
+            self._done.update(zip(missing, observe(missing, self.runs, self.folder), strict=True))
+            # They served an interrupted study; a finished one must not read them when the program has changed.
+            (self.folder / "rows.jsonl").unlink()
+        return [self._done[question] for question in questions]
+
+    def all_questions(self, variation: Variation, base: Changes = ()) -> list[Question]:
+        """All runs that the curves of a variation need, those about one car side by side."""
+        cars = dict.fromkeys([base, *self.cars(variation, base).values()])
+        return [question for car in cars for road in ROAD_RMS for question in self.questions(car, road)]
+
+    def point(self, value: float, car: Changes, road: str, reference: Changes, edge: float = ROAD_EDGE_HZ) -> Point:
+        """A car on a road, relative to another one."""
+        found, base = (self(self.questions(one, road, edge=edge)) for one in (car, reference))
+        return point(value, found, base)
+
+    def curves(self, variation: Variation, base: Changes = ()) -> Curves:
+        """Points of a variation on both roads, relative to the car with `base` alone."""
+        cars = self.cars(variation, base)
+        return {road: [self.point(value, car, road, base) for value, car in cars.items()] for road in ROAD_RMS}

@@ -1,0 +1,217 @@
+"""Which parameters decide comfort when all of them vary at once: Sobol indices or Morris effects on the smooth road.
+
+python -m scenarios.global_sensitivity [--method sobol|morris|lhs] [--runs N] [--road smooth|rough] [--jobs N] [--quick]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time as clock
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.comfort_observation import RoadInput, RoadMeasure, chosen_engine
+from scenarios.global_sensitivity_figures import draw_morris, draw_scatter, draw_sobol
+from scenarios.output_folder import write_text
+from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.command_line import Parser, ProgressLine, run_command
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.output_folder import write_json
+from vehicle.sweeps.case import Case, table_cases
+from vehicle.sweeps.executors import executor_factory
+from vehicle.sweeps.indices import morris_effects, morris_sample, sobol_indices, sobol_sample
+from vehicle.sweeps.ranges import Range, sample
+from vehicle.sweeps.store import sweep_folder
+from vehicle.sweeps.sweep import sweep
+from vehicle.sweeps.table import SweepTable
+
+HALF = "half to one and a half times the final set of the source"
+TENTH = "+-20 %: another spring is a development decision of that size"
+
+RANGES = (
+    Range(path="damper.coulomb_friction", low=62.5, high=250.0, unit="N", reason="what the source varied (figure 4.4)"),
+    Range(path="damper.viscous", low=1125.0, high=3375.0, unit="N s/m", reason=HALF),
+    Range(
+        path="bushings.suspension_mount.stiffness.z",
+        low=3.5e5,
+        high=14e5,
+        unit="N/m",
+        reason="what the source varied (figure 4.12)",
+    ),
+    Range(
+        path="bushings.suspension_mount.damping.z",
+        low=0.0,
+        high=2000.0,
+        unit="N s/m",
+        reason="what the source varied (figure 4.8)",
+    ),
+    Range(path="main_spring.stiffness", low=2.0e4, high=3.0e4, unit="N/m", reason=TENTH),
+    Range(path="stabilizer.torsional_stiffness", low=2.5e3, high=7.5e3, unit="N m/rad", reason=HALF),
+    Range(path="bushings.tyre.stiffness.z", low=2.0e5, high=3.0e5, unit="N/m", reason="+-20 %: pressure and carcass"),
+    Range(path="bushings.tyre.damping.z", low=0.0, high=800.0, unit="N s/m", reason="none to twice the final set"),
+    Range(path="bushings.hydromount.stiffness.z", low=2.0e5, high=6.0e5, unit="N/m", reason=HALF),
+    Range(
+        path="body.frequency_scale",
+        low=0.8,
+        high=1.25,
+        unit="-",
+        reason="body modes 20 % lower to 25 % higher: 0.64 to 1.56 times as stiff",
+    ),
+)
+"""Ten parameters; each varies evenly between its limits, independent of the others."""
+
+DURATION_S = 20.0
+"""Evaluated part of each run [s]; with the lead every run is 30 s."""
+
+SOBOL_RUNS = 12288
+"""1024 base points, times ten parameters and two."""
+
+MORRIS_RUNS = 440
+"""40 trajectories of ten steps."""
+
+METHODS = ("sobol", "morris", "lhs")
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = Parser(
+        prog="python -m scenarios.global_sensitivity",
+        description="Sobol indices, Morris effects or a Latin hypercube of the comfort value over ten parameters.",
+    )
+    found.add_argument("--method", choices=METHODS, default="sobol", help="sobol by default")
+    found.add_argument(
+        "--runs", type=int, metavar="N", help=f"about this many runs; {SOBOL_RUNS} (sobol), {MORRIS_RUNS} (others)"
+    )
+    found.add_argument("--road", choices=sorted(ROAD_RMS), default="smooth", help="smooth by default")
+    found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
+    found.add_argument("--seed", type=int, default=2006, help="seed of the sample; 2006 by default")
+    found.add_argument("--engine", choices=("auto", "reduced", "mujoco"), default="auto", help="auto: reduced")
+    found.add_argument("--jobs", type=int, default=1, metavar="N", help="processes on this machine; 1 by default")
+    found.add_argument("--executor", metavar="WHERE", help="dask://host:port, or module:factory")
+    found.add_argument("--output", type=Path, default=Path("runs/global_sensitivity"), metavar="DIR", help="folder")
+    found.add_argument("--quick", action="store_true", help="a few short runs, to see that everything works")
+    found.add_argument("--resume", action="store_true", help="go on in that folder; finished runs are kept")
+    found.add_argument("--force", action="store_true", help="start anew in that folder")
+    found.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    debug = "--debug" in (sys.argv[1:] if arguments is None else arguments)
+    return run_command(lambda: _job(parser().parse_args(arguments)), debug=debug)
+
+
+def points_of(method: str, runs: int, seed: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Points of a method with at most about `runs` runs; (points, parameters)."""
+    size = len(RANGES)
+    if method == "sobol":
+        base = 2 ** int(np.log2(max(runs // (size + 2), 2)))
+        return sobol_sample(RANGES, base, seed=seed)
+    if method == "morris":
+        return morris_sample(RANGES, max(runs // (size + 1), 2), seed=seed)
+    return sample(RANGES, runs, method="lhs", seed=seed)
+
+
+def _job(options: argparse.Namespace) -> None:
+    runs = options.runs or (SOBOL_RUNS if options.method == "sobol" else MORRIS_RUNS)
+    duration, lead = DURATION_S, LEAD_S
+    if options.quick:
+        runs, duration, lead = 24 if options.method == "sobol" else 22, 2.0, 1.0
+    if runs < len(RANGES) + 2:
+        raise ConfigurationError(f"--runs {runs}: needed are at least {len(RANGES) + 2} for {len(RANGES)} parameters")
+    make = executor_factory(options.executor, options.jobs)
+    points = points_of(options.method, runs, options.seed)
+    road = RoadInput(
+        name=f"{options.road} road",
+        rms=ROAD_RMS[options.road],
+        seed=0,
+        duration=duration,
+        lead=lead,
+        lower_band_edge=ROAD_EDGE_HZ,
+    )
+    engine = chosen_engine(options.engine)
+    cases: list[Case] = table_cases(
+        [one.path for one in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle
+    )
+    folder = sweep_folder(options.output, resume=options.resume, force=options.force)
+    started = clock.perf_counter()
+    table = sweep(cases, RoadMeasure(lead=lead), executor=make, folder=folder, progress=ProgressLine("sensitivity"))
+    seconds = clock.perf_counter() - started
+    caption = (
+        f"comfort value (unfiltered RMS of the seat rail, 2 to 50 Hz) on the {options.road} road, RMS "
+        f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, engine {engine}, "
+        f"seed {options.seed}"
+    )
+    text = _evaluate(options.method, folder, table, points, caption, options.seed)
+    write_text(folder / "results.md", f"# Global sensitivity of comfort\n\n{caption}\n\n{text}\n\n{_ranges_text()}\n")
+    print(
+        f"{folder}: {len(cases)} runs, {len(table.failed)} failed, {seconds:.0f} s; results.md, results.json, figures"
+    )
+
+
+def _evaluate(
+    method: str,
+    folder: Path,
+    table: SweepTable,
+    points: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+    caption: str,
+    seed: int,
+) -> str:
+    """Draw and write the result of a method; returns the text of its table."""
+    comfort = table.column("comfort")
+    if np.all(np.isnan(comfort)):
+        raise SimulationError(f"every run failed; the first: {table.failed[0][1]}")
+    spread = f"Comfort value {np.nanmean(comfort):.3f} +- {np.nanstd(comfort):.3f} m/s2 (mean and scatter)."
+    if method == "sobol":
+        found = sobol_indices(RANGES, comfort, seed=seed)
+        draw_sobol(folder / "indices.png", found, caption)
+        write_json(folder / "results.json", {"caption": caption, **_plain(asdict(found))})
+        order = np.argsort(-found.total)
+        lines = ["| parameter | S1 | +- | ST | +- |", "|---|---|---|---|---|"]
+        lines += [
+            f"| {found.paths[i]} | {found.first[i]:.3f} | {found.first_error[i]:.3f} | {found.total[i]:.3f} "
+            f"| {found.total_error[i]:.3f} |"
+            for i in order
+        ]
+        lines += [
+            "",
+            "S1: share of the variance that the parameter explains alone; ST: with all its interactions; +-: half "
+            f"width of the 95 % interval (bootstrap). From half the sample to the whole, no ST moved by more than "
+            f"{found.drift:.3f}. Sum of S1 {np.sum(found.first):.2f}.",
+        ]
+    elif method == "morris":
+        effects = morris_effects(RANGES, points, comfort, seed=seed)
+        draw_morris(folder / "effects.png", effects, caption)
+        write_json(folder / "results.json", {"caption": caption, **_plain(asdict(effects))})
+        lines = ["| parameter | mu* [m/s2] | +- | mu [m/s2] | sigma [m/s2] |", "|---|---|---|---|---|"]
+        lines += [
+            f"| {effects.paths[i]} | {effects.mean_size[i]:.4f} | {effects.mean_size_error[i]:.4f} "
+            f"| {effects.mean[i]:+.4f} | {effects.scatter[i]:.4f} |"
+            for i in np.argsort(-effects.mean_size)
+        ]
+        lines += ["", "Change of the comfort value over the whole range of a parameter: mean size, mean, scatter."]
+    else:
+        draw_scatter(folder / "scatter.png", RANGES, points, comfort, caption)
+        write_json(
+            folder / "results.json", {"caption": caption, "points": points.tolist(), "comfort": comfort.tolist()}
+        )
+        lines = ["Every run is a row of `table.csv`."]
+    return "\n".join([*lines, "", spread])
+
+
+def _plain(content: dict[str, object]) -> dict[str, object]:
+    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in content.items()}
+
+
+def _ranges_text() -> str:
+    lines = ["| parameter | from | to | unit | why |", "|---|---|---|---|---|"]
+    lines += [f"| {one.path} | {one.low:g} | {one.high:g} | {one.unit} | {one.reason} |" for one in RANGES]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,234 @@
+"""`python -m scenarios.comfort_sensitivity` as a user runs it, its statistics, and the physics behind it."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from scenarios import comfort_sensitivity_beyond as beyond
+from scenarios.car_runs import CarRuns
+from scenarios.comfort_command import comfort_parser, records_of
+from scenarios.comfort_observation import Observation, Question, RoadInput, RoadMeasure, chosen_engine, observe
+from scenarios.comfort_sensitivity import SURE, main
+from scenarios.comfort_sensitivity_claims import PUBLISHED, is_monotone, order_claims, size_claims, slip_claims
+from scenarios.comfort_sensitivity_runs import (
+    FRICTION,
+    MOUNT_DAMPING,
+    SOURCE,
+    ComfortRuns,
+    Point,
+    Records,
+    point,
+    standard_error,
+)
+from scenarios.comfort_sensitivity_tables import curve_table
+from scenarios.road_signals import ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.reduced.march import has_compiler
+
+needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study") / "comfort"
+    assert main(["--output", str(folder), "--quick"]) == 0
+    return folder
+
+
+@needs_reduced
+def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):
+    content = json.loads((results / "results.json").read_text(encoding="utf-8"))
+    assert {path.name for path in results.iterdir()} == {
+        "results.md",
+        "results.json",
+        "sweep",
+        *(f"{variation.name}.png" for variation in SOURCE),
+    }
+    assert [(row["name"], row["within"]) for row in content["rows"]] == [(SURE, True)]
+    assert "slip share of the right damper, rough road [%]" in content["not_judged"]
+    assert content["engine"] == "reduced"
+    slip = [one["slip"] for one in content["source"]["coulomb_friction"]["smooth"]]
+    assert slip == sorted(slip, reverse=True)
+    assert not (results / "sweep" / "rows.jsonl").exists()
+
+
+def question(car=(), rms=0.0075, lead=3.0):
+    source = RoadInput(name="road", rms=rms, seed=0, duration=8.0, lead=lead, lower_band_edge=ROAD_EDGE_HZ)
+    return Question(car=car, source=source, engine="reduced")
+
+
+@needs_reduced
+def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale():
+    # All but friction is linear and gravity's part is a constant: x(2 Fd, 2 z) = 2 x(Fd, z), with the smooth law
+    # reaching its limit at twice the velocity. So the curve over Fd and the one over the level of the road are one.
+    double = ("damper.coulomb_friction=250", "damper.smoothing=5e4", "damper.slip_velocity=0.024")
+    one, two = observe([question(), question(double, rms=0.015)], CarRuns())
+    # Rounding, and the 1e-9 N at which the friction forces of a step are called solved.
+    assert two.comfort == pytest.approx(2.0 * one.comfort, rel=1e-6)
+    assert two.slip == pytest.approx(one.slip, abs=1e-3)
+    static = Car.load().model.static.tyre_load["fr"]
+    assert two.lowest_load - static == pytest.approx(2.0 * (one.lowest_load - static), rel=1e-6)
+
+
+@needs_reduced
+def test_the_lead_is_left_out():
+    run = Car.load().run(question().source.signal(), engine="reduced", channels=RoadMeasure(lead=3.0).channels)
+    late = RoadMeasure(lead=3.0)(run)
+    damper = np.abs(run["damper_fr_velocity"][3001:])
+    assert late["slip"] == pytest.approx(np.mean(damper > 0.012))
+    assert late["lowest_load"] == np.min(run["tyre_fr_force_z"][3001:])
+    assert late["pulling"] == 0.0
+    # Parseval with an independent sum: lines of 1/8 Hz from 2 to 50 Hz, all three axes.
+    power = sum(np.abs(np.fft.rfft(run[f"seat_rail_acc_{axis}"][3001:])[16:401]) ** 2 for axis in "xyz")
+    assert late["comfort"] == pytest.approx(np.sqrt(2.0 * np.sum(power)) / 8000, rel=1e-9)
+    assert RoadMeasure(lead=0.0)(run)["slip"] != late["slip"]
+
+
+@needs_reduced
+def test_a_run_that_fails_stops_the_study_with_its_reason():
+    with pytest.raises(SimulationError, match=r"road, damper\.coulomb_friction=-5.*must be"):
+        observe([question(("damper.coulomb_friction=-5",))], CarRuns())
+
+
+def observation(comfort, slip=0.3):
+    return Observation(
+        comfort=comfort,
+        gaussian_error=0.02 * comfort,
+        slip=slip,
+        slip_left=0.0,
+        saturated=0.5,
+        lowest_load=1000.0 * comfort,
+        pulling=0.0,
+    )
+
+
+def test_common_roads_make_the_error_of_a_ratio_small():
+    level = np.array([1.0, 1.2, 0.8, 1.1])
+    base = [observation(value) for value in level]
+    scatter = np.array([0.01, -0.01, 0.005, -0.005])
+    found = point(62.5, [observation(value) for value in level * (0.8 + scatter)], base)
+    assert found.relative == pytest.approx(0.8, abs=1e-12)
+    assert found.relative_error == pytest.approx(np.sqrt(np.sum(scatter**2) / 3 / 4))
+    assert found.comfort_error > 10.0 * found.relative_error
+    # Four independent records: half the error of one.
+    assert found.gaussian_error == pytest.approx(0.02 * np.sqrt(np.sum((level * (0.8 + scatter)) ** 2)) / 4)
+    assert found.lowest_load == pytest.approx(1000 * 0.8 * (0.8 + scatter[2]))
+    assert np.isnan(standard_error([1.0]))
+
+
+def made(value, relative, error=0.001):
+    return dataclasses.replace(
+        point(value, [observation(relative)] * 2, [observation(1.0)] * 2), relative_error=error, slip=0.3
+    )
+
+
+def test_rows_disagree_where_the_numbers_do():
+    ends = {
+        ("coulomb_friction", "smooth"): (75, 85, 100, 115, 130),
+        ("coulomb_friction", "rough"): (94, 97, 100, 106, 112),
+        ("mount_damping", "smooth"): (100, 98.5, 97.3, 95.5),
+        ("mount_damping", "rough"): (100, 99.8, 99.5, 99.25),
+        ("mount_stiffness", "smooth"): (108, 103, 100, 95, 92),
+        ("mount_stiffness", "rough"): (107, 103, 100, 96, 93),
+    }
+
+    def curves(turn):
+        return {
+            variation.name: {
+                road: [
+                    made(value, turn(percent / 100.0), 1e-4)
+                    for value, percent in zip(variation.values, ends[(variation.name, road)], strict=True)
+                ]
+                for road in ROAD_RMS
+            }
+            for variation in SOURCE
+        }
+
+    good, bad = curves(lambda x: x), curves(lambda x: 2.0 - x)
+    assert all(claim.within for claim in (*order_claims(good), *size_claims(good)))
+    assert not any(claim.within for claim in size_claims(bad))
+    assert not any(claim.within for claim in order_claims(bad)[:6])
+    assert len(size_claims(good)) == sum(len(values) for values in PUBLISHED.values())
+    slip = {"smooth": 0.313, "rough": 0.794}
+    assert all(claim.within for claim in slip_claims(shares(slip), 0.012))
+    assert not any(claim.within for claim in slip_claims(shares({"smooth": 0.35, "rough": 0.75}), 0.012))
+
+
+def shares(slip) -> dict[str, Point]:
+    return {road: dataclasses.replace(made(0.0, 1.0), slip=value) for road, value in slip.items()}
+
+
+def test_a_step_within_its_error_is_no_rise():
+    assert is_monotone([made(1, 0.9), made(2, 1.0), made(3, 1.1)], rising=True)
+    assert not is_monotone([made(1, 0.9), made(2, 1.0), made(3, 1.0005)], rising=True)
+    assert not is_monotone([made(1, 0.9), made(2, 1.0), made(3, 1.1)], rising=False)
+
+
+def test_a_single_record_tells_no_error():
+    alone = point(1.0, [observation(0.9)], [observation(1.0)])
+    text = curve_table("Fd [N]", {"smooth": [alone]})
+    assert "| 1 | 90.00 ± ? |" in text
+
+
+def test_one_component_of_a_bushing_varies(tmp_path):
+    comfort = ComfortRuns(CarRuns(), Records(count=1), tmp_path)
+    cars = comfort.cars(MOUNT_DAMPING)
+    assert cars[0.0] == ()
+    changed = comfort.runs.car(cars[500.0]).vehicle.bushings.suspension_mount.damping
+    assert tuple(changed) == (4000.0, 8000.0, 500.0)
+    assert comfort.cars(FRICTION, ("body.flexible=false",))[125.0] == ("body.flexible=false",)
+
+
+def test_the_options_choose_records_and_engine():
+    parser = comfort_parser("comfort_sensitivity", "")
+    assert parser.parse_args([]).engine == "auto"
+    assert records_of(parser.parse_args(["--records", "7"])).count == 7
+    assert records_of(parser.parse_args(["--quick"])).duration < 60.0
+    with pytest.raises(ConfigurationError, match="at least 1"):
+        records_of(parser.parse_args(["--records", "0"]))
+    assert chosen_engine("mujoco") == "mujoco"
+    assert chosen_engine("auto") == ("reduced" if has_compiler() else "mujoco")
+
+
+class Answers(ComfortRuns):
+    """Answers without runs: friction and the degressive damper make comfort worse, MuJoCo is 1 % above the other."""
+
+    def __call__(self, questions):
+        self.asked = [*getattr(self, "asked", []), *questions]
+        found = []
+        for one in questions:
+            comfort = 4.0 if one.source.rms > 0.01 else 1.0
+            comfort *= 1.2 if "damper.viscous_law=degressive" in one.car else 1.0
+            comfort *= 1.3 if "damper.coulomb_friction=250.0" in one.car else 1.0
+            found.append(observation(comfort * (1.01 if one.engine == "mujoco" else 1.0)))
+        return found
+
+
+@needs_reduced
+def test_what_goes_beyond_the_source_is_asked_at_once_and_reported(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(beyond, "draw_variation", lambda path, *_, **__: drawn.append(path.name))
+    monkeypatch.setattr(beyond, "draw_band_edge", lambda path, *_: drawn.append(path.name))
+    comfort = Answers(CarRuns(engine="auto"), Records(count=2), tmp_path)
+    asked = set(beyond.beyond_questions(comfort))
+    linear = {variation.name: comfort.curves(variation) for variation in SOURCE}
+    comfort.asked = []
+    notes, data = beyond.beyond_findings(comfort, tmp_path, linear)
+    source = {one for variation in SOURCE for one in comfort.all_questions(variation)}
+    # A run that was not asked for in advance would start worker processes of its own.
+    assert set(comfort.asked) <= asked | source
+    assert drawn == [
+        *(f"{variation.name}_degressive.png" for variation in SOURCE),
+        "body_stiffness.png",
+        "band_edge.png",
+    ]
+    text = "\n".join(notes)
+    assert "comfort value 120.0 ± 0.00 % on the smooth road, 120.0 ± 0.00 % on the rough road" in text
+    assert "| nominal | rough | 4.0400 | -0.99 | 100.00, 100.00 |" in text
+    assert "| Coulomb friction Fd [N]: 250 | smooth | 1.3130 | -0.99 | 130.00, 130.00 |" in text
+    degressive = data["degressive"]["coulomb_friction"]["rough"]
+    assert degressive[-1]["relative"] == pytest.approx(1.3)
+    assert degressive[-1]["comfort"] == pytest.approx(4.0 * 1.2 * 1.3)

@@ -1,0 +1,54 @@
+"""The global sensitivity from the command line, quick."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from scenarios.global_sensitivity import RANGES, main, points_of
+from vehicle.parameters.vehicle import load_vehicle
+
+
+def test_ranges_hold_the_car():
+    vehicle = load_vehicle()
+    for one in RANGES:
+        # The path exists, both limits are accepted, and the car of the source lies between them.
+        load_vehicle(None, [f"{one.path}={one.low}"])
+        load_vehicle(None, [f"{one.path}={one.high}"])
+        value: Any = vehicle
+        for name in one.path.split("."):
+            value = value["xyz".index(name)] if isinstance(value, tuple) else getattr(value, name)
+        assert one.low <= value <= one.high, one.path
+
+
+def test_points():
+    assert points_of("sobol", 12288, 1).shape == (12288, 10)
+    assert points_of("sobol", 12000, 1).shape == (512 * 12, 10)
+    assert points_of("morris", 440, 1).shape == (440, 10)
+    assert points_of("lhs", 100, 1).shape == (100, 10)
+
+
+@pytest.mark.parametrize("method", ["sobol", "morris", "lhs"])
+def test_quick(method, tmp_path, capsys):
+    arguments = ["--method", method, "--quick", "--output", str(tmp_path / "out"), "--executor"]
+    arguments.append("tests.sweeps.pieces:threads")
+    assert main(arguments) == 0
+    assert " 0 failed" in capsys.readouterr().out
+    files = {path.name for path in (tmp_path / "out").iterdir()}
+    figure = {"sobol": "indices.png", "morris": "effects.png", "lhs": "scatter.png"}[method]
+    assert {"results.md", "results.json", "table.csv", "sweep.json", "rows.jsonl", figure} <= files
+    found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    values = {"sobol": "total", "morris": "mean_size", "lhs": "comfort"}[method]
+    assert np.all(np.isfinite(found[values])) and len(found[values]) >= 10
+    assert "engine reduced" in found["caption"]
+    # Going on computes nothing anew.
+    assert main([*arguments, "--resume"]) == 0
+    assert "# 0 runs computed" in (tmp_path / "out" / "timing.csv").read_text(encoding="utf-8")
+
+
+def test_too_few_runs(tmp_path, capsys):
+    assert main(["--runs", "5", "--output", str(tmp_path / "out")]) == 2
+    assert "--runs 5: needed are at least 12 for 10 parameters" in capsys.readouterr().err
