@@ -9,7 +9,7 @@ from vehicle.assembly.spec import assemble
 
 
 def test_it_stands_still_without_callbacks(car):
-    # Welds, connect rows and friction of MuJoCo itself hold it; every body may settle by millimetres, no more.
+    # Connect rows and friction of MuJoCo itself hold it; every body may settle by millimetres, no more.
     assert mujoco.get_mjcb_control() is None
     model = assemble(car.vehicle, car.trimmed_body).spec.compile()
     data = mujoco.MjData(model)

@@ -93,9 +93,9 @@ def test_number_of_coordinates_and_rows(car):
     assert model.nv == 6 * 6 + 2 * (3 + 1 + 4) + 2 + 9 == 63
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    # Ten bushings... two tyres, mounts, arm bushings and rear supports, four of the engine: twelve welds of six rows;
-    # eight balls of three; two springs, two dampers, two friction rows.
-    assert data.nefc == 12 * 6 + 8 * 3 + 2 + 2 + 2 == 102
+    # Two tyres, mounts, arm bushings and rear supports, four of the engine: twelve bushings, and eight balls, of three
+    # rows each; two springs, two dampers, two friction rows.
+    assert data.nefc == 12 * 3 + 8 * 3 + 2 + 2 + 2 == 66
     assert model.neq == 12 + 8 + 2 + 2
     assert model.nu == 2 and model.nmocap == 2
 

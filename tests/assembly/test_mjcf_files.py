@@ -40,7 +40,7 @@ def test_scene_opens_and_stands_still_without_callbacks(files, tmp_path):
     start = data.xpos.copy()
     while data.time < 2.0:
         mujoco.mj_step(model, data)
-    # MuJoCo's soft welds give way by some mm under the weight; then nothing moves any more.
+    # MuJoCo's soft rows give way by some mm under the weight; then nothing moves any more.
     assert np.max(np.abs(data.xpos - start)) < 5e-3
     assert np.max(np.abs(data.qvel)) < 1e-6
     assert not any(warning.number for warning in data.warning)

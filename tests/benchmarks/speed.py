@@ -37,8 +37,23 @@ SHOWN = {
     "python_step_us": "step with the callbacks in Python, in motion [us]",
     "plain_step_us": "step of the same model without callbacks, in motion [us]",
     "realtime_factor": "simulated over computing time, recording included",
-    "rms_error": "largest RMS error of an acceleration channel against an eighth of the step",
+    "rms_error": "largest RMS error of an acceleration channel against an eighth of the step, low and high level",
+    "rms_error_channel": "that channel",
+    "slip_error": "largest difference of a slip share against an eighth of the step",
+    "reduced_realtime_factor": "the same for the reduced engine, all channels",
+    "reduced_rms_error": "largest RMS difference of an acceleration channel to MuJoCo at an eighth of the step",
 }
+
+PARTS = {
+    "position": "mjTIMER_POSITION",
+    "velocity": "mjTIMER_VELOCITY",
+    "control": "mjTIMER_ACTUATION",
+    "constraint": "mjTIMER_CONSTRAINT",
+    "advance": "mjTIMER_ADVANCE",
+}
+"""Parts of a step that MuJoCo's timers know; `control` holds the callbacks, the rest is inertia and sensors."""
+
+Figures = dict[str, float | str | dict[str, float]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,12 +63,14 @@ class Effort:
     Attributes:
         repeats: interleaved repetitions of each measurement.
         steps: steps of one repetition.
-        seconds: length of the runs [s].
+        seconds: length of the timed runs [s].
+        accuracy_seconds: length of the runs that are compared with an eighth of the step [s].
     """
 
     repeats: int = 7
     steps: int = 2000
     seconds: float = 4.0
+    accuracy_seconds: float = 60.0
 
 
 def pin_to_one_core() -> None:
@@ -62,21 +79,22 @@ def pin_to_one_core() -> None:
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
 
-def piece(seconds: float) -> Signal:
-    """Beginning of the shipped high input; it starts at rest."""
-    signal = read_signal(find_input("high.csv"))
+def piece(seconds: float, level: str = "high") -> Signal:
+    """Beginning of a shipped input; it starts at rest."""
+    signal = read_signal(find_input(f"{level}.csv"))
     count = int(np.searchsorted(signal.time, seconds)) + 1
     return Signal(time=signal.time[:count], displacement={"fr": signal.displacement["fr"][:count]})
 
 
-def stepping_time(car: Car, signal: Signal, steps: int, form: str) -> float:
+def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[str, float] | None = None) -> float:
     """Time of a step [us] of the moving car, one call of mj_step each.
 
     Args:
         car: the car.
         signal: motion of the plates.
         steps: number of steps.
-        form: "native" (Python where it cannot be had), "python", or "plain": MuJoCo's own welds hold the car.
+        form: "native" (Python where it cannot be had), "python", or "plain": MuJoCo's own rows hold the car.
+        parts: filled with the time of each part of a step [us]; MuJoCo's timers make every step some us longer.
 
     Returns:
         Mean over the steps.
@@ -99,6 +117,8 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str) -> float:
             mujoco.mj_step(model, data)
         return 1e6 * (time.perf_counter() - started) / steps
 
+    if parts is not None:
+        mujoco.set_mjcb_time(lambda: 1e6 * time.perf_counter())
     if form == "plain":
         spent = go()
     else:
@@ -108,12 +128,36 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str) -> float:
             if native is not None:
                 native.attach(data)
             spent = go()
+    if parts is not None:
+        mujoco.set_mjcb_time(None)
+        parts |= {name: data.timer[getattr(mujoco.mjtTimer, timer)].duration / steps for name, timer in PARTS.items()}
+        parts["step"] = data.timer[mujoco.mjtTimer.mjTIMER_STEP].duration / steps
     if not np.isfinite(data.qpos).all() or not np.any(data.qvel):
         raise RuntimeError("the car is lost or does not move: nothing was measured")
     return spent
 
 
-def measure(effort: Effort) -> dict[str, float]:
+def accuracy(car: Car, seconds: float) -> Figures:
+    """RMS of every acceleration and slip shares against an eighth of the step, and the reduced engine against both."""
+    fine_car = Car.load(None, [f"solver.timestep={car.vehicle.solver.timestep / 8}"])
+    errors, slips, reduced = {}, [], []
+    for level in ("low", "high"):
+        signal = piece(seconds, level)
+        fine, run, other = fine_car.run(signal), car.run(signal), car.run(signal, engine="reduced")
+        for name in acceleration_channels():
+            errors[f"{level}: {name}"] = abs(_rms(run[name]) / _rms(fine[name]) - 1.0)
+            reduced.append(abs(_rms(other[name]) / _rms(fine[name]) - 1.0))
+        slips += [abs(run.slip_share(wheel) - fine.slip_share(wheel)) for wheel in WHEELS]
+    worst = max(errors, key=lambda name: errors[name])
+    return {
+        "rms_error": errors[worst],
+        "rms_error_channel": worst,
+        "slip_error": max(slips),
+        "reduced_rms_error": max(reduced),
+    }
+
+
+def measure(effort: Effort) -> Figures:
     """All figures of the benchmark; times are medians of interleaved repetitions."""
     car = Car.load()
     signal = piece(effort.seconds)
@@ -121,16 +165,19 @@ def measure(effort: Effort) -> dict[str, float]:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     steps = min(effort.steps, int(signal.duration / model.opt.timestep))
-    native, python, plain, factors = [], [], [], []
-    run = car.run(signal)
+    native, python, plain, factors, reduced = [], [], [], [], []
+    car.run(signal)
+    car.run(signal, engine="reduced")
     for _ in range(effort.repeats):
         native.append(stepping_time(car, signal, steps, "native"))
         python.append(stepping_time(car, signal, steps, "python"))
         plain.append(stepping_time(car, signal, steps, "plain"))
-        run = car.run(signal)
-        factors.append(run.recording.statistics.realtime_factor)
-    fine = Car.load(None, [f"solver.timestep={car.vehicle.solver.timestep / 8}"]).run(signal)
-    return {
+        factors.append(car.run(signal).recording.statistics.realtime_factor)
+        reduced.append(car.run(signal, engine="reduced").recording.statistics.realtime_factor)
+    parts: dict[str, dict[str, float]] = {"native": {}, "plain": {}}
+    for form, found in parts.items():
+        stepping_time(car, signal, steps, form, found)
+    return accuracy(car, effort.accuracy_seconds) | {
         "rows": int(data.nefc),
         "dof": int(model.nv),
         "timestep": float(model.opt.timestep),
@@ -138,7 +185,9 @@ def measure(effort: Effort) -> dict[str, float]:
         "python_step_us": median(python),
         "plain_step_us": median(plain),
         "realtime_factor": median(factors),
-        "rms_error": max(abs(_rms(run[name]) / _rms(fine[name]) - 1.0) for name in acceleration_channels()),
+        "reduced_realtime_factor": median(reduced),
+        "parts_us": parts["native"],
+        "plain_parts_us": parts["plain"],
     }
 
 
@@ -146,15 +195,20 @@ def _rms(values: npt.NDArray[np.float64]) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def report(found: dict[str, float], before: dict[str, float] | None) -> str:
+def report(found: Figures, before: Figures | None) -> str:
     """Table of the figures, with those of an earlier run beside them."""
     lines = []
     for key, meaning in SHOWN.items():
-        text = f"{key:<16} {found[key]:>10.4g}"
-        if before is not None and key in before:
-            change = f"{100.0 * (found[key] / before[key] - 1.0):+.1f} %" if before[key] else ""
-            text += f"   before {before[key]:>10.4g} {change:>9}"
+        value, earlier = found[key], None if before is None else before.get(key)
+        text = f"{key:<23} {value:>10.4g}" if isinstance(value, float | int) else f"{key:<23} {value}"
+        if isinstance(value, float | int) and isinstance(earlier, float | int):
+            change = f"{100.0 * (value / earlier - 1.0):+.1f} %" if earlier else ""
+            text += f"   before {earlier:>10.4g} {change:>9}"
         lines.append(f"{text}   {meaning}")
+    native, plain = found["parts_us"], found["plain_parts_us"]
+    assert isinstance(native, dict) and isinstance(plain, dict)
+    lines.append("where the time goes [us a step, by MuJoCo's timers]: with callbacks, without")
+    lines += [f"    {name:<12} {native[name]:>8.2f} {plain[name]:>8.2f}" for name in native]
     return "\n".join(lines)
 
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import os
 
+import mujoco
 import pytest
 
 from tests.benchmarks import speed
 
-SMALL = speed.Effort(repeats=1, steps=50, seconds=0.5)
-KEYS = {"rows", "dof", "timestep", "step_us", "python_step_us", "plain_step_us", "realtime_factor", "rms_error"}
+SMALL = speed.Effort(repeats=1, steps=50, seconds=0.5, accuracy_seconds=0.5)
+TIMES = {"step_us", "python_step_us", "plain_step_us", "realtime_factor", "reduced_realtime_factor"}
+KEYS = {"rows", "dof", "timestep", *TIMES, "rms_error", "rms_error_channel", "slip_error", "reduced_rms_error"}
+PARTS = {"parts_us", "plain_parts_us"}
 
 
 @pytest.fixture(autouse=True)
@@ -24,13 +27,19 @@ def test_benchmark_prints_and_compares(tmp_path, capsys):
     assert speed.main(["--json"], SMALL) == 0
     text = capsys.readouterr().out
     found = json.loads(text)
-    assert set(found) == KEYS == set(speed.SHOWN)
-    assert (found["rows"], found["dof"]) == (102, 63)
-    assert all(value > 0.0 for value in found.values())
+    assert set(found) == KEYS | PARTS and set(speed.SHOWN) == KEYS
+    assert (found["rows"], found["dof"]) == (66, 63)
+    assert all(found[name] > 0.0 for name in TIMES)
+    for parts in (found["parts_us"], found["plain_parts_us"]):
+        assert set(parts) == {"step", *speed.PARTS} and all(value > 0.0 for value in parts.values())
+        # The parts are most of the step; what is left is the inertia of the car and the sensors.
+        assert 0.5 * parts["step"] < sum(parts[name] for name in speed.PARTS) <= parts["step"]
     (tmp_path / "before.json").write_text(text)
     assert speed.main(["--compare", str(tmp_path / "before.json")], SMALL) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == len(KEYS) and all("before" in line for line in lines)
+    assert len(lines) == len(KEYS) + 2 + len(speed.PARTS)
+    assert sum("before" in line for line in lines) == len(KEYS) - 1
+    assert mujoco.get_mjcb_time() is None
     assert len(os.sched_getaffinity(0)) == 1
 
 

@@ -26,9 +26,15 @@ def element_stiffness(car):
     jacobian = data.efc_J.reshape(e.row_count, model.nv)
     diagonal = np.zeros(e.row_count)
     diagonal[e.rows] = e.stiffness
-    diagonal[e.rotation_rows] = e.rotation_stiffness
     diagonal[e.springs] = e.spring_stiffness
-    return jacobian.T @ (diagonal[:, None] * jacobian) + np.diag(joint_spring_stiffness(model))
+    # Velocities of rotation by another way than that of the callback: the Jacobians of the two sites.
+    turning = np.zeros((model.nv, model.nv))
+    for stiffness, sites in zip(e.rotation_stiffness[:, 0], e.rotation_sites, strict=True):
+        moving, carrier = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        mujoco.mj_jacSite(model, data, None, moving, sites[0])
+        mujoco.mj_jacSite(model, data, None, carrier, sites[1])
+        turning += stiffness * (moving - carrier).T @ (moving - carrier)
+    return jacobian.T @ (diagonal[:, None] * jacobian) + turning + np.diag(joint_spring_stiffness(model))
 
 
 def in_free_motions(car, matrix, *, stuck=True):

@@ -144,6 +144,17 @@ def test_item_28_static_friction_below_sliding():
     load_vehicle(None, ["damper.stribeck_friction=60"])
 
 
+def test_a_degressive_damper_is_steeper_below_its_velocity():
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(None, ["damper.viscous_law=degressive", "damper.degressive_viscous=2000"])
+    assert str(caught.value) == (
+        "damper.degressive_viscous: found 2000.0 N s/m, must be at least viscous (2250.0 N s/m)"
+    )
+    load_vehicle(None, ["damper.degressive_viscous=2000"])
+    with pytest.raises(ConfigurationError, match=r"damper\.degressive_velocity: found 0\.0 m/s, must be greater than"):
+        load_vehicle(None, ["damper.degressive_velocity=0"])
+
+
 def edited(tmp_path, old, new):
     text = FOCUS_FILE.read_text(encoding="utf-8")
     assert text.count(old) >= 1

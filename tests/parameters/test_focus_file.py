@@ -87,6 +87,7 @@ def test_published_numbers_are_there():
     assert (car.main_spring.stiffness, car.stabilizer.torsional_stiffness) == (2.5e4, 5.0e3)
     damper = car.damper
     assert (damper.viscous, damper.coulomb_friction, damper.smoothing) == (2250.0, 125.0, 1e5)
+    assert (damper.viscous_law, damper.degressive_viscous, damper.degressive_velocity) == ("linear", 15000.0, 0.02)
     assert (damper.stribeck_friction, damper.stribeck_velocity, damper.stribeck_exponent) == (125.0, 0.03, 3.5)
     body = car.body
     assert (body.mass, body.cog) == (813.0, (2.157, 0.0, 1.011))

@@ -43,10 +43,8 @@ def free_box(force, *, turned=False, law=FREE, ratio=0.02, carrier=False):
         add_bushing(spec, "pull", spec.worldbody, body, law, at=ground, on_carrier=arm)
     else:
         add_bushing(spec, "pull", body, spec.worldbody, law, at=arm, on_carrier=ground)
-    if turned:  # the weld compares orientations too
-        spec.site("bushing/pull/carrier").quat = QUARTER_TURN
     spec.add_numeric(name="shape/bushing/pull", data=BOX.shape_at(NODE).ravel())
-    return Stepper(spec, np.array([*force, 0.0, 0.0, 0.0]))
+    return Stepper(spec, np.array(force))
 
 
 def modal_step_response(load, times, ratio=0.02):

@@ -44,9 +44,10 @@ def test_ground_forces_and_weight_are_in_equilibrium(car):
             load = static.preload[rows]
             force += load
             moment += np.cross(data.site(f"{name}/moving").xpos, load)
-            # The law of a weld is a torque about the same point.
-            rotation = elements.rotation_rows[list(elements.names).index(name)]
-            moment += 0.5 * static.preload[rotation]
+            # Its law is a torque about the same point too.
+            torques = static.preload[elements.row_count :].reshape(-1, 3)
+            site = model.site(f"{name}/moving").id
+            moment += torques[list(elements.rotation_sites[:, 0]).index(site)]
     for body in range(1, model.nbody):
         weight = model.body_mass[body] * model.opt.gravity
         force += weight

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -44,7 +45,7 @@ def scenarios(monkeypatch, tmp_path):
             folder = tmp_path / "runs" / name
             assert arguments[:2] == ["--output", str(folder)]
             folder.mkdir(parents=True, exist_ok=True)
-            content = {"title": f"title of {name}", "rows": CONTENT[name], "notes": [f"made by {name}"]}
+            content: dict[str, Any] = {"title": f"title of {name}", "rows": CONTENT[name], "notes": [f"made by {name}"]}
             if name == "levels":
                 content["not_judged"] = {"slip share, mid": "too short"}
             (folder / "results.json").write_text(json.dumps(content), encoding="utf-8")

@@ -47,7 +47,7 @@ def add_bushing(spec, name, moving, carrier, law, *, at=(0.0, 0.0, 0.0), on_carr
     carrier.add_site(name=f"bushing/{name}/carrier", pos=on_carrier)
     spec.add_equality(
         name=f"bushing/{name}",
-        type=mujoco.mjtEq.mjEQ_WELD,
+        type=mujoco.mjtEq.mjEQ_CONNECT,
         objtype=mujoco.mjtObj.mjOBJ_SITE,
         name1=f"bushing/{name}/moving",
         name2=f"bushing/{name}/carrier",
@@ -79,7 +79,8 @@ def add_mode(spec, number, omega, ratio=0.0):
 def add_damper(spec, body, parameters, *, stiffness=0.0):
     """Slide joint `damper_fr` along x with the user actuator of a damper.
 
-    `parameters` are viscous, smoothing, sliding limit, static limit, Stribeck velocity and exponent.
+    `parameters` are viscous, smoothing, sliding limit, static limit, Stribeck velocity and exponent, and for a
+    degressive damper Ddeg - D and (Ddeg - D) Vdeg.
     """
     body.add_joint(
         name="damper_fr",
@@ -93,7 +94,11 @@ def add_damper(spec, body, parameters, *, stiffness=0.0):
     )
     actuator = spec.add_actuator(name="damper_fr", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="damper_fr")
     actuator.gaintype, actuator.biastype = mujoco.mjtGain.mjGAIN_USER, mujoco.mjtBias.mjBIAS_USER
-    actuator.biasprm = [*parameters, 0.0, 0.0, 0.0, 0.0]
+    actuator.biasprm = [*parameters, *np.zeros(10 - len(parameters))]
+    if len(parameters) > 6:
+        tendon = spec.add_tendon(name="valve_fr")
+        tendon.wrap_joint("damper_fr", 1.0)
+        tendon.frictionloss = parameters[7]
 
 
 class Stepper:

@@ -9,6 +9,7 @@ import pytest
 
 from tests.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
 from vehicle.laws.maxwell import Maxwell
+from vehicle.simulation.step_weights import implicit_share
 
 K1, K2, D2 = 4.0e5, 1.0e5, 2000.0  # the hydromount of appendix F, tau = 20 ms
 STEP = 1e-3
@@ -110,3 +111,23 @@ def test_a_branch_only_takes_energy():
     x = run.step(600, run.position)[:, 2]
     tops = [np.max(np.abs(part)) for part in np.split(x, 6)]
     assert all(later < earlier for earlier, later in itertools.pairwise(tops))
+
+
+def test_a_light_part_behind_a_strong_branch_does_not_ring():
+    # m v' = -B v: (m + theta B h) a = -B v must leave exp(-z) of the velocity after a step, z = B h/m.
+    for z in (1e-6, 5e-5, 2e-4, 1e-2, 1.0, 5.0):
+        share = float(implicit_share(np.array([z]))[0])
+        assert 1.0 - z / (1.0 + share * z) == pytest.approx(np.exp(-z), rel=1e-9)
+    # Second order: the half of the centred damping, and a small part of a step more.
+    assert implicit_share(np.array([1e-3, 0.1])) == pytest.approx([0.5 + 1e-3 / 12.0, 0.5 + 0.1 / 12.0], rel=1e-5)
+
+
+def test_the_share_acts_on_branches_that_are_not_very_stiff():
+    # 6 kg behind 1.25e7 N/m and 5.5e3 N s/m: z = 0.8. At 1 ms the branch answers 1.13 times half a step.
+    light, heavy, stiff = (elastomer(mass=mass, branch=1.25e7, time=4.4e-4).rows for mass in (6.0, 6e6, 3.0))
+    slope, centred = light.branch_slope[0, 2], heavy.branch_slope[0, 2]
+    z = light.branch_gain[0, 2] * STEP / 6.0
+    assert light.branch_average[0, 2] == pytest.approx(1.0 / 12.0)
+    assert slope / centred == pytest.approx(2.0 * float(implicit_share(np.array([z]))[0]), rel=1e-6)
+    assert slope / centred > 1.1
+    assert stiff.branch_slope[0, 2] == pytest.approx(centred, rel=1e-6)  # w h = 2.07

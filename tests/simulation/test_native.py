@@ -86,7 +86,7 @@ def test_two_compiled_runs_are_the_same_bit_for_bit(car: Car, second: Signal, co
 
 @pytest.mark.parametrize("rate", [2000.0, 500.0])
 def test_other_recording_rates(second: Signal, rate: float) -> None:
-    car = Car.load(overrides=[f"solver.record_rate={rate}"])
+    car = Car.load(overrides=["solver.timestep=0.0005", f"solver.record_rate={rate}"])
     piece = beginning(second, 301)
     found, expected = (simulate(car.model, piece, native=form) for form in (True, False))
     for name, values in expected.channels.items():

@@ -65,7 +65,6 @@ class Connection:
         node: node of the flexible body, None where neither body is flexible.
         node_sign: +1 where the flexible body is `moving`, -1 where it is `carrier`.
         law: force law, or None.
-        rotational: True where rotations are resisted too (a weld rather than a connect constraint).
     """
 
     name: str
@@ -75,7 +74,6 @@ class Connection:
     node: str | None
     node_sign: int
     law: ElementLaw | None
-    rotational: bool
 
 
 def connections(vehicle: Vehicle, body: Superelement) -> list[Connection]:
@@ -105,7 +103,6 @@ def connections(vehicle: Vehicle, body: Superelement) -> list[Connection]:
                 node=hardpoint if on_body else None,
                 node_sign=1 if moving == "body" else -1,
                 law=_bushing_law(parameters, local),
-                rotational=True,
             )
         )
 
@@ -124,7 +121,6 @@ def connections(vehicle: Vehicle, body: Superelement) -> list[Connection]:
                 node=hardpoint if on_body else None,
                 node_sign=-1,
                 law=law,
-                rotational=False,
             )
         )
 

@@ -28,6 +28,9 @@ JOINT_TIME_STEPS = 4.0
 JOINT_IMPEDANCE = 0.9999
 """Impedance of the ideal joints; the residue 1e-4 of the constraint acceleration stays unanswered."""
 
+VIEWER_IMPEDANCE = 0.99
+"""Impedance of the bushings where no callback gives them their laws."""
+
 LEAST_FRICTION = 1e-9
 """Friction [N] written where a damper has none, so that its row exists."""
 
@@ -255,15 +258,14 @@ class _Builder:
             self._add(f"plate_{wheel}", "world", patch, 0.0, (), mocap=True)
 
     def connect(self, connection: Connection) -> None:
-        """Add a bushing (weld rows) or a loop-closing ball joint (connect rows) and the constants of its law."""
+        """Add the rows of a bushing or of a loop-closing ball joint, and the constants of its law."""
         point = self.points[connection.hardpoint]
         sites = (f"{connection.name}/moving", f"{connection.name}/carrier")
         self._site(sites[0], connection.moving, point)
         self._site(sites[1], connection.carrier, point)
-        kind = mujoco.mjtEq.mjEQ_WELD if connection.rotational else mujoco.mjtEq.mjEQ_CONNECT
         row = self.spec.add_equality(
             name=connection.name,
-            type=kind,
+            type=mujoco.mjtEq.mjEQ_CONNECT,
             objtype=mujoco.mjtObj.mjOBJ_SITE,
             name1=sites[0],
             name2=sites[1],
@@ -274,6 +276,8 @@ class _Builder:
             row.solimp = [JOINT_IMPEDANCE, JOINT_IMPEDANCE, 0.001, 0.5, 2.0]
         law = connection.law
         if law is not None:
+            # Only for a viewer without the callbacks: stiffer than MuJoCo's own, so that the car sags by 4 mm.
+            row.solimp = [VIEWER_IMPEDANCE, VIEWER_IMPEDANCE, 0.001, 0.5, 2.0]
             # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
             branch_damping = law.branch_stiffness * law.branch_time
             constants = np.concatenate([law.stiffness, law.damping, law.branch_stiffness, branch_damping])
@@ -302,14 +306,23 @@ class _Builder:
         # The equality row carries the half step of the viscous part; in a plain viewer it holds the damper.
         self.spec.add_equality(name=name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name)
         stribeck = damper.friction_law == "stribeck"
+        degressive = damper.viscous_law == "degressive" and damper.degressive_viscous > damper.viscous
+        valve = damper.degressive_viscous - damper.viscous if degressive else 0.0
+        if degressive:
+            # What the valve adds below its velocity is a second friction row, which a joint cannot have: a tendon.
+            tendon = self.spec.add_tendon(name=f"valve_{wheel}")
+            tendon.wrap_joint(name, 1.0)
+            tendon.frictionloss = valve * damper.degressive_velocity
         parameters = np.zeros(10)
-        parameters[:6] = (
+        parameters[:8] = (
             damper.viscous,
             damper.smoothing,
             damper.coulomb_friction,
             damper.stribeck_friction if stribeck else damper.coulomb_friction,
             damper.stribeck_velocity,
             damper.stribeck_exponent,
+            valve,
+            valve * damper.degressive_velocity,
         )
         actuator = self.spec.add_actuator(name=name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER

@@ -73,12 +73,15 @@ class Stabilizer:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Damper:
-    """F = D v (or its degressive form) + limit(v) (2/pi) atan(eps v).
+    """F = D v + limit(v) (2/pi) atan(eps v), plus (Ddeg - D) v up to Vdeg and (Ddeg - D) Vdeg above, if degressive.
 
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
     """
 
     viscous: float = quantity("N s/m", "D, damping constant", at_least=0.0)
+    viscous_law: str = quantity("-", "law of the damping", choices=("linear", "degressive"))
+    degressive_viscous: float = quantity("N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0)
+    degressive_velocity: float = quantity("m/s", "Vdeg, where the degressive law turns flatter", above=0.0)
     friction_law: str = quantity("-", "friction law", choices=("coulomb", "stribeck"))
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0)
     smoothing: float = quantity("s/m", "eps, slope of the smooth friction law", above=0.0)
@@ -93,4 +96,9 @@ class Damper:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
                 f"coulomb_friction ({self.coulomb_friction!r} N)"
+            )
+        if self.viscous_law == "degressive" and self.degressive_viscous < self.viscous:
+            raise ConfigurationError(
+                f"Damper.degressive_viscous: found {self.degressive_viscous!r} N s/m, must be at least "
+                f"viscous ({self.viscous!r} N s/m)"
             )

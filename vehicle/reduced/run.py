@@ -101,6 +101,7 @@ def simulate_reduced(
 def law_table(damper: Damper) -> Vector:
     """Constants of the damper laws as the march takes them; (LAW_ROWS, 2), both sides alike."""
     static = damper.stribeck_friction if damper.friction_law == "stribeck" else damper.coulomb_friction
+    extra = damper.degressive_viscous - damper.viscous if damper.viscous_law == "degressive" else 0.0
     column = np.array(
         [
             damper.coulomb_friction,
@@ -108,8 +109,8 @@ def law_table(damper: Damper) -> Vector:
             damper.stribeck_velocity,
             damper.stribeck_exponent,
             damper.smoothing,
-            0.0,
-            0.0,
+            extra,
+            extra * damper.degressive_velocity,
         ]
     )
     return np.repeat(column.reshape(LAW_ROWS, 1), 2, axis=1)

@@ -14,8 +14,11 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import UNCONDITIONAL, ElementRows
+from vehicle.simulation.element_rows import ElementRows
 from vehicle.simulation.static_trim import StaticTrim, joint_spring_stiffness, trim
+from vehicle.simulation.step_weights import explicit_share
+
+Vector = npt.NDArray[np.float64]
 
 LARGEST_PHASE = 2.2
 """Largest w h of the stiffest motion; the step of the element rows is stable up to sqrt(6) = 2.45."""
@@ -37,7 +40,7 @@ class CarModel:
     vehicle: Vehicle
     superelement: Superelement
     spec: mujoco.MjSpec
-    origins: Mapping[str, npt.NDArray[np.float64]]
+    origins: Mapping[str, Vector]
     model: mujoco.MjModel
     static: StaticTrim
 
@@ -82,17 +85,17 @@ def _check_step(model: mujoco.MjModel, static: StaticTrim) -> None:
     e = rows.elements
     step = model.opt.timestep
     jacobian = data.efc_J.reshape(e.row_count, model.nv)
-    explicit, averaged = np.zeros(e.row_count), np.zeros(e.row_count)
-    # A branch that is averaged over three steps is stable whatever its stiffness.
-    total = e.stiffness + np.where(rows.branch_average < UNCONDITIONAL, e.branch_stiffness * rows.decay, 0.0)
-    explicit[e.rows] = np.where(e.averaged[:, None], 0.0, total)
-    averaged[e.rows] = np.where(e.averaged[:, None], total, 0.0)
-    explicit[e.rotation_rows] = e.rotation_stiffness
+    explicit = np.zeros(e.row_count)
+    # M - h2 sum (1/4 - beta) J' K J must stay positive; a stiffness with beta 1/4 is stable whatever it is.
+    static_part, branch = (explicit_share(average) for average in (rows.average, rows.branch_average))
+    explicit[e.rows] = static_part * e.stiffness + branch * e.branch_stiffness * rows.decay
     explicit[e.springs] = e.spring_stiffness
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    mass += jacobian.T @ (UNCONDITIONAL * step**2 * averaged[:, None] * jacobian)
     stiffness = jacobian.T @ (explicit[:, None] * jacobian)
+    turned = rows.rotation_jacobian(data)
+    rotational = explicit_share(0.0) * e.rotation_stiffness[:, 0]
+    stiffness += np.einsum("n,nij,nik->jk", rotational, turned, turned)
     stiffness[np.diag_indices(model.nv)] += joint_spring_stiffness(model)
     factor = np.linalg.cholesky(mass)
     reduced = np.linalg.solve(factor, np.linalg.solve(factor, stiffness).T)

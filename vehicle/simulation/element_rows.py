@@ -7,8 +7,13 @@ the explicit part f0 given to the generalised forces,
 
 r' being the rate at the middle of the past step: B (r' + h a/2) is the damping at the present time (centred, second
 order), and beta = 1/12 makes the step of a linear system fourth order in its frequencies (Fox and Goodwin, Numerov);
-stiff local springs take beta = 1/4, which is stable at any step (Newmark). The friction row of a damper is
-f = -clamp(c (v + h a)): D = c h, aref = -v/h, its limit the friction force: set-valued in effect, sticking is exact.
+stiff local springs take up to beta = 1/4, which is stable at any step (Newmark; see `step_weights`). The friction
+row of a damper is f = -clamp(c (v + h a)): D = c h, aref = -v/h, its limit the friction force: set-valued in effect,
+sticking is exact.
+The second row of a degressive damper, F = D v + clamp((Ddeg - D) v) with the limit (Ddeg - D) Vdeg, is a friction row
+too; its law is smooth, so that it is centred like the viscous one: D = (Ddeg - D) h/2, aref = -2 v/h, second order.
+Rotations need no rows: K_rot is soft against every inertia and undamped, so its torque is given explicitly,
+T = -K_rot sin(angle) n from the frames of both sites.
 
 Modal coordinates q of the flexible body enter a row at node n as J -> J +- R Phi_n, r -> r +- R Phi_n q and
 r' -> r' +- R Phi_n q', R being the rotation of the body.
@@ -21,18 +26,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.simulation.elements import modal_joints, read_elements
+from vehicle.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
 
 Vector = npt.NDArray[np.float64]
 
 EMPTY_ROW = 1e-9
 """Impedance [kg] of a row without damping and stiffness: small against every mass, and not zero."""
-
-FOURTH_ORDER = 1.0 / 12.0
-UNCONDITIONAL = 1.0 / 4.0
-
-SAFE_PHASE = 2.0
-"""Phase w h of a branch up to which the fourth-order average is used: below the stable limit of 2.45, since the joints
-between the parts make the moved mass smaller than that of a row alone."""
 
 
 def prepare_model(model: mujoco.MjModel) -> None:
@@ -59,17 +58,18 @@ class ElementRows:
 
     Args:
         model: compiled car; its armatures are changed by `prepare_model`.
-        preload: static force of every row in element axes [N], (rows,); zeros by default.
+        preload: static force of every row in element axes [N], and behind them the static torques of the rotations
+            in the axes of their carriers [N m], (rows + 3 m,); zeros by default.
     """
 
     def __init__(self, model: mujoco.MjModel, preload: Vector | None = None) -> None:
         self.model = model
         self.elements = read_elements(model)
         e = self.elements
-        self.preload = np.zeros(e.row_count) if preload is None else preload
+        self.preload = np.zeros(e.row_count + 3 * len(e.rotation_stiffness)) if preload is None else preload
         self.element_preload = self.preload[e.rows]
         self.hard_preload = self.preload[e.hard_rows]
-        self.rotation_preload = self.preload[e.rotation_rows]
+        self.rotation_preload = self.preload[e.row_count :].reshape(-1, 3)
         self.spring_preload = self.preload[e.springs]
         self.plate_velocity = np.zeros((len(e.tyres), 3))
         self.plate_acceleration = np.zeros((len(e.tyres), 3))
@@ -83,34 +83,38 @@ class ElementRows:
     def _read_dampers(self, model: mujoco.MjModel) -> None:
         """Laws of the dampers, owned by their actuators."""
         actuators = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
-        parameters = model.actuator_biasprm[actuators, :6].T
-        self.viscous, self.smoothing, self.sliding_limit, self.static_limit, self.stribeck_velocity, self.exponent = (
-            parameters.copy()
-        )
+        parameters = model.actuator_biasprm[actuators, :8].T.copy()
+        self.viscous, self.smoothing, self.sliding_limit, self.static_limit = parameters[:4]
+        self.stribeck_velocity, self.exponent, valve_damping, valve_limit = parameters[4:]
+        # A valve row of its own exists only where the law is degressive.
+        self.valve_damping, self.valve_limit = valve_damping[valve_limit > 0.0], valve_limit[valve_limit > 0.0]
         self.stribeck = bool(np.any(self.static_limit != self.sliding_limit))
 
     def _set_step(self, step: float) -> None:
         """Constants that depend on the time step."""
         e, h = self.elements, step
         self.step = h
-        beta = np.where(e.averaged, UNCONDITIONAL, FOURTH_ORDER)[:, None]
+        masses = self._row_masses()
+        self.average = np.where(e.averaged[:, None], average(e.stiffness * h**2 / masses), FOURTH_ORDER)
         present = e.branch_time > 0.0
         tau = np.where(present, e.branch_time, 1.0)
         self.decay = np.where(present, np.exp(-h / tau), 0.0)
+        # A branch may be as stiff as the sheet metal behind a mount; then its force is averaged over three steps too.
+        phase = (e.stiffness + e.branch_stiffness) * h**2 / masses
+        self.branch_average = average(phase)
         # Exact response of the branch to a rate that is linear over the step: mean rate and its slope.
         self.branch_gain = np.where(present, e.branch_stiffness * tau * -np.expm1(-h / tau), 0.0)
         series = tau * (0.5 * h * (1.0 + np.exp(-h / tau)) + tau * np.expm1(-h / tau))
-        self.branch_slope = np.where(present, e.branch_stiffness * series, 0.0)
-        # A branch may be as stiff as the sheet metal behind a mount; then its force is averaged over three steps too.
-        stiff = (e.stiffness + e.branch_stiffness) * h**2 > SAFE_PHASE**2 * self._row_masses()
-        self.branch_average = np.where(stiff, UNCONDITIONAL, FOURTH_ORDER)
-        ahead = self.branch_average * ((self.decay - 1.0) * self.branch_slope + self.branch_gain * h)
-        branch = np.where(present, self.branch_slope + ahead, 0.0)
-        self.impedance = np.maximum(e.damping * h / 2 + beta * e.stiffness * h**2 + branch, EMPTY_ROW)
-        self.inertial = beta[e.tyres] * e.stiffness[e.tyres] * h**2
-        self.rotation_impedance = np.maximum(FOURTH_ORDER * e.rotation_stiffness * h**2, EMPTY_ROW)
+        # A light part that the branch damps strongly must not ring.
+        share = np.where(phase > FITTED_PHASE**2, 0.5, implicit_share(self.branch_gain * h / masses))
+        self.branch_slope = np.where(present, e.branch_stiffness * series * 2.0 * share, 0.0)
+        rise = self.branch_average * ((self.decay - 1.0) * self.branch_slope + self.branch_gain * h)
+        branch = np.where(present, self.branch_slope + rise, 0.0)
+        self.impedance = np.maximum(e.damping * h / 2 + self.average * e.stiffness * h**2 + branch, EMPTY_ROW)
+        self.inertial = self.average[e.tyres] * e.stiffness[e.tyres] * h**2
         self.spring_impedance = np.maximum(FOURTH_ORDER * e.spring_stiffness * h**2, EMPTY_ROW)
         self.damper_impedance = np.maximum(self.viscous * h / 2, EMPTY_ROW)
+        self.valve_impedance = np.maximum(self.valve_damping * h / 2, EMPTY_ROW)
 
     def _row_masses(self) -> Vector:
         """Mass 1 / (j M^-1 j') [kg] that each element row moves in the design position; (n, 3)."""
@@ -174,7 +178,6 @@ class ElementRows:
         force[e.tyres] += self.inertial * self.plate_acceleration
         explicit = self.explicit
         explicit[e.rows] = np.einsum("nij,nj->ni", frames, force)
-        explicit[e.rotation_rows] = self.rotation_preload - e.rotation_stiffness * position[e.rotation_rows]
         explicit[e.springs] = self.spring_preload - e.spring_stiffness * spring_residual
         explicit[e.hard_rows] = self.hard_preload
         # MuJoCo made the reference of the ideal joints before it knew of the modal coordinates.
@@ -183,11 +186,9 @@ class ElementRows:
             -law[..., 1] * velocity[e.hard_rows] - law[..., 0] * law[..., 2] * position[e.hard_rows]
         )
         impedance[e.rows] = self.impedance
-        impedance[e.rotation_rows] = self.rotation_impedance
         impedance[e.springs] = self.spring_impedance
         impedance[e.dampers] = self.damper_impedance
         reference[e.rows] = 0.0
-        reference[e.rotation_rows] = 0.0
         reference[e.springs] = 0.0
         reference[e.dampers] = 0.0
         sliding = data.qvel[e.damper_dofs]
@@ -196,8 +197,28 @@ class ElementRows:
         impedance[e.frictions] = np.maximum(slope * self.step, EMPTY_ROW)
         reference[e.frictions] = -sliding / self.step
         data.efc_frictionloss[e.frictions] = self.limits
+        if len(e.valves):
+            impedance[e.valves] = self.valve_impedance
+            reference[e.valves] = -2.0 * sliding / self.step
+            data.efc_frictionloss[e.valves] = self.valve_limit
         np.divide(1.0, impedance, out=regulariser)
-        data.qfrc_applied[:] = explicit @ jacobian
+        turned, frames = self.rotation(data)
+        torque = np.einsum("nij,nj->ni", frames, self.rotation_preload) - e.rotation_stiffness * turned
+        turning = np.einsum("ij,ij->i", data.cdof[:, :3], e.rotation_dofs.T @ torque)
+        data.qfrc_applied[:] = explicit @ jacobian + turning
+
+    def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
+        """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""
+        frames = data.site_xmat[self.elements.rotation_sites].reshape(-1, 2, 3, 3)
+        moving, carrier = frames[:, 0], frames[:, 1]
+        # Half the sum of c_k x m_k over the axes.
+        product = np.einsum("nik,njk->nij", carrier, moving)
+        halves = [product[:, i, j] - product[:, j, i] for i, j in ((1, 2), (2, 0), (0, 1))]
+        return 0.5 * np.stack(halves, axis=1), carrier
+
+    def rotation_jacobian(self, data: mujoco.MjData) -> Vector:
+        """Angular velocity of each moving part against its carrier over the velocity coordinates; (m, 3, nv)."""
+        return np.asarray(self.elements.rotation_dofs[:, None, :] * data.cdof[:, :3].T[None])
 
     def _friction(self, velocity: Vector) -> None:
         """Friction limits at the present velocity."""

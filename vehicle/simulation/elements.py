@@ -25,8 +25,9 @@ class Elements:
         stiffness, damping: K [N/m] and B [N s/m], (n, 3).
         branch_stiffness, branch_time: Maxwell branch K2 [N/m] and tau [s], (n, 3).
         averaged: True where the stiffness is averaged over three steps, (n,).
-        rotation_rows: rows of their rotations, (m, 3); a weld measures half the angle there.
-        rotation_stiffness: row stiffness, four times K_rot [N m/rad], (m, 1).
+        rotation_sites: site of the moving part and of the carrier of the m elements that resist rotations, (m, 2).
+        rotation_stiffness: K_rot [N m/rad], (m, 1).
+        rotation_dofs: +1 where a velocity coordinate turns the moving part, -1 where it turns the carrier; (m, nv).
         tyres: positions of the tyres in `names`, in the order of WHEELS.
         hard_rows: rows of the ideal ball joints without a law, (k, 3).
         springs: rows of the main springs, (2,).
@@ -34,11 +35,13 @@ class Elements:
         spring_sites: lower and upper site of each main spring, (2, 2).
         dampers: equality rows of the dampers, (2,).
         frictions: friction rows of the dampers, (2,).
+        valves: second friction rows of degressive dampers, (2,); none for linear ones.
         damper_dofs: velocity index of the damper joints, (2,).
         modal_columns: columns of the modal coordinates.
         node_rows: rows that touch a flexible node, (3, g).
         node_shapes: signed shapes of these nodes, (3, g * modes), in body axes [kg^-1/2].
         spring_shapes: shapes at the upper spring seats, (2, 3, modes).
+        reach: where rows with explicit forces are not zero: first row, number of rows (3 or 1), first column, end.
         body: id of the flexible body.
         row_count: number of constraint rows.
     """
@@ -51,8 +54,9 @@ class Elements:
     branch_stiffness: Vector
     branch_time: Vector
     averaged: npt.NDArray[np.bool_]
-    rotation_rows: Index
+    rotation_sites: Index
     rotation_stiffness: Vector
+    rotation_dofs: Vector
     tyres: Index
     hard_rows: Index
     springs: Index
@@ -60,11 +64,13 @@ class Elements:
     spring_sites: Index
     dampers: Index
     frictions: Index
+    valves: Index
     damper_dofs: Index
     modal_columns: slice
     node_rows: Index
     node_shapes: Vector
     spring_shapes: Vector
+    reach: Index
     body: int
     row_count: int
 
@@ -102,18 +108,21 @@ def read_elements(model: mujoco.MjModel) -> Elements:
     modes = len(joints)
     kinds = mujoco.mjtEq
     row = 0
-    names, rows, carriers, laws, rotation_rows, rotation_stiffness = [], [], [], [], [], []
+    names, rows, carriers, laws, rotation_sites, rotation_stiffness = [], [], [], [], [], []
     hard_rows, node_rows, node_shapes = [], [], []
     springs, spring_stiffness, spring_sites, spring_shapes, dampers = [], [], [], [], []
+    reach: list[tuple[int, int, int, int]] = []
+    modal = range(first, first + modes)
     for index in range(model.neq):
         name = model.equality(index).name
         kind = mujoco.mjtEq(model.eq_type[index])
         law = numeric(model, f"law/{name}")
         shape = numeric(model, f"shape/{name}")
         triple = np.arange(row, row + 3)
-        if kind in (kinds.mjEQ_WELD, kinds.mjEQ_CONNECT):
-            sites = (model.eq_obj1id[index], model.eq_obj2id[index])
+        if kind == kinds.mjEQ_CONNECT:
+            sites = (int(model.eq_obj1id[index]), int(model.eq_obj2id[index]))
             moving, carrier = (int(model.site_bodyid[site]) for site in sites)
+            reach += _reach(model, row, 3, sites, modal)
             if shape is not None:
                 # The residual is moving less carrier: the body's own shape counts with the sign of its role.
                 sign = 1.0 if model.body(moving).name == "body" else -1.0
@@ -126,16 +135,16 @@ def read_elements(model: mujoco.MjModel) -> Elements:
                 rows.append(triple)
                 carriers.append(carrier)
                 laws.append(law)
-            if kind == kinds.mjEQ_WELD:
-                assert law is not None
-                rotation_rows.append(triple + 3)
-                rotation_stiffness.append(4.0 * law[12])
-            row += 6 if kind == kinds.mjEQ_WELD else 3
+                if law[12] > 0.0:
+                    rotation_sites.append(sites)
+                    rotation_stiffness.append(law[12])
+            row += 3
         elif kind == kinds.mjEQ_TENDON:
             assert law is not None
             springs.append(row)
             spring_stiffness.append(law[0])
-            spring_sites.append([model.site(f"{name}/lower").id, model.site(f"{name}/upper").id])
+            spring_sites.append((model.site(f"{name}/lower").id, model.site(f"{name}/upper").id))
+            reach += _reach(model, row, 1, spring_sites[-1], modal)
             spring_shapes.append(np.zeros((3, modes)) if shape is None else shape.reshape(3, modes))
             row += 1
         else:
@@ -143,6 +152,7 @@ def read_elements(model: mujoco.MjModel) -> Elements:
             row += 1
     damper_joints = [model.joint(f"damper_{wheel}").id for wheel in WHEELS if _has_joint(model, f"damper_{wheel}")]
     dofs = model.jnt_dofadr[damper_joints] if damper_joints else np.zeros(0, dtype=int)
+    valves = [index for index in range(model.ntendon) if model.tendon_frictionloss[index] > 0.0]
     table = np.array(laws).reshape(len(laws), 14)
     shapes = np.array(node_shapes).reshape(len(node_shapes), 3, modes)
     return Elements(
@@ -154,24 +164,61 @@ def read_elements(model: mujoco.MjModel) -> Elements:
         branch_stiffness=table[:, 6:9].copy(),
         branch_time=np.divide(table[:, 9:12], table[:, 6:9], out=np.zeros((len(laws), 3)), where=table[:, 6:9] > 0.0),
         averaged=table[:, 13] > 0.0,
-        rotation_rows=np.array(rotation_rows, dtype=np.intp).reshape(-1, 3),
+        rotation_sites=np.array(rotation_sites, dtype=np.intp).reshape(-1, 2),
         rotation_stiffness=np.array(rotation_stiffness).reshape(-1, 1),
+        rotation_dofs=_rotation_dofs(model, rotation_sites),
         tyres=np.array([names.index(f"bushing/tyre_{w}") for w in WHEELS if f"bushing/tyre_{w}" in names], np.intp),
         hard_rows=np.array(hard_rows, dtype=np.intp).reshape(-1, 3),
         springs=np.array(springs, dtype=np.intp),
         spring_stiffness=np.array(spring_stiffness),
         spring_sites=np.array(spring_sites, dtype=np.intp).reshape(-1, 2),
         dampers=np.array(dampers, dtype=np.intp),
-        # Friction rows follow the equality rows, in the order of the joints.
+        # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
         frictions=row + np.argsort(np.argsort(dofs)),
+        valves=row + len(damper_joints) + np.arange(len(valves)),
         damper_dofs=np.array(dofs, dtype=np.intp),
         modal_columns=slice(first, first + modes),
         node_rows=np.array(node_rows, dtype=np.intp).reshape(-1, 3).T,
         node_shapes=shapes.transpose(1, 0, 2).reshape(3, len(node_shapes) * modes),
         spring_shapes=np.array(spring_shapes).reshape(len(springs), 3, modes),
+        reach=np.array(reach, dtype=np.intp).reshape(-1, 4),
         body=_body_id(model),
-        row_count=row + len(damper_joints),
+        row_count=row + len(damper_joints) + len(valves),
     )
+
+
+def _rotation_dofs(model: mujoco.MjModel, sites: list[tuple[int, int]]) -> Vector:
+    """Which coordinates turn the moving part (+1) and the carrier (-1) of each element; both cancel."""
+    signs = np.zeros((len(sites), model.nv))
+    for row, (moving, carrier) in zip(signs, sites, strict=True):
+        row[_moved_by(model, moving)] += 1.0
+        row[_moved_by(model, carrier)] -= 1.0
+    kinds = mujoco.mjtJoint
+    for joint in range(model.njnt):
+        # Slides, and the first three coordinates of free bodies, do not turn.
+        shifts = {int(kinds.mjJNT_SLIDE): 1, int(kinds.mjJNT_FREE): 3}.get(int(model.jnt_type[joint]), 0)
+        signs[:, model.jnt_dofadr[joint] : model.jnt_dofadr[joint] + shifts] = 0.0
+    return signs
+
+
+def _moved_by(model: mujoco.MjModel, site: int) -> list[int]:
+    """Velocity coordinates that move a site, from its body down to the world."""
+    found: list[int] = []
+    body = int(model.site_bodyid[site])
+    while body > 0:
+        first = int(model.body_dofadr[body])
+        found += range(first, first + int(model.body_dofnum[body]))
+        body = int(model.body_parentid[body])
+    return found
+
+
+def _reach(
+    model: mujoco.MjModel, row: int, rows: int, sites: tuple[int, int], modal: range
+) -> list[tuple[int, int, int, int]]:
+    """Rows, and the runs of columns in which the motion of two sites has derivatives."""
+    columns = np.unique([*_moved_by(model, sites[0]), *_moved_by(model, sites[1]), *modal])
+    runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
+    return [(row, rows, int(run[0]), int(run[-1]) + 1) for run in runs if len(run)]
 
 
 def _has_joint(model: mujoco.MjModel, name: str) -> bool:

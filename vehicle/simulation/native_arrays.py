@@ -23,6 +23,8 @@ class Fields(NamedTuple):
     qvel: Vector
     xmat: Vector
     site_xpos: Vector
+    site_xmat: Vector
+    cdof: Vector
     efc_J: Vector
     efc_pos: Vector
     efc_vel: Vector
@@ -39,15 +41,19 @@ class Indices(NamedTuple):
 
     rows: Integers
     carriers: Integers
-    rotation_rows: Integers
+    rotation_sites: Integers
+    turning: Integers
+    """Element, velocity coordinate, and 1 or -1 where it turns the moving part or the carrier; a row each."""
     hard_rows: Integers
     springs: Integers
     spring_sites: Integers
     dampers: Integers
     frictions: Integers
+    valves: Integers
     damper_dofs: Integers
     tyres: Integers
     node_rows: Integers
+    reach: Integers
     modal: Integers
     """Body, number of modes, first velocity and first position of the modal coordinates."""
 
@@ -68,9 +74,10 @@ class Constants(NamedTuple):
     branch_slope: Vector
     branch_average: Vector
     impedance: Vector
-    rotation_impedance: Vector
     spring_impedance: Vector
     damper_impedance: Vector
+    valve_impedance: Vector
+    valve_limit: Vector
     inertial: Vector
     viscous: Vector
     smoothing: Vector
@@ -79,6 +86,8 @@ class Constants(NamedTuple):
     stribeck_velocity: Vector
     exponent: Vector
     node_shapes: Vector
+    mode_shapes: Vector
+    """The same, a row for each mode: x of all nodes, y of all nodes, z of all nodes."""
     spring_shapes: Vector
     scalars: Vector
     """Time step, least impedance, and one where the friction limits depend on the velocity."""
@@ -99,6 +108,10 @@ class State(NamedTuple):
     last_time: Vector
     force: Vector
     """Explicit forces of the elements, in world axes."""
+    torque: Vector
+    """Torques of the rotations, in world axes."""
+    deflection: Vector
+    """Modal displacement and velocity of the nodes, in body axes."""
 
 
 def _plane(values: npt.ArrayLike) -> Vector:
@@ -115,8 +128,10 @@ def _whole(values: npt.ArrayLike) -> Integers:
 def indices_of(rows: ElementRows) -> Indices:
     """The indices of the element rows."""
     e = rows.elements
-    own = ("rows", "carriers", "rotation_rows", "hard_rows", "springs", "spring_sites", "dampers", "frictions")
-    values = {name: _whole(getattr(e, name)) for name in (*own, "damper_dofs", "tyres", "node_rows")}
+    own = ("rows", "carriers", "rotation_sites", "hard_rows", "springs", "spring_sites", "dampers", "frictions")
+    values = {name: _whole(getattr(e, name)) for name in (*own, "valves", "damper_dofs", "tyres", "node_rows", "reach")}
+    pairs = np.argwhere(e.rotation_dofs)
+    values["turning"] = _whole(np.column_stack([pairs, e.rotation_dofs[tuple(pairs.T)]]))
     columns = e.modal_columns
     modal = _whole([e.body, columns.stop - columns.start, columns.start, rows.modal_positions.start])
     return Indices(**values, modal=modal)
@@ -126,8 +141,12 @@ def constants_of(rows: ElementRows, empty: float) -> Constants:
     """The constants of the element rows; `empty` is the least impedance [kg]."""
     values = {}
     for name in Constants._fields:
-        if name != "scalars":
+        if name not in ("scalars", "mode_shapes"):
             values[name] = _plane(getattr(rows, name) if hasattr(rows, name) else getattr(rows.elements, name))
+    e = rows.elements
+    nodes = e.node_rows.shape[1]
+    by_mode = e.node_shapes.reshape(3, nodes, -1).transpose(2, 0, 1) if nodes else np.zeros((0, 0))
+    values["mode_shapes"] = _plane(by_mode)
     scalars = _plane([rows.step, empty, float(rows.stribeck)])
     return Constants(**values, scalars=scalars)
 
@@ -144,8 +163,14 @@ def share_state(rows: ElementRows) -> State:
     rows.reset()
     values = {}
     for name in State._fields:
-        if name not in ("last_time", "force"):
+        if name not in ("last_time", "force", "torque", "deflection"):
             array = np.ascontiguousarray(getattr(rows, name), dtype=np.float64)
             setattr(rows, name, array)
             values[name] = array.reshape(1, -1) if array.ndim == 1 else array
-    return State(**values, last_time=np.full((1, 1), rows.last_time), force=np.zeros(rows.elements.rows.shape))
+    own = {
+        "force": rows.elements.rows.shape,
+        "torque": (max(len(rows.rotation_preload), 1), 3),
+        "deflection": (2, max(rows.elements.node_rows.size, 1)),
+    }
+    values |= {name: np.zeros(shape) for name, shape in own.items()}
+    return State(**values, last_time=np.full((1, 1), rows.last_time))

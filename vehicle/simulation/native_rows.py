@@ -13,26 +13,29 @@ import numpy as np
 from vehicle.simulation.native_arrays import Constants, Fields, Indices, State
 
 
-def _modal_rows(d: Fields, e: Indices, c: Constants) -> None:
+def _modal_rows(d: Fields, e: Indices, c: Constants, s: State) -> None:
     """J -> J +- R Phi_n, r -> r +- R Phi_n q, r' -> r' +- R Phi_n q' for the rows at flexible nodes."""
     body, modes, column, place = e.modal[0, 0], e.modal[1, 0], e.modal[2, 0], e.modal[3, 0]
     turn = d.xmat[body]
-    for node in range(e.node_rows.shape[1]):
+    nodes, count = e.node_rows.shape[1], c.mode_shapes.shape[1]
+    moved, moving = s.deflection[0], s.deflection[1]
+    moved[:], moving[:] = 0.0, 0.0
+    # Deflections of all nodes in body axes, mode by mode: long loops without sums that wait for each other.
+    for k in range(modes):
+        q, v, shape = d.qpos[place + k, 0], d.qvel[column + k, 0], c.mode_shapes[k]
+        for j in range(count):
+            moved[j] += shape[j] * q
+            moving[j] += shape[j] * v
+    for node in range(nodes):
+        at = node * modes
         for i in range(3):
             row = e.node_rows[i, node]
-            moved, moving = 0.0, 0.0
-            for k in range(modes):
-                at = node * modes + k
-                shape = (
-                    turn[3 * i] * c.node_shapes[0, at]
-                    + turn[3 * i + 1] * c.node_shapes[1, at]
-                    + turn[3 * i + 2] * c.node_shapes[2, at]
-                )
-                d.efc_J[row, column + k] = shape
-                moved += shape * d.qpos[place + k, 0]
-                moving += shape * d.qvel[column + k, 0]
-            d.efc_pos[row, 0] += moved
-            d.efc_vel[row, 0] += moving
+            x, y, z = turn[3 * i], turn[3 * i + 1], turn[3 * i + 2]
+            d.efc_pos[row, 0] += x * moved[node] + y * moved[nodes + node] + z * moved[2 * nodes + node]
+            d.efc_vel[row, 0] += x * moving[node] + y * moving[nodes + node] + z * moving[2 * nodes + node]
+            for k in range(at, at + modes):
+                along = x * c.node_shapes[0, k] + y * c.node_shapes[1, k] + z * c.node_shapes[2, k]
+                d.efc_J[row, column + k - at] = along
 
 
 def _springs(d: Fields, e: Indices, c: Constants, s: State) -> None:
@@ -118,14 +121,23 @@ def _elements(d: Fields, e: Indices, c: Constants, s: State) -> None:
 
 
 def _rotations(d: Fields, e: Indices, c: Constants, s: State) -> None:
-    """Rotational rows of the mounts."""
-    for n in range(e.rotation_rows.shape[0]):
-        for i in range(3):
-            row = e.rotation_rows[n, i]
-            turned = c.rotation_stiffness[n, 0] * d.efc_pos[row, 0]
-            s.explicit[0, row] = c.rotation_preload[n, i] - turned
-            d.efc_D[row, 0] = c.rotation_impedance[n, 0]
-            d.efc_aref[row, 0] = 0.0
+    """Torques of the mounts, T = R p - K_rot sin(angle) n, on the coordinates; after the forces of the rows."""
+    for n in range(c.rotation_stiffness.shape[0]):
+        moving, carrier = d.site_xmat[e.rotation_sites[n, 0]], d.site_xmat[e.rotation_sites[n, 1]]
+        half = 0.5 * c.rotation_stiffness[n, 0]
+        p = c.rotation_preload[n]
+        x, y, z = 0.0, 0.0, 0.0
+        for axis in range(3):
+            cx, cy, cz = carrier[axis], carrier[3 + axis], carrier[6 + axis]
+            mx, my, mz = moving[axis], moving[3 + axis], moving[6 + axis]
+            x += p[axis] * cx - half * (cy * mz - cz * my)
+            y += p[axis] * cy - half * (cz * mx - cx * mz)
+            z += p[axis] * cz - half * (cx * my - cy * mx)
+        s.torque[n, 0], s.torque[n, 1], s.torque[n, 2] = x, y, z
+    for entry in range(e.turning.shape[0]):
+        n, dof, sign = e.turning[entry, 0], e.turning[entry, 1], e.turning[entry, 2]
+        turning = d.cdof[dof, 0] * s.torque[n, 0] + d.cdof[dof, 1] * s.torque[n, 1] + d.cdof[dof, 2] * s.torque[n, 2]
+        d.qfrc_applied[0, dof] += sign * turning
 
 
 def _ideal_joints(d: Fields, e: Indices, c: Constants, s: State) -> None:
@@ -139,7 +151,7 @@ def _ideal_joints(d: Fields, e: Indices, c: Constants, s: State) -> None:
 
 
 def _dampers(d: Fields, e: Indices, c: Constants, s: State) -> None:
-    """Viscous and friction rows of the dampers."""
+    """Viscous, friction and valve rows of the dampers."""
     for n in range(e.dampers.shape[0]):
         row = e.dampers[n, 0]
         d.efc_D[row, 0] = c.damper_impedance[n, 0]
@@ -156,39 +168,50 @@ def _dampers(d: Fields, e: Indices, c: Constants, s: State) -> None:
         d.efc_D[row, 0] = max(slope * step, empty)
         d.efc_aref[row, 0] = -sliding / step
         d.efc_frictionloss[row, 0] = limit
+    for n in range(e.valves.shape[0]):
+        row = e.valves[n, 0]
+        d.efc_D[row, 0] = c.valve_impedance[n, 0]
+        d.efc_aref[row, 0] = -2.0 * d.qvel[e.damper_dofs[n, 0], 0] / step
+        d.efc_frictionloss[row, 0] = c.valve_limit[n, 0]
 
 
-def _generalised_forces(d: Fields, s: State) -> None:
-    """R = 1 / D, and the explicit forces of the rows on the coordinates, J' f0."""
-    dofs = d.efc_J.shape[1]
+def _generalised_forces(d: Fields, e: Indices, s: State) -> None:
+    """R = 1 / D, and the explicit forces of the rows on the coordinates that they reach, J' f0."""
+    count, dofs = d.efc_J.shape
     total = d.qfrc_applied[0]
     for j in range(dofs):
         total[j] = 0.0
-    for row in range(d.efc_J.shape[0]):
+    for row in range(count):
         d.efc_R[row, 0] = 1.0 / d.efc_D[row, 0]
-        force = s.explicit[0, row]
-        if force != 0.0:
-            for j in range(dofs):
+    for entry in range(e.reach.shape[0]):
+        row, rows, first, last = e.reach[entry, 0], e.reach[entry, 1], e.reach[entry, 2], e.reach[entry, 3]
+        if rows == 3:
+            x, y, z = s.explicit[0, row], s.explicit[0, row + 1], s.explicit[0, row + 2]
+            for j in range(first, last):
+                total[j] += x * d.efc_J[row, j] + y * d.efc_J[row + 1, j] + z * d.efc_J[row + 2, j]
+        else:
+            force = s.explicit[0, row]
+            for j in range(first, last):
                 total[j] += force * d.efc_J[row, j]
 
 
 def _rewrite(time: float, d: Fields, e: Indices, c: Constants, s: State) -> None:
     """Rewrite the rows of one state."""
     if e.modal[1, 0] > 0:
-        modal_rows(d, e, c)
+        modal_rows(d, e, c, s)
     local_axes(d, e, s)
     advance_branches(time, c, s)
     elements(d, e, c, s)
-    rotations(d, e, c, s)
     springs(d, e, c, s)
     ideal_joints(d, e, c, s)
     dampers(d, e, c, s)
-    generalised_forces(d, s)
+    generalised_forces(d, e, s)
+    rotations(d, e, c, s)
 
 
 def _compiled(function: Any) -> Any:
     """A function for the compiled callback: no fast mathematics, division as numpy has it."""
-    return numba.njit(fastmath=False, boundscheck=False, error_model="numpy")(function)
+    return numba.njit(fastmath=False, boundscheck=False, error_model="numpy", inline="always")(function)
 
 
 modal_rows, springs, local_axes = _compiled(_modal_rows), _compiled(_springs), _compiled(_local_axes)

@@ -79,6 +79,7 @@ class Recorder:
         self.filled = 0
         self.done = 0
         self.work_in = 0.0
+        self.lifting = 0.0
         self.dissipated = 0.0
         self.last_powers: tuple[float, float] | None = None
         self.lowest_load = dict.fromkeys(WHEELS, (np.inf, 0.0))
@@ -145,8 +146,9 @@ class Recorder:
         mujoco.mj_energyPos(model, data)
         mujoco.mj_energyVel(model, data)
         elastic = 0.5 * np.sum(e.stiffness * rows.residual**2) - np.sum(rows.element_preload * rows.residual)
-        turned = self.data.efc_pos[e.rotation_rows]
-        elastic += 0.5 * np.sum(e.rotation_stiffness * turned**2) - np.sum(rows.rotation_preload * turned)
+        turned, frames = rows.rotation(self.data)
+        twist = np.einsum("nji,nj->ni", frames, turned)
+        elastic += 0.5 * np.sum(e.rotation_stiffness * twist**2) - np.sum(rows.rotation_preload * twist)
         extension = (rows.spring_preload - rows.explicit[e.springs]) / e.spring_stiffness
         elastic += np.sum(0.5 * e.spring_stiffness * extension**2 - rows.spring_preload * extension)
         branch = self._branch_force(self.data.efc_force[None, :], rows.branch_past[None])[0]
@@ -183,6 +185,8 @@ class Recorder:
         e = self.rows.elements
         total = b["solved"] + b["explicit"]
         damper_force = -(b["actuator"] + total[:, e.dampers] + total[:, e.frictions])
+        if len(e.valves):
+            damper_force = damper_force - total[:, e.valves]
         velocity = motion.velocity[steps]
         tyre = total[:, e.rows[e.tyres][:, 2]]
         for column, wheel in enumerate(WHEELS):
@@ -194,7 +198,10 @@ class Recorder:
             if tyre[lowest, column] < self.lowest_load[wheel][0]:
                 when = (self.done + lowest) * every * self.step
                 self.lowest_load[wheel] = (float(tyre[lowest, column]), when)
-        power_in = np.sum(tyre * velocity, axis=1)
+        # What lifts the weight is known without any quadrature, and is a multiple of what the dampers take.
+        static = self.rows.element_preload[e.tyres, 2]
+        power_in = np.sum((tyre - static) * velocity, axis=1)
+        self.lifting = float(static @ (motion.displacement[index] - motion.displacement[0]))
         rate = b["rate"] + 0.5 * self.step * self._row_acceleration(b["solved"])
         loss = np.sum(e.damping * rate**2, axis=(1, 2))
         branch = self._branch_force(b["solved"], b["branch"])
@@ -222,7 +229,9 @@ class Recorder:
         """Energy balance of the whole run."""
         assert self.energy_at_start is not None
         return Energies(
-            work_in=self.work_in, dissipated=self.dissipated, stored=self.energy_at_end - self.energy_at_start
+            work_in=self.work_in + self.lifting,
+            dissipated=self.dissipated,
+            stored=self.energy_at_end - self.energy_at_start,
         )
 
     def warnings(self) -> tuple[str, ...]:

@@ -35,7 +35,8 @@ class StaticTrim:
     """Result of the trim.
 
     Attributes:
-        preload: static force of every constraint row, in the axes of its element [N, N m], (rows,).
+        preload: static force of every constraint row in the axes of its element [N], and behind them the static
+            torques of the rotations [N m], (rows + 3 m,).
         tyre_load: vertical load of each tyre [N], by wheel.
         rear_support_load: vertical load of each rubber block [N], by side.
         residual: largest displacement by which the trimmed car would still move [m].
@@ -71,15 +72,18 @@ def trim(model: mujoco.MjModel) -> StaticTrim:
     row_stiffness[e.rows] = e.stiffness
     ground = [index for index, name in enumerate(e.names) if name.startswith(GROUND_CONTACTS)]
     row_stiffness[e.rows[ground, :2]] *= SLIDING_SHARE
-    row_stiffness[e.rotation_rows] = e.rotation_stiffness
     row_stiffness[e.springs] = e.spring_stiffness
+    turned = rows.rotation_jacobian(data)
     stiffness = jacobian.T @ (row_stiffness[:, None] * jacobian)
+    stiffness += np.einsum("n,nij,nik->jk", e.rotation_stiffness[:, 0], turned, turned)
     joint_stiffness = joint_spring_stiffness(model)
     stiffness[np.diag_indices(model.nv)] += joint_stiffness
     hard = jacobian[e.hard_rows.ravel()]
     displacement, reaction = _settle(stiffness, hard, gravity)
     preload = -row_stiffness * (jacobian @ displacement)
     preload[e.hard_rows.ravel()] = -reaction
+    torque = -e.rotation_stiffness * (turned @ displacement)
+    preload = np.concatenate([preload, torque.ravel()])
     for joint in range(model.njnt):
         dof = model.jnt_dofadr[joint]
         if joint_stiffness[dof] > 0.0:
