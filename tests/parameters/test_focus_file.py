@@ -133,7 +133,7 @@ def test_an_override_may_name_an_axis():
     for wrong in (f"{path}.w=1", f"{path}.z.x=1", "damper.viscous.z=1"):
         with pytest.raises(ConfigurationError, match="no parameter"):
             load_vehicle(None, [wrong])
-    with pytest.raises(ConfigurationError, match="must be at least 0.0"):
+    with pytest.raises(ConfigurationError, match=r"must be at least 0\.0"):
         load_vehicle(None, [f"{path}.z=-1"])
 
 

@@ -79,9 +79,8 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     data = mujoco.MjData(model)
     rows = ElementRows(model, static.preload)
     e = rows.elements
+    stiffness = _tangent_stiffness(rows, model)
     with installed(rows):
-        stiffness = _tangent_stiffness(model, data)
-        mujoco.mj_resetData(model, data)
         mujoco.mj_forward(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
@@ -115,18 +114,23 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     )
 
 
-def _tangent_stiffness(model: mujoco.MjModel, data: mujoco.MjData) -> Vector:
+def _tangent_stiffness(rows: ElementRows, model: mujoco.MjModel) -> Vector:
     """K = -dF/du of all static forces, by central differences."""
+    data = mujoco.MjData(model)
+    start, way = data.qpos.copy(), np.zeros(model.nv)
     stiffness = np.zeros((model.nv, model.nv))
     for column in range(model.nv):
         forces = []
         for sign in (1.0, -1.0):
-            mujoco.mj_resetData(model, data)
-            step = np.zeros(model.nv)
-            step[column] = sign
-            mujoco.mj_integratePos(model, data.qpos, step, DIFFERENCE_STEP)
-            mujoco.mj_forward(model, data)
-            forces.append(data.qfrc_smooth.copy())
+            data.qpos[:] = start
+            way[column] = sign
+            mujoco.mj_integratePos(model, data.qpos, way, DIFFERENCE_STEP)
+            # Everything of a step but the solution of the rows, which would cost as much again.
+            mujoco.mj_fwdPosition(model, data)
+            mujoco.mj_fwdVelocity(model, data)
+            rows(model, data)
+            forces.append(data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
+        way[column] = 0.0
         stiffness[:, column] = -(forces[0] - forces[1]) / (2.0 * DIFFERENCE_STEP)
     return stiffness
 
