@@ -47,15 +47,13 @@ def test_the_same_run_twice_is_the_same_bit_for_bit(high_run, high_piece):
 
 
 def test_default_step_against_an_eighth_of_it(car):
-    # The lateral RMS of the damper top is made of the single samples where the damper breaks away: twelve seconds hold
-    # too few of them for 0.5 % (0.6 %; over the whole minute it is 0.3 %).
+    # The demand of the project: 0.5 % for every acceleration, the lateral damper top with its short impacts among them.
     high = read_signal(find_input("high.csv"))
     piece = Signal(time=high.time[:12001], displacement={"fr": high.displacement["fr"][:12001]})
     high_run = car.run(piece)
     fine = Car.load(None, [f"solver.timestep={car.vehicle.solver.timestep / 8}"]).run(piece)
     ratios = {name: rms(high_run[name]) / rms(fine[name]) - 1.0 for name in acceleration_channels()}
-    bounds = {name: 1e-2 if name.startswith("damper_top") and name.endswith("_y") else 5e-3 for name in ratios}
-    missed = {name: f"{100 * ratio:.2f} %" for name, ratio in ratios.items() if abs(ratio) > bounds[name]}
+    missed = {name: f"{100 * ratio:.2f} %" for name, ratio in ratios.items() if abs(ratio) > 5e-3}
     assert not missed
     for wheel in ("fr", "fl"):
         assert abs(high_run.slip_share(wheel) - fine.slip_share(wheel)) < 3e-3
