@@ -6,6 +6,7 @@ import argparse
 import os
 import signal
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable
@@ -35,7 +36,8 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
         0, or the code of the failure: 2 usage, 3 data, 4 simulation, 5 missing part, 6 output, 130 interrupted.
     """
     # A terminated run cleans up as an interrupted one does.
-    previous = signal.signal(signal.SIGTERM, _interrupt)
+    previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    _asked_to_end.clear()
     try:
         job()
         sys.stdout.flush()
@@ -60,11 +62,17 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
         _say("out of memory; give a shorter input or a lower solver.record_rate")
         return VehicleError.exit_code
     finally:
-        signal.signal(signal.SIGTERM, previous)
+        for number, handler in previous.items():
+            signal.signal(number, handler)
     return 0
 
 
+_asked_to_end = threading.Event()
+"""Set by a signal. The exception alone can be lost: a compiler that is called back from C swallows it."""
+
+
 def _interrupt(number: int, frame: FrameType | None) -> None:
+    _asked_to_end.set()
     raise KeyboardInterrupt
 
 
@@ -87,7 +95,9 @@ class ProgressLine:
         self.last = 0.0
 
     def __call__(self, fraction: float) -> None:
-        """Show a fraction [-]; at most five times a second."""
+        """Show a fraction [-]; at most five times a second. The place where a lost interruption is noticed."""
+        if _asked_to_end.is_set():
+            raise KeyboardInterrupt
         now = time.monotonic()
         if not self.enabled or (now - self.last < 0.2 and fraction < 1.0):
             return

@@ -1,0 +1,249 @@
+"""What the authors of source 1 did by hand, automatic: parameters fitted to FRFs and bump records (section 3.2).
+
+python -m scenarios.tuning [--output DIR] [--quick] [--jobs N] [--vehicle FILE.toml] [--force]
+python -m scenarios.tuning --frf measured_low.csv --level low --frf measured_high.csv --level my_signal.csv
+    [--fit damper.viscous=500:5000:1500]... [--channel NAME]... [--band 3:45] [--spacing 0.3] [--window 4]
+
+Without --frf: data of a hidden car with 3 % noise, from the authors' starting values.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from scenarios.car_runs import CarRuns, Case
+from scenarios.car_study import Findings, car_parser, run_car_study
+from scenarios.tuning_claims import data_note, demonstration_claims, fit_notes, fit_numbers, frozen_note, own_claims
+from scenarios.tuning_data import BAND, CHANNELS, NOISE, SPACING, Measurement, make_measurements
+from scenarios.tuning_figures import correlation_figure, level_figure, parameter_figure, record_figure
+from scenarios.tuning_hidden import HIDDEN
+from scenarios.tuning_own import own_measurements
+from scenarios.tuning_parameters import AUTHORS, QUICK, SLIDING, TEXT, parse_parameters
+from vehicle.car import Car, Run
+from vehicle.command_line import ProgressLine
+from vehicle.errors import ConfigurationError
+from vehicle.tuning.fit import Target, fit
+from vehicle.tuning.frf_target import FrfTarget
+from vehicle.tuning.full_steps import FullSteps, full_steps
+from vehicle.tuning.parameter import Parameter, overrides_of
+from vehicle.tuning.record_target import RecordTarget
+from vehicle.tuning.result import TuningResult
+
+
+class Tuning:
+    """Fits of one car.
+
+    Args:
+        runs: makes its cars and its full simulations.
+    """
+
+    def __init__(self, runs: CarRuns) -> None:
+        self.runs = runs
+        self.vehicle = runs.car().vehicle
+
+    def build(self, values: Mapping[str, float]) -> Car:
+        """The car with some values; not kept."""
+        return Car.load(self.runs.vehicle, (*self.runs.overrides, *overrides_of(self.vehicle, values)))
+
+    def fit(
+        self,
+        name: str,
+        parameters: Sequence[Parameter],
+        targets: Sequence[Target],
+        frozen: Mapping[str, float] = MappingProxyType({}),
+    ) -> TuningResult:
+        """Fit with the fast models, others frozen at some values; a line tells how many cars were computed."""
+        line = ProgressLine(name)
+        result = fit(
+            parameters,
+            targets,
+            lambda values: self.build({**frozen, **values}),
+            progress=lambda count, _: line(count / (count + 40.0)),
+        )
+        line(1.0)
+        return result
+
+    def finish(self, result: TuningResult, measurements: Sequence[Measurement], engine: str | None) -> FullSteps:
+        """The last steps with the full simulation."""
+
+        def simulate(values: Mapping[str, float]) -> list[Run]:
+            changes = overrides_of(self.vehicle, values)
+            again = CarRuns(
+                vehicle=self.runs.vehicle,
+                overrides=self.runs.overrides,
+                engine=engine or self.runs.engine,
+                jobs=self.runs.jobs,
+            )
+            return again([Case(signal=one.signal, overrides=changes) for one in measurements])
+
+        return full_steps(result, [one.target for one in measurements], simulate)
+
+
+def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
+    """Find the hidden car from its data, draw the figures into the folder, and compare."""
+    tuning = Tuning(runs)
+    engine = "reduced" if quick else None
+    parameters = [one for one in AUTHORS if not quick or one.path in QUICK]
+    true = {one.path: HIDDEN[one.path] for one in parameters}
+    measurements = make_measurements(
+        runs,
+        folder,
+        fitted=list(true),
+        levels=("high",) if quick else ("low", "mid", "high"),
+        channels=CHANNELS[::3] if quick else CHANNELS,
+        bumps=("bump_7p5mm",) if quick else ("bump_1p5mm", "bump_7p5mm"),
+        spacing=1.0 if quick else SPACING,
+        engine=engine,
+    )
+    result = tuning.fit("all in one", parameters, [one.target for one in measurements])
+    final = tuning.finish(result, measurements, engine)
+    source = f"hidden car, engine {engine or runs.engine}, {100 * NOISE:g} % noise"
+    _draw(folder, tuning, final.result, measurements, source)
+    steps = None if quick else authors_steps(tuning, parameters, measurements)
+    found = {"all levels in one fit": final.result} | (
+        {} if steps is None else {"bump records alone": steps.alone.result}
+    )
+    parameter_figure(folder / "parameters.png", found, true)
+    return Findings(
+        title="Parameters fitted to FRFs and bump records (source 1, section 3.2, automatic)",
+        claims=demonstration_claims(final, None if steps is None else steps.alone, true),
+        unjudged={} if steps else {"bump records alone, and the authors' own order": "left out with --quick"},
+        notes=[
+            data_note(measurements, engine or runs.engine, quick),
+            *fit_notes("All levels and bumps in one fit", final.result, final),
+            *([] if steps is None else steps.notes(true)),
+        ],
+        data={
+            "true": true,
+            "all": fit_numbers(final.result),
+            "all_fast": fit_numbers(result),
+            **({} if steps is None else steps.numbers()),
+        },
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class AuthorsSteps:
+    """The authors' order: the low level, then the damper from the bumps; and what the bumps tell alone.
+
+    Attributes:
+        stuck: low level alone, dampers stuck.
+        damper: D and Fd from the bump records, the rest frozen at the low level.
+        alone: everything from the bump records.
+    """
+
+    stuck: TuningResult
+    damper: TuningResult
+    alone: FullSteps
+
+    def notes(self, true: Mapping[str, float]) -> list[str]:
+        """Paragraphs of the results."""
+        return [
+            *fit_notes("Bump records alone (time-domain step)", self.alone.result, self.alone),
+            *fit_notes("As the authors: low level alone, dampers stuck", self.stuck, None),
+            *fit_notes("Then the damper alone from the bump records, the rest frozen", self.damper, None),
+            frozen_note(self.damper, true),
+        ]
+
+    def numbers(self) -> dict[str, Any]:
+        """For `results.json`."""
+        return {
+            "bumps": fit_numbers(self.alone.result),
+            "low": fit_numbers(self.stuck),
+            "damper_frozen": fit_numbers(self.damper),
+        }
+
+
+def authors_steps(tuning: Tuning, parameters: Sequence[Parameter], measurements: Sequence[Measurement]) -> AuthorsSteps:
+    """Fit the low level, which comes first, and the bump records, one after the other."""
+    bumps = [one for one in measurements if isinstance(one.target, RecordTarget)]
+    records = [one.target for one in bumps]
+    stuck = tuning.fit("low level", [one for one in parameters if one.path not in SLIDING], [measurements[0].target])
+    return AuthorsSteps(
+        stuck=stuck,
+        damper=tuning.fit("damper", [one for one in parameters if one.path in SLIDING], records, stuck.values),
+        alone=tuning.finish(tuning.fit("bump records", parameters, records), bumps, None),
+    )
+
+
+def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+    """Fit parameters to FRFs of files."""
+    tuning = Tuning(runs)
+    parameters: Sequence[Parameter] = parse_parameters(options.fit, tuning.vehicle)
+    measurements = own_measurements(options)
+    if not options.fit:
+        stuck = all(isinstance(one.target, FrfTarget) and one.target.signal is None for one in measurements)
+        parameters = [one for one in AUTHORS if not stuck or one.path not in SLIDING]
+    result = tuning.fit("fit", parameters, [one.target for one in measurements])
+    final = None if options.quick else tuning.finish(result, measurements, None)
+    result = result if final is None else final.result
+    _draw(folder, tuning, result, measurements, "own file")
+    parameter_figure(folder / "parameters.png", {"fit": result}, {})
+    return Findings(
+        title=f"Parameters fitted to {', '.join(path.name for path in options.frf)}",
+        claims=own_claims(result, final),
+        notes=fit_notes("The fit", result, final),
+        data={"all": fit_numbers(result)},
+    )
+
+
+def _draw(folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequence[Measurement], source: str) -> None:
+    """Data, start and fit of every target, and the correlations."""
+    start = tuning.build({one.path: one.start for one in result.parameters})
+    end = tuning.build(result.values)
+    for index, one in enumerate(measurements):
+        if isinstance(one.target, FrfTarget):
+            level_figure(folder / f"frf_{index + 1}_{one.target.name}.png", one.target, start, end, source)
+    records = [one.target for one in measurements if isinstance(one.target, RecordTarget)]
+    if records:
+        record_figure(folder / "records.png", records, start, end, source)
+    correlation_figure(folder / "correlation.png", result)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Options of the command."""
+    found = car_parser("tuning", "Fit parameters of the car to FRFs and bump records.")
+    found.add_argument("--frf", type=Path, action="append", default=[], metavar="FILE.csv", help="own FRFs; repeatable")
+    found.add_argument(
+        "--level",
+        action="append",
+        default=[],
+        metavar="low|FILE.csv",
+        help="one for each --frf: low takes the linear car with stuck dampers; else the displacement signal that the "
+        "FRFs were measured with",
+    )
+    found.add_argument("--fit", action="append", default=[], metavar=TEXT, help="parameter; by default the authors'")
+    found.add_argument("--channel", action="append", default=[], metavar="NAME", help=f"default: {', '.join(CHANNELS)}")
+    found.add_argument("--band", default=f"{BAND[0]:g}:{BAND[1]:g}", metavar="LOW:HIGH", help="fitted frequencies [Hz]")
+    found.add_argument("--spacing", type=float, default=SPACING, metavar="HZ", help="distance of the frequencies [Hz]")
+    found.add_argument("--window", type=float, metavar="S", help="the FRFs were averaged over Hann windows this long")
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Command line; returns the exit code."""
+    return run_car_study(parser(), _study, arguments)
+
+
+LONGEST_STEP = 5e-4
+"""Largest step of MuJoCo [s]: every stiffness within the bounds is stable with it. The fast models do not use it."""
+
+
+def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+    step = f"solver.timestep={min(LONGEST_STEP, runs.car().vehicle.solver.timestep)!r}"
+    runs = CarRuns(vehicle=runs.vehicle, overrides=(*runs.overrides, step), engine=runs.engine, jobs=runs.jobs)
+    if options.frf:
+        return own_study(runs, folder, options)
+    if options.level or options.fit or options.channel:
+        raise ConfigurationError("--level, --fit and --channel belong to --frf; give a file of FRFs")
+    return study(runs, folder, quick=options.quick)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

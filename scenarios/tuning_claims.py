@@ -1,0 +1,190 @@
+"""Fitted values beside the hidden ones, and the paragraphs that say how far a fit is to be trusted."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from scenarios.claim import Claim, statement_claim
+from scenarios.tuning_data import NOISE, Measurement
+from scenarios.tuning_parameters import SLIDING
+from vehicle.tuning.full_steps import SMALL, FullSteps
+from vehicle.tuning.identifiability import WIDEST
+from vehicle.tuning.result import TuningResult
+
+WITHIN = 3.0
+"""Standard errors: 99.7 % of the values of a normal distribution; one of nine is beyond in one fit of forty."""
+
+
+def demonstration_claims(final: FullSteps, alone: FullSteps | None, true: Mapping[str, float]) -> list[Claim]:
+    """Rows: every hidden value, the damper from the bump records, the final check."""
+    claims = [_recovered(f"{path}, all levels in one fit", final.result, path, value) for path, value in true.items()]
+    claims.append(_checked("all levels in one fit", final))
+    if alone is not None:
+        claims += [_recovered(f"{path}, bump records alone", alone.result, path, true[path]) for path in SLIDING]
+        claims.append(_checked("bump records alone", alone))
+    return claims
+
+
+def own_claims(result: TuningResult, final: FullSteps | None) -> list[Claim]:
+    """Rows: whether the fit ended at a minimum inside its bounds, the final check."""
+    claims = [
+        statement_claim(
+            "the fit ends at a minimum within its bounds",
+            "yes",
+            result.message if not result.at_bound else f"at a bound: {', '.join(result.at_bound)}",
+            result.converged and not result.at_bound,
+            "a value at a bound means wrong bounds, or a model that cannot follow the data",
+        )
+    ]
+    return claims if final is None else [*claims, _checked("the fit", final)]
+
+
+def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim:
+    """Row of one hidden value."""
+    held = next((one for one in result.unidentified if one.path == path), None)
+    if held is not None:
+        return statement_claim(
+            name, f"hidden {true:g}", f"not told by the data, held at {held.held_at:g}", True, held.sentence()
+        )
+    away = result.deviation(path, true)
+    start = next(one.start for one in result.parameters if one.path == path)
+    return Claim(
+        name=name,
+        published=true,
+        ours=result.values[path],
+        deviation=result.values[path] / true - 1.0,
+        within=bool(abs(away) <= WITHIN),
+        why=f"hidden value, not printed: {away:+.2f} standard errors of {result.standard_errors[path]:.3g} away, "
+        f"allowed {WITHIN:g}; started at {start:g}",
+    )
+
+
+def _checked(name: str, final: FullSteps) -> Claim:
+    path, largest = max(final.moved.items(), key=lambda item: abs(item[1]))
+    steps = ", ".join(f"{step:.2g}" for step in final.largest_steps)
+    return statement_claim(
+        f"final check with the full simulation: {name}",
+        "no step left",
+        f"weighted residuals {final.first:.3f} at the values of the fast models, {final.result.after:.3f} at the end; "
+        f"largest steps {steps} standard errors; {path} moved most, by {largest:+.1f} standard errors",
+        final.settled,
+        f"Gauss-Newton steps with the Jacobian of the fast models; the last must be below {SMALL:g} standard errors",
+    )
+
+
+def data_note(measurements: Sequence[Measurement], engine: str, quick: bool) -> str:
+    """What the data are, and where errors of the models enter."""
+    names = ", ".join(one.target.name for one in measurements)
+    short = (
+        " --quick: fewer parameters, levels, channels and frequencies, and the reduced engine in place of MuJoCo."
+        if quick
+        else ""
+    )
+    return (
+        f"Data: {names}; engine {engine}, hidden parameters, {100 * NOISE:g} % noise (standard deviation of ln|H|, of "
+        f"the phase in rad, and of a record over its RMS, before the low-pass filter of the fit), seeded, "
+        f"coherence to match.{short} In the loop: the "
+        "matrices with stuck dampers for low, the reduced engine for all others. Their model error enters the standard "
+        "errors in so far as it makes the residuals larger or correlated; the part that looks like a change of "
+        "parameters does not show there, and is taken out by the last steps with the full simulation ('moved')."
+    )
+
+
+def frozen_note(damper: TuningResult, true: Mapping[str, float]) -> str:
+    """What freezing the rest does to the damper."""
+    parts = [
+        f"{path} {damper.values[path]:.4g}, {damper.deviation(path, true[path]):+.1f} standard errors from the hidden "
+        "value"
+        for path in damper.free
+    ]
+    return (
+        f"With the rest frozen: {'; '.join(parts)}. These standard errors do not know that the frozen values are "
+        "uncertain (what the stuck car does not show stays at its start) and that the fast model is not exact: a "
+        "reason for one fit of everything."
+    )
+
+
+def fit_notes(title: str, result: TuningResult, final: FullSteps | None) -> list[str]:
+    """Paragraphs: how it ended, the table of values, what the data cannot tell, the sizes of the residuals."""
+    notes = [
+        f"## {title}\n\n{result.evaluations} cars computed; {result.message} Root of the mean square of the weighted "
+        f"residuals {result.before:.3g} before, {result.after:.3g} after. Condition of the weighted Jacobian (columns "
+        f"in half widths of the bounds) {result.condition:.3g}.",
+        _values(result, final),
+    ]
+    if result.unidentified:
+        sentences = "\n".join(f"- {one.sentence()}" for one in result.unidentified)
+        notes.append(
+            "Not identified (a direction of the weighted Jacobian with a standard error above "
+            f"{WIDEST:.2g} half widths of the bounds, half of what the bounds alone say):\n\n{sentences}"
+        )
+    if result.at_bound:
+        notes.append(f"At a bound, so without standard error: {', '.join(result.at_bound)}.")
+    notes.append(_rows(result))
+    return notes
+
+
+def _values(result: TuningResult, final: FullSteps | None) -> str:
+    moved = {} if final is None else final.moved
+    lines = [
+        "| parameter | bounds | start | fitted | standard error | relative | strongest correlation "
+        "| moved by the full simulation [standard errors] |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for one in result.parameters:
+        value, error = result.values[one.path], result.standard_errors[one.path]
+        known = not math.isnan(error)
+        shift = f"{moved[one.path]:+.2f}" if one.path in moved else ""
+        lines.append(
+            f"| {one.path} | {one.lower:g} to {one.upper:g} | {one.start:g} | {value:.4g} "
+            f"| {f'{error:.2g}' if known else 'none'} | {f'{100 * error / value:.2g} %' if known else ''} "
+            f"| {_strongest(result, one.path)} | {shift} |"
+        )
+    return "\n".join(lines)
+
+
+def _strongest(result: TuningResult, path: str) -> str:
+    if path not in result.free or len(result.free) < 2:
+        return ""
+    row = result.correlation[result.free.index(path)]
+    others = [index for index, other in enumerate(result.free) if other != path]
+    best = max(others, key=lambda index: abs(row[index]))
+    return f"{row[best]:+.2f} with {result.free[best]}"
+
+
+def _rows(result: TuningResult) -> str:
+    lines = [
+        "Residuals over their assumed standard deviation (FRFs: from the coherence; records: the RMS of the record). "
+        "The fit weighs every row with its own RMS, and with the correlation of neighbours where it is beyond three "
+        "standard errors.",
+        "",
+        "| row | values | mean | RMS | correlation of neighbours | counted as one independent value |",
+        "|---|---|---|---|---|---|",
+    ]
+    lines += [
+        f"| {row.name} | {row.count} | {row.mean:+.3f} | {row.rms:.3g} | {row.neighbours:+.2f} | {row.inflation:.2g} |"
+        for row in result.rows
+    ]
+    return "\n".join(lines)
+
+
+def fit_numbers(result: TuningResult) -> dict[str, Any]:
+    """A fit for `results.json`."""
+    return {
+        "values": dict(result.values),
+        "standard_errors": dict(result.standard_errors),
+        "start": {one.path: one.start for one in result.parameters},
+        "free": list(result.free),
+        "correlation": result.correlation.tolist(),
+        "unidentified": [
+            {"path": one.path, "held_at": one.held_at, "partners": list(one.partners), "spread": one.spread}
+            for one in result.unidentified
+        ],
+        "at_bound": list(result.at_bound),
+        "condition": result.condition,
+        "weighted_residual": {"before": result.before, "after": result.after},
+        "evaluations": result.evaluations,
+        "converged": result.converged,
+    }

@@ -1,0 +1,132 @@
+"""`python -m scenarios.tuning` as a user runs it: on made data, and on own files."""
+
+import json
+
+import numpy as np
+import pytest
+
+from scenarios.tuning import main
+from scenarios.tuning_claims import demonstration_claims, fit_notes, frozen_note, own_claims
+from scenarios.tuning_hidden import HIDDEN
+from scenarios.tuning_parameters import AUTHORS, QUICK, parse_parameters
+from tests.tuning.two_masses import TRUE, MeasuredMasses
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError
+from vehicle.studies.tables import write_frf
+from vehicle.tuning.fit import fit
+from vehicle.tuning.full_steps import FullSteps
+from vehicle.tuning.parameter import Parameter, value_of
+
+MOUNT = "bushings.suspension_mount.stiffness.z"
+CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study") / "tuning"
+    assert main(["--output", str(folder), "--quick"]) == 0
+    return folder
+
+
+def test_hidden_values_are_found(results):
+    content = json.loads((results / "results.json").read_text(encoding="utf-8"))
+    assert len(content["rows"]) == len(QUICK) + 1
+    assert all(row["within"] for row in content["rows"])
+    found = content["all"]
+    for path in QUICK:
+        assert found["start"][path] != pytest.approx(HIDDEN[path], rel=0.15)
+        # Three standard errors count for something only where they are small.
+        assert abs(found["values"][path] - HIDDEN[path]) < 0.01 * HIDDEN[path]
+    assert content["not_judged"]
+    files = {path.name for path in results.iterdir()}
+    assert {"high_frf.csv", "frf_1_high.png", "records.png", "parameters.png", "correlation.png"} <= files
+
+
+def test_the_hidden_car_is_no_secret_of_the_fit():
+    # Starts are those of the authors, and no start or bound of the fit is a hidden value.
+    assert {one.path for one in AUTHORS} == set(HIDDEN)
+    assert all(HIDDEN[one.path] not in (one.lower, one.start, one.upper) for one in AUTHORS)
+
+
+def test_own_files(tmp_path, capsys):
+    frequency = np.arange(4.0, 44.0, 0.5)
+    hidden = Car.load(overrides=["bushings.suspension_mount.stiffness=[3e6, 3e6, 6.5e5]"])
+    noise = np.random.default_rng(4).standard_normal((2, len(CHANNELS), frequency.size))
+    measured = FrequencyResponse(
+        frequency=frequency,
+        response=hidden.matrix_frf(CHANNELS, frequency) * np.exp(0.03 * (noise[0] + 1j * noise[1])),
+        coherence=np.full((len(CHANNELS), frequency.size), 0.98),
+        averages=8.0,
+        segments=1,
+        window="",
+        estimator="",
+        resolution_hz=0.5,
+        reasons=(),
+    )
+    file, folder = tmp_path / "own.csv", tmp_path / "found"
+    write_frf(file, measured, CHANNELS, "")
+    options = ["--frf", str(file), "--level", "low", "--fit", f"{MOUNT}=3e5:2e6:9e5", "--spacing", "1", "--quick"]
+    options += [word for name in CHANNELS for word in ("--channel", name)]
+    assert main([*options, "--output", str(folder)]) == 0
+    content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert abs(content["all"]["values"][MOUNT] - 6.5e5) < 3.0 * content["all"]["standard_errors"][MOUNT]
+    assert [row["within"] for row in content["rows"]] == [True]
+    assert "own.csv" in content["title"]
+    capsys.readouterr()
+    for extra, message in (
+        (["--level", "high"], "1 --frf and 2 --level"),
+        (["--band", "9:3"], "--band 9:3: needed is LOW:HIGH"),
+        (["--fit", "damper.viscous"], "--fit damper.viscous: needed is PATH=LOWER:UPPER"),
+        (["--channel", "engine_acc_z"], "no channel engine_acc_z; there are knuckle_fr_acc_z, seat_rail_acc_z"),
+    ):
+        assert main([*options, *extra, "--output", str(tmp_path / "refused")]) in (2, 3)
+        assert message in capsys.readouterr().err
+    assert main(["--level", "low", "--output", str(tmp_path / "alone")]) == 2
+    assert "belong to --frf" in capsys.readouterr().err
+
+
+def test_parameters_of_the_command_line(car):
+    one, two = parse_parameters(["damper.viscous=500:5000", f"{MOUNT}=1e5:1e6:5e5"], car.vehicle)
+    assert (one.lower, one.upper, one.start) == (500.0, 5000.0, value_of(car.vehicle, "damper.viscous"))
+    assert (two.path, two.start) == (MOUNT, 5e5)
+    for text in ("damper.viscous=1", "damper.viscous=a:b", "damper.viscous=1:2:3:4"):
+        with pytest.raises(ConfigurationError, match="needed is PATH=LOWER:UPPER"):
+            parse_parameters([text], car.vehicle)
+
+
+@pytest.fixture(scope="module")
+def masses():
+    """A fit of four parameters, of which one acts on nothing."""
+    parameters = [
+        Parameter(path=path, lower=value / 9, upper=9 * value, start=1.4 * value) for path, value in TRUE.items()
+    ]
+    nothing = Parameter(path="colour", lower=1.0, upper=9.0, start=2.0)
+    return fit([*parameters, nothing], [MeasuredMasses(seed=9)], dict)
+
+
+def finished(result, *, settled=True):
+    moved = dict.fromkeys(result.free, -0.5)
+    return FullSteps(result=result, first=1.1, moved=moved, largest_steps=(0.5, 0.1), settled=settled)
+
+
+def test_rows_say_what_was_missed(masses):
+    rows = demonstration_claims(finished(masses), None, {**TRUE, "colour": 3.0})
+    assert [row.within for row in rows] == [True] * 5
+    assert rows[3].ours == "not told by the data, held at 2"
+    away = {**TRUE, "upper": TRUE["upper"] + 4.0 * masses.standard_errors["upper"]}
+    assert [row.within for row in demonstration_claims(finished(masses, settled=False), None, away)] == [
+        True,
+        False,
+        True,
+        False,
+    ]
+    assert [row.within for row in own_claims(masses, finished(masses))] == [True, True]
+
+
+def test_notes_name_everything(masses):
+    text = "\n".join(fit_notes("A fit", masses, finished(masses)))
+    assert "colour: the data cannot tell it (" in text and "held at 2" in text
+    assert "| damping | 166.667 to 13500 | 2100 |" in text and "-0.50" in text
+    assert "body, phase | 60" in text
+    assert "damping 1" in frozen_note(masses, {**TRUE, "colour": 2.0})

@@ -1,0 +1,27 @@
+"""An interruption that a library has swallowed is noticed at the next sign of progress."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+from vehicle.command_line import INTERRUPTED, ProgressLine, run_command
+
+
+def test_a_swallowed_interruption_still_ends_the_job(capsys):
+    reached = []
+
+    def job():
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except KeyboardInterrupt:
+            reached.append("swallowed")
+        ProgressLine("work", enabled=False)(0.5)
+        reached.append("went on")
+
+    assert run_command(job) == INTERRUPTED
+    assert reached == ["swallowed"]
+    assert "interrupted" in capsys.readouterr().err
+    # The next job begins anew, and the handlers are those of before.
+    assert run_command(lambda: ProgressLine("work", enabled=False)(0.5)) == 0
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -1,0 +1,1 @@
+"""Fitting parameters of the car to measured FRFs and time histories."""

@@ -1,0 +1,104 @@
+"""A measured FRF that the car shall meet, and how the model gives its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.analysis.frf import FrequencyResponse, frequency_response
+from vehicle.analysis.local_rational import local_rational_response
+from vehicle.car import Car, Run
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.excitation.signal import Signal
+from vehicle.names import WHEELS
+from vehicle.tuning.frf_file import FrfData
+from vehicle.tuning.log_response import log_deviation, log_ratio
+
+Vector = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FrfTarget:
+    """FRFs of one excitation level.
+
+    Residuals, two rows for each channel: Re and Im of ln(H / Hm) over sigma(gamma^2), see `log_response`.
+
+    Attributes:
+        name: of the level, for reports.
+        data: measured FRFs.
+        signal: plate displacement that they were measured with; None takes the linear car with stuck dampers, straight
+            from its matrices.
+        averages: independent averages behind the data [-]; 1 where unknown.
+        window: of the estimator [s]: Hann windows (H1); None for the local rational model on the whole record. The
+            FRFs of the model are estimated in the same way, so that what the estimator does to a nonlinear car it does
+            to both.
+        wheel: whose plate is driven.
+    """
+
+    name: str
+    data: FrfData
+    signal: Signal | None
+    averages: float = 1.0
+    window: float | None = None
+    wheel: str = "fr"
+
+    def __post_init__(self) -> None:
+        if self.averages <= 0.0:
+            raise ConfigurationError(f"{self.name}: found {self.averages:g} averages; needed are more than 0")
+        if self.wheel not in WHEELS:
+            raise ConfigurationError(f"{self.name}: found wheel {self.wheel!r}, allowed are {', '.join(WHEELS)}")
+        if self.signal is not None and self.signal.wheels != (self.wheel,):
+            raise ConfigurationError(f"{self.name}: the signal must drive the plate {self.wheel} alone")
+        if not np.isfinite(self.deviation).any():
+            raise DataError(f"{self.name}: no FRF value with a coherence that counts; measure with less noise")
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """What each row of the residuals is."""
+        return tuple(f"{self.name}, {name}, {part}" for name in self.data.channels for part in ("magnitude", "phase"))
+
+    @property
+    def deviation(self) -> Vector:
+        """Standard deviation of ln H [-], (channels, frequencies); NaN where a point does not count."""
+        deviation = log_deviation(self.data.coherence, self.averages)
+        return np.where(np.isfinite(self.data.response), deviation, np.nan)
+
+    def model_response(self, car: Car) -> Complex:
+        """FRFs of the model at the frequencies of the data, (channels, frequencies)."""
+        if self.signal is None:
+            return car.matrix_frf(self.data.channels, self.data.frequency, wheel=self.wheel)
+        channels = [*self.data.channels, f"plate_{self.wheel}_displacement"]
+        return self.estimated(car.run(self.signal, engine="reduced", channels=channels))
+
+    def estimated(self, run: Run) -> Complex:
+        """FRFs of a run, by the estimator of the data, at the frequencies of the data; (channels, frequencies)."""
+        frequency = self.data.frequency
+        plate = run[f"plate_{self.wheel}_displacement"]
+        answers = np.array([run[name] for name in self.data.channels])
+        step = run.recording.timestep
+        found: FrequencyResponse
+        if self.window is None:
+            band = (float(frequency[0]), float(frequency[-1]))
+            spacing = float(np.min(np.diff(frequency)))
+            found = local_rational_response(step, plate, answers, band=band, resolution=spacing)
+        else:
+            margin = 1.0 / self.window
+            band = (max(float(frequency[0]) - margin, margin), float(frequency[-1]) + margin)
+            found = frequency_response(step, plate, answers, window_s=self.window, band=band)
+        return np.array([np.interp(frequency, found.frequency, row) for row in found.response])
+
+    def residuals(self, car: Car) -> Vector:
+        """ln(H / Hm) over its standard deviation: two rows a channel, (2 channels, frequencies); 0 where undefined."""
+        return self._rows(log_ratio(self.data.response, self.model_response(car)))
+
+    def run_residuals(self, run: Run) -> Vector:
+        """The same for a run of the signal, of any engine."""
+        return self._rows(log_ratio(self.data.response, self.estimated(run)))
+
+    def _rows(self, logarithm: Complex) -> Vector:
+        scaled = logarithm / self.deviation
+        rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)
+        return np.where(np.isfinite(rows), rows, 0.0)
