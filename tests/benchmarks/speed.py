@@ -172,7 +172,9 @@ def measure(effort: Effort) -> Figures:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     steps = min(effort.steps, int(signal.duration / model.opt.timestep))
-    native, python, plain, factors, reduced, few = [], [], [], [], [], []
+    native, python, plain, factors = [], [], [], []
+    reduced: list[float] = []
+    few: list[float] = []
     car.run(signal)
     # Long enough that what a run does once is as small a part as in a study.
     long = piece(effort.accuracy_seconds)
