@@ -27,6 +27,12 @@ SCENARIOS = CAR_SCENARIOS + LUMPED_SCENARIOS
 """Scenarios in the order of the table; the first ones take the options of the complete car."""
 
 
+HOME = Path("renders/published")
+"""The table of the full study is kept under version control."""
+
+QUICK_HOME = Path("runs/published/quick_table")
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Row:
     """A published result and the rows of the scenarios that answer it.
@@ -65,7 +71,10 @@ def parser() -> Parser:
         prog="python -m scenarios.published", description="Every published result of the complete car beside ours."
     )
     found.add_argument(
-        "--output", type=Path, default=Path("renders/published"), metavar="DIR", help="folder of the table"
+        "--output",
+        type=Path,
+        metavar="DIR",
+        help=f"folder of the table; {HOME} by default, where it is renewed, or {QUICK_HOME} with --quick",
     )
     found.add_argument(
         "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the scenarios' own results"
@@ -85,7 +94,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _job(options: argparse.Namespace) -> None:
-    folder = prepare_folder(options.output, force=options.force)
+    home = QUICK_HOME if options.quick else HOME
+    folder = prepare_folder(options.output or home, force=options.force or options.output is None)
     started = clock.perf_counter()
     results, seconds = {}, {}
     for number, name in enumerate(SCENARIOS, start=1):

@@ -102,8 +102,11 @@ def sweep(
 def case_keys(cases: Sequence[Case], measure: Measure) -> list[str]:
     """A digest for each case of all that its numbers depend on: car, input, engine, measure and program."""
     program = program_digest()
-    inputs = {id(case.source): digest(case.source.identity()) for case in cases}
-    cars = {case.vehicle: _car_digest(case.vehicle) for case in cases}
+    # Thousands of cases share few inputs and cars; each is read once.
+    inputs = {
+        key: digest(source.identity()) for key, source in {id(case.source): case.source for case in cases}.items()
+    }
+    cars = {vehicle: _car_digest(vehicle) for vehicle in {case.vehicle for case in cases}}
     return [
         digest([program, repr(measure), cars[case.vehicle], inputs[id(case.source)], case.engine, case.texts()])
         for case in cases
