@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import os
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 
 from vehicle.car import Car, Run
 from vehicle.excitation.signal import Signal
 from vehicle.simulation.recording import Recording
-
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-"""Environment variables that number the threads of a process."""
+from vehicle.sweeps.executors import process_pool
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -99,24 +93,9 @@ class CarRuns:
 
 def carry_out(tasks: Sequence[Task], jobs: int) -> list[Recording]:
     """Carry out independent runs in worker processes with one thread each; results in the order of the tasks."""
-    with (
-        _one_thread_each(),
-        ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=get_context("spawn")) as pool,
-    ):
+    with process_pool(min(jobs, len(tasks))) as pool:
         return list(pool.map(_carry_out_one, tasks))
 
 
 def _carry_out_one(task: Task) -> Recording:
     return Car.load(task.vehicle, task.overrides).run(task.signal, engine=task.engine).recording
-
-
-@contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Have processes that start now use one thread; numerical libraries read this when they are loaded."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})

@@ -169,3 +169,37 @@ def test_two_plates_that_move_alike_give_the_common_response():
     response = run.frf(["seat_rail_acc_z"])
     assert response.reasons[0] == "both plates move alike: the FRFs are those to their common motion"
     assert response.response.shape[0] == 1
+
+
+def keys_of(content, path=""):
+    """Dotted names of all keys of nested dictionaries."""
+    found = set()
+    for key, value in content.items():
+        found.add(f"{path}{key}")
+        if isinstance(value, dict):
+            found |= keys_of(value, f"{path}{key}.")
+    return found
+
+
+def test_the_reduced_engine_gives_the_same_files_and_keys(shaker, short_signal, tmp_path):
+    summaries = {}
+    for engine in ("mujoco", "reduced"):
+        outcome = shaker("--input", "short.csv", "--output", engine, "--engine", engine)
+        assert outcome.code == 0, outcome.err
+        assert f"solver      {engine}, step" in outcome.out
+        summaries[engine] = json.loads((tmp_path / engine / "summary.json").read_text(encoding="utf-8"))
+    one, other = summaries["mujoco"], summaries["reduced"]
+    assert keys_of(one) == keys_of(other)
+    assert {path.name for path in (tmp_path / "mujoco").iterdir()} == {p.name for p in (tmp_path / "reduced").iterdir()}
+    assert other["solver"]["engine"] == "reduced" and other["solver"]["energy_residual"] is None
+    # The demand of the project for slip; comfort within what both engines differ by over six seconds.
+    assert abs(one["slip_share"]["fr"] - other["slip_share"]["fr"]) < 3e-3
+    comfort = [summary["comfort"]["seat_rail"]["rms_2_50_hz"]["overall"] for summary in (one, other)]
+    assert comfort[0] == pytest.approx(comfort[1], rel=5e-3)
+
+
+@pytest.mark.parametrize("option", [["--video"], ["--timestep", "0.0005"]])
+def test_the_reduced_engine_refuses_what_it_cannot_do(option, shaker, short_signal, tmp_path):
+    outcome = shaker("--input", "short.csv", "--engine", "reduced", *option)
+    assert outcome.code == 2 and f"{option[0]}: the reduced engine" in outcome.err
+    assert not (tmp_path / "runs").exists()
