@@ -94,6 +94,7 @@ def parser() -> Parser:
     found.add_argument("--output", type=Path, default=Path("runs/global_sensitivity"), metavar="DIR", help="folder")
     found.add_argument("--quick", action="store_true", help="a few short runs, to see that everything works")
     found.add_argument("--resume", action="store_true", help="go on in that folder; finished runs are kept")
+    found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")
     found.add_argument("--force", action="store_true", help="start anew in that folder")
     found.add_argument("--debug", action="store_true", help="show the traceback of an error")
     return found
@@ -139,7 +140,14 @@ def _job(options: argparse.Namespace) -> None:
     )
     folder = sweep_folder(options.output, resume=options.resume, force=options.force)
     started = clock.perf_counter()
-    table = sweep(cases, RoadMeasure(lead=lead), executor=make, folder=folder, progress=ProgressLine("sensitivity"))
+    table = sweep(
+        cases,
+        RoadMeasure(lead=lead),
+        executor=make,
+        folder=folder,
+        retry_failed=options.retry_failed,
+        progress=ProgressLine("sensitivity"),
+    )
     seconds = clock.perf_counter() - started
     caption = (
         f"comfort value (unfiltered RMS of the seat rail, 2 to 50 Hz) on the {options.road} road, RMS "
@@ -197,7 +205,12 @@ def _evaluate(
     else:
         draw_scatter(folder / "scatter.png", RANGES, points, comfort, caption)
         write_json(
-            folder / "results.json", {"caption": caption, "points": points.tolist(), "comfort": comfort.tolist()}
+            folder / "results.json",
+            {
+                "caption": caption,
+                "points": points.tolist(),
+                "comfort": [None if np.isnan(value) else value for value in comfort.tolist()],
+            },
         )
         lines = ["Every run is a row of `table.csv`."]
     return "\n".join([*lines, "", spread])

@@ -84,6 +84,7 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
     paths, rows = read_table(options.table) if options.table else every_combination(options.vary)
     load_vehicle(options.vehicle, options.overrides)
+    check_paths(options.vehicle, options.overrides, paths, rows[0])
     fixed = [tuple(text.split("=", 1)) for text in options.overrides]
     wheel = WHEEL_OF_OPTION[options.wheel]
     inputs = [
@@ -97,18 +98,41 @@ def _job(options: argparse.Namespace) -> None:
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=fixed)
     make = executor_factory(options.executor, options.jobs)
     folder = sweep_folder(options.output, resume=options.resume, force=options.force)
-    table = sweep(
-        cases,
-        ComfortMeasure(skip=options.skip),
-        executor=make,
-        folder=folder,
-        retry_failed=options.retry_failed,
-        progress=ProgressLine("sweep     ", enabled=not options.quiet),
-    )
+    try:
+        table = sweep(
+            cases,
+            ComfortMeasure(skip=options.skip),
+            executor=make,
+            folder=folder,
+            retry_failed=options.retry_failed,
+            progress=ProgressLine("sweep     ", enabled=not options.quiet),
+        )
+    except KeyboardInterrupt:
+        print(f"{folder}: finished rows are kept; --resume goes on", file=sys.stderr)
+        raise
     if not options.quiet:
         print(f"{folder}: {len(cases)} runs, {len(table.failed)} failed; table.csv, sweep.json, rows.jsonl, timing.csv")
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
+
+
+def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[str], row: Sequence[str]) -> None:
+    """Refuse a misspelt parameter before anything is computed: it would fail in every row.
+
+    An impossible value is left to its row: another row may be possible.
+
+    Raises:
+        ConfigurationError: a path does not exist, or its value in the first row is none.
+    """
+    from vehicle.errors import ConfigurationError
+    from vehicle.parameters import toml_file
+    from vehicle.parameters.vehicle import FOCUS_FILE
+
+    table = toml_file.override(toml_file.read_table(FOCUS_FILE if vehicle is None else vehicle), overrides)
+    try:
+        toml_file.override(table, [f"{path}={value}" for path, value in zip(paths, row, strict=True)])
+    except ConfigurationError as error:
+        raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
 
 
 def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, ...]]]:

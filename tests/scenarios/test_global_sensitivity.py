@@ -8,8 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.global_sensitivity import RANGES, main, points_of
+from scenarios.global_sensitivity import RANGES, _evaluate, main, points_of
+from tests.sweeps.pieces import ShortRoad
+from vehicle.errors import DataError
 from vehicle.parameters.vehicle import load_vehicle
+from vehicle.sweeps.case import table_cases
+from vehicle.sweeps.table import SweepTable
+from vehicle.sweeps.worker import Result
 
 
 def test_ranges_hold_the_car():
@@ -47,6 +52,17 @@ def test_quick(method, tmp_path, capsys):
     # Going on computes nothing anew.
     assert main([*arguments, "--resume"]) == 0
     assert "# 0 runs computed" in (tmp_path / "out" / "timing.csv").read_text(encoding="utf-8")
+
+
+def test_a_failed_run_leaves_a_hole_in_the_hypercube_and_is_named_by_the_indices(tmp_path):
+    points = points_of("lhs", 24, 1)
+    cases = table_cases([one.path for one in RANGES], points.tolist(), [ShortRoad()])
+    results = [Result(values={"comfort": 1.0 + index}) for index in range(23)] + [Result(reason="no grip")]
+    table = SweepTable(cases=cases, results=results, units={"comfort": "m/s2"}, made={})
+    assert "mean and scatter" in _evaluate("lhs", tmp_path, table, points, "caption", 0)
+    assert json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["comfort"][-2:] == [23.0, None]
+    with pytest.raises(DataError, match=r"1 of 24 are missing .* repeat with --retry-failed"):
+        _evaluate("sobol", tmp_path, table, points, "caption", 0)
 
 
 def test_too_few_runs(tmp_path, capsys):

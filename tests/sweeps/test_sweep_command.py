@@ -62,6 +62,8 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous=1000", "--skip", "3"], "road is only 3 s long", 2),
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
         (["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"], "the nearest is damper.viscous", 2),
+        (["--vary", "damper.vicsous=1000"], "varied parameter damper.vicsous=1000: no parameter damper.vicsous", 2),
+        (["--vary", "damper.viscous=1000", "--resume", "--force"], "give one of them", 2),
         (["--vary", "damper.viscous=1000", "--executor", "here"], "allowed are dask://host:port", 2),
         (["--table", "missing.csv"], "cannot be read", 3),
     ],

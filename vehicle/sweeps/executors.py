@@ -7,7 +7,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing import connection, get_context, parent_process
@@ -51,9 +51,26 @@ def process_pool(jobs: int) -> ProcessPoolExecutor:
     with one_thread_each():
         pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_ready)
         # The processes inherit the environment when they start, which is now and not at the first run.
-        for future in [pool.submit(_ready) for _ in range(jobs)]:
-            future.result()
+        try:
+            for future in [pool.submit(_ready) for _ in range(jobs)]:
+                future.result()
+        except BrokenExecutor:
+            pool.shutdown(wait=False)
+            raise ConfigurationError(
+                "the worker processes do not start; their own error stands above. A script that sweeps needs "
+                'if __name__ == "__main__": around what it does, since each process reads it again'
+            ) from None
     return pool
+
+
+def workers_of(executor: Executor) -> int | None:
+    """How many runs an executor carries out at once; None where it does not tell."""
+    client = getattr(executor, "_client", None)
+    if client is not None:
+        return sum(client.nthreads().values()) or None
+    # Both executors of the standard library keep it under this name, and neither has a public one.
+    count = getattr(executor, "_max_workers", None)
+    return count if isinstance(count, int) and count > 0 else None
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -9,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from vehicle.analysis.comfort import comfort_value, rms_standard_error
-from vehicle.analysis.slip import slip_share
+from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, WHEELS, channel_units
@@ -32,7 +33,7 @@ class Measure(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ComfortMeasure:
-    """Comfort values of a place, slip shares, and the RMS of further channels.
+    """Comfort values of a place, slip shares, the first slip, and the RMS of further channels.
 
     Attributes:
         place: where comfort is measured.
@@ -63,10 +64,14 @@ class ComfortMeasure:
         """Name of each number to its unit."""
         comfort = {f"comfort_{axis}": "m/s2" for axis in (*AXES, "overall")} | {"comfort_error": "-"}
         slip = {f"{kind}_{wheel}": "-" for kind in ("slip_share", "saturated_share") for wheel in WHEELS}
-        return comfort | slip | {f"{name}_rms": channel_units()[name] for name in self.rms_of}
+        first = {f"first_slip_{wheel}": "s" for wheel in WHEELS}
+        return comfort | slip | first | {f"{name}_rms": channel_units()[name] for name in self.rms_of}
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip shares, RMS values."""
+        """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip, RMS values.
+
+        The first slip is the first time above 1 mm/s after what is left out, NaN where there is none.
+        """
         interval = run.recording.timestep
         kept = slice(round(self.skip / interval), None)
         xyz = np.array([run[f"{self.place}_acc_{axis}"][kept] for axis in AXES])
@@ -84,6 +89,9 @@ class ComfortMeasure:
         ):
             for wheel in WHEELS:
                 numbers[f"{kind}_{wheel}"] = slip_share(run[f"damper_{wheel}_velocity"][kept], velocity)
+        for wheel in WHEELS:
+            first = first_slip(run.time[kept], run[f"damper_{wheel}_velocity"][kept], SATURATED_VELOCITY)
+            numbers[f"first_slip_{wheel}"] = math.nan if first is None else first
         for name in self.rms_of:
             numbers[f"{name}_rms"] = float(np.std(run[name][kept]))
         return numbers

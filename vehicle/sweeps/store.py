@@ -22,9 +22,11 @@ def sweep_folder(folder: Path, *, resume: bool, force: bool) -> Path:
         force: throw them away.
 
     Raises:
-        ConfigurationError: it holds rows, and neither is asked for; or it holds files but no sweep.
+        ConfigurationError: it holds rows, and neither or both is asked for; or it holds files but no sweep.
         OutputError: it cannot be made.
     """
+    if resume and force:
+        raise ConfigurationError("--resume keeps the finished rows, --force throws them away: give one of them")
     rows = folder / ROWS
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -32,7 +34,7 @@ def sweep_folder(folder: Path, *, resume: bool, force: bool) -> Path:
             raise ConfigurationError(f"--output {folder}: holds a sweep; --resume goes on, --force starts anew")
         if not rows.exists() and any(folder.iterdir()):
             raise ConfigurationError(f"--output {folder}: holds other files; give another folder")
-        if force and not resume:
+        if force:
             rows.unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None

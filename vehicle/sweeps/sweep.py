@@ -6,24 +6,29 @@ import hashlib
 import time as clock
 from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
-from functools import cache, partial
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from vehicle.errors import SimulationError, VehicleError
 from vehicle.flexbody.library import PACKAGE_FOLDER
 from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
 from vehicle.sweeps.case import Case, digest
-from vehicle.sweeps.executors import process_pool
+from vehicle.sweeps.executors import process_pool, workers_of
 from vehicle.sweeps.measure import ComfortMeasure, Measure
+from vehicle.sweeps.program import class_source, libraries, program_digest
 from vehicle.sweeps.store import ROWS, Store
 from vehicle.sweeps.table import SweepTable
 from vehicle.sweeps.worker import Result, carry_out
 
 Progress = Callable[[float], None]
 
-IN_FLIGHT = 64
-"""Cases handed out at once. Enough for a cluster never to wait, few enough that ten thousand do not fill the memory."""
+PER_WORKER = 4
+"""Cases in the hands of an executor for each of its workers: enough that none waits for the next, few enough that ten
+thousand do not fill the memory, and that few must be repeated when a worker dies."""
+UNTOLD = 64
+"""The same in all, where an executor does not tell how many workers it has."""
 
 DIED = "the worker died in this run, twice (killed, or out of memory)"
 
@@ -32,7 +37,7 @@ def sweep(
     cases: Sequence[Case],
     measure: Measure | None = None,
     *,
-    executor: Callable[[], Executor] | None = None,
+    executor: Executor | Callable[[], Executor] | None = None,
     jobs: int = 1,
     folder: Path | None = None,
     retry_failed: bool = False,
@@ -48,11 +53,12 @@ def sweep(
     Args:
         cases: the runs.
         measure: turns a run into numbers; comfort and slip shares by default.
-        executor: makes the executor, as of `executor_factory`; processes on this machine by default.
+        executor: makes the executor, as of `executor_factory`; or an executor itself, which stays open and cannot be
+            made again if it breaks; processes on this machine by default.
         jobs: number of processes where no executor is given.
         folder: an existing folder for the rows; None keeps them in memory only.
         retry_failed: compute rows again that failed before.
-        progress: called with the finished fraction.
+        progress: called with the finished fraction of the runs that are computed here.
 
     Returns:
         The table, in the order of the cases.
@@ -60,6 +66,7 @@ def sweep(
     Raises:
         ConfigurationError, DataError: an input or a vehicle file cannot be read.
         OutputError: a row cannot be written.
+        SimulationError: the executor is lost and cannot be made again; finished rows are kept.
     """
     chosen = ComfortMeasure() if measure is None else measure
     keys = case_keys(cases, chosen)
@@ -70,7 +77,7 @@ def sweep(
         for key, case in zip(keys, cases, strict=True)
         if key not in finished or (retry_failed and finished[key].reason)
     }
-    began, total = clock.perf_counter(), len(set(keys))
+    began = clock.perf_counter()
 
     def keep(key: str, result: Result) -> None:
         finished[key] = result
@@ -78,7 +85,7 @@ def sweep(
             store.add(key, todo[key].label, result)
         done.add(key)
         if progress is not None:
-            progress(1.0 - (len(todo) - len(done)) / total)
+            progress(len(done) / len(todo))
 
     done: set[str] = set()
     try:
@@ -101,26 +108,12 @@ def sweep(
 
 def case_keys(cases: Sequence[Case], measure: Measure) -> list[str]:
     """A digest for each case of all that its numbers depend on: car, input, engine, measure and program."""
-    program = program_digest()
-    # Thousands of cases share few inputs and cars; each is read once.
-    inputs = {
-        key: digest(source.identity()) for key, source in {id(case.source): case.source for case in cases}.items()
-    }
-    cars = {vehicle: _car_digest(vehicle) for vehicle in {case.vehicle for case in cases}}
-    return [
-        digest([program, repr(measure), cars[case.vehicle], inputs[id(case.source)], case.engine, case.texts()])
-        for case in cases
-    ]
-
-
-@cache
-def program_digest() -> str:
-    """Digest of the sources of this package: other sources, other rows."""
-    content = hashlib.sha256()
-    root = Path(__file__).parents[1]
-    for path in sorted(root.rglob("*.py")):
-        content.update(str(path.relative_to(root)).encode() + path.read_bytes())
-    return content.hexdigest()[:20]
+    made = [program_digest(), repr(measure), class_source(measure)]
+    # Thousands of cases share a few inputs and cars; reading each of them once per case would take half a minute.
+    sources = {id(case.source): case.source for case in cases}
+    inputs = {key: digest(source.identity()) for key, source in sources.items()}
+    cars = {vehicle: _car_digest(vehicle) for vehicle in dict.fromkeys(case.vehicle for case in cases)}
+    return [digest([*made, cars[case.vehicle], inputs[id(case.source)], case.engine, case.texts()]) for case in cases]
 
 
 def _car_digest(vehicle: Path | None) -> str:
@@ -144,6 +137,7 @@ def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
         "inputs": {source.name: source.identity() for source in sources.values()},
         "measure": repr(measure),
         "program": program_digest(),
+        "libraries": libraries(),
     }
 
 
@@ -155,9 +149,10 @@ def _say_how_long(folder: Path, seconds: float, runs: int) -> None:
 class _Crew:
     """Hands cases to an executor and survives the death of its workers."""
 
-    def __init__(self, make: Callable[[], Executor], measure: Measure) -> None:
-        self.make, self.measure = make, measure
-        self.executor = make()
+    def __init__(self, given: Executor | Callable[[], Executor], measure: Measure) -> None:
+        self.make = None if isinstance(given, Executor) else given
+        self.executor = given if isinstance(given, Executor) else given()
+        self.measure, self.program = measure, program_digest()
 
     def work(self, todo: dict[str, Case], keep: Callable[[str, Result], None]) -> None:
         """Carry out all cases; `keep` is called for each as it finishes."""
@@ -172,18 +167,26 @@ class _Crew:
                         keep(key, Result(reason=DIED))
                 else:
                     suspects.extend(self._round(waiting, todo, keep))
+        except CancelledError:
+            raise SimulationError(
+                "the executor gave up its runs (a Dask scheduler that is gone?); finished rows are kept, "
+                "--resume goes on"
+            ) from None
         finally:
-            _close(self.executor)
+            if self.make is not None:
+                _close(self.executor)
 
     def _round(self, waiting: deque[str], todo: dict[str, Case], keep: Callable[[str, Result], None]) -> list[str]:
         """Work until nothing waits or a worker dies; returns the cases that were in hand then."""
         flying: dict[Future[Result], str] = {}
         lost: list[str] = []
+        workers = workers_of(self.executor)
+        at_once = UNTOLD if workers is None else PER_WORKER * workers
         while waiting or flying:
-            while waiting and len(flying) < IN_FLIGHT and not lost:
+            while waiting and len(flying) < at_once and not lost:
                 key = waiting.popleft()
                 try:
-                    flying[self.executor.submit(carry_out, todo[key], self.measure)] = key
+                    flying[self.executor.submit(carry_out, todo[key], self.measure, self.program)] = key
                 except BrokenExecutor:
                     lost.append(key)
             if not flying:
@@ -195,9 +198,16 @@ class _Crew:
                     keep(key, future.result())
                 elif isinstance(error, BrokenExecutor):
                     lost.append(key)
+                elif isinstance(error, VehicleError):
+                    raise error  # about the worker itself: those of a run are rows
                 else:
                     keep(key, Result(reason=f"{type(error).__name__}: {error}"))
         if lost:
+            if self.make is None:
+                raise SimulationError(
+                    "a worker of the given executor died; finished rows are kept. Give a function that makes the "
+                    "executor instead: it is then made again, and the sweep goes on"
+                )
             _close(self.executor)
             self.executor = self.make()
         return lost

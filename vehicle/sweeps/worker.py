@@ -12,6 +12,7 @@ from vehicle.car import Car
 from vehicle.errors import VehicleError
 from vehicle.sweeps.case import Case, signal_of
 from vehicle.sweeps.measure import Measure
+from vehicle.sweeps.program import require_same_program
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,8 +47,17 @@ def _changed(vehicle: Path | None) -> int:
     return 0 if vehicle is None or not vehicle.exists() else vehicle.stat().st_mtime_ns
 
 
-def carry_out(case: Case, measure: Measure) -> Result:
-    """Carry out one run of a sweep."""
+def carry_out(case: Case, measure: Measure, program: str) -> Result:
+    """Carry out one run of a sweep.
+
+    Args:
+        case, measure: the run and what is kept of it.
+        program: `program_digest` of the process that started the sweep.
+
+    Raises:
+        ConfigurationError: this process has another program.
+    """
+    require_same_program(program)
     started = clock.perf_counter()
     try:
         with _ONE_AT_A_TIME:
