@@ -9,6 +9,7 @@ derivative of the very forces that the time simulation applies.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import mujoco
@@ -19,6 +20,7 @@ from vehicle.names import AXES, acceleration_places
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows
 from vehicle.simulation.elements import numeric
+from vehicle.simulation.native import native_callback
 from vehicle.simulation.static_trim import StaticTrim
 
 Vector = npt.NDArray[np.float64]
@@ -117,6 +119,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
 def _tangent_stiffness(rows: ElementRows, model: mujoco.MjModel) -> Vector:
     """K = -dF/du of all static forces, by central differences."""
     data = mujoco.MjData(model)
+    rewrite = _rewriter(rows, data)
     start, way = data.qpos.copy(), np.zeros(model.nv)
     stiffness = np.zeros((model.nv, model.nv))
     for column in range(model.nv):
@@ -128,11 +131,20 @@ def _tangent_stiffness(rows: ElementRows, model: mujoco.MjModel) -> Vector:
             # Everything of a step but the solution of the rows, which would cost as much again.
             mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
-            rows(model, data)
+            rewrite(model, data)
             forces.append(data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
         way[column] = 0.0
         stiffness[:, column] = -(forces[0] - forces[1]) / (2.0 * DIFFERENCE_STEP)
     return stiffness
+
+
+def _rewriter(rows: ElementRows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
+    """What writes the element forces into this state: the compiled form where it can be had."""
+    native = native_callback(rows)
+    if isinstance(native, str):
+        return rows
+    native.attach(data)
+    return native.rewrite
 
 
 def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:

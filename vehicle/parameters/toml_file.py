@@ -32,7 +32,7 @@ def read_table(path: Path) -> dict[str, Any]:
         ConfigurationError: the file is missing, not UTF-8 or not TOML.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return _copy(_parsed(path.read_text(encoding="utf-8")))
     except FileNotFoundError:
         raise ConfigurationError(f"{path}: no such file; give the path of a parameter file (TOML)") from None
     except UnicodeDecodeError as error:
@@ -41,6 +41,12 @@ def read_table(path: Path) -> dict[str, Any]:
         raise ConfigurationError(f"{path}: not a TOML file: {error}") from None
     except OSError as error:
         raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+# A sweep reads the same file for each of its thousands of cars.
+@functools.lru_cache(maxsize=16)
+def _parsed(text: str) -> dict[str, Any]:
+    return tomllib.loads(text)
 
 
 def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:

@@ -64,8 +64,9 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
         model = assembly.spec.compile()
     except ValueError as error:
         raise SimulationError(f"MuJoCo refuses the generated car: {' '.join(str(error).split())}") from None
-    static = trim(model)
-    _check_step(model, static)
+    rows = ElementRows(model)
+    static = trim(rows)
+    _check_step(rows.anew(static.preload))
     return CarModel(
         vehicle=vehicle,
         superelement=assembly.superelement,
@@ -76,10 +77,10 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     )
 
 
-def _check_step(model: mujoco.MjModel, static: StaticTrim) -> None:
+def _check_step(rows: ElementRows) -> None:
     """Refuse a step at which the explicit stiffness of the stiffest part would be unstable."""
+    model = rows.model
     data = mujoco.MjData(model)
-    rows = ElementRows(model, static.preload)
     with installed(rows):
         mujoco.mj_forward(model, data)
     e = rows.elements

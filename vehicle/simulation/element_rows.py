@@ -21,6 +21,8 @@ r' -> r' +- R Phi_n q', R being the rotation of the body.
 
 from __future__ import annotations
 
+import copy
+
 import mujoco
 import numpy as np
 import numpy.typing as npt
@@ -66,18 +68,29 @@ class ElementRows:
         self.model = model
         self.elements = read_elements(model)
         e = self.elements
-        self.preload = np.zeros(e.row_count + 3 * len(e.rotation_stiffness)) if preload is None else preload
-        self.element_preload = self.preload[e.rows]
-        self.hard_preload = self.preload[e.hard_rows]
-        self.rotation_preload = self.preload[e.row_count :].reshape(-1, 3)
-        self.spring_preload = self.preload[e.springs]
-        self.plate_velocity = np.zeros((len(e.tyres), 3))
-        self.plate_acceleration = np.zeros((len(e.tyres), 3))
         joints = modal_joints(model)
         first = int(model.jnt_qposadr[joints[0]]) if joints else 0
         self.modal_positions = slice(first, first + len(joints))
         self._read_dampers(model)
         self._set_step(model.opt.timestep)
+        self._begin(np.zeros(e.row_count + 3 * len(e.rotation_stiffness)) if preload is None else preload)
+
+    def anew(self, preload: Vector | None = None) -> ElementRows:
+        """The same rows at rest with a state of their own, under these static forces; under the same by default."""
+        other = copy.copy(self)
+        other._begin(self.preload if preload is None else preload)
+        return other
+
+    def _begin(self, preload: Vector) -> None:
+        """Take static forces and a state of rest."""
+        e = self.elements
+        self.preload = preload
+        self.element_preload = preload[e.rows]
+        self.hard_preload = preload[e.hard_rows]
+        self.rotation_preload = preload[e.row_count :].reshape(-1, 3)
+        self.spring_preload = preload[e.springs]
+        self.plate_velocity = np.zeros((len(e.tyres), 3))
+        self.plate_acceleration = np.zeros((len(e.tyres), 3))
         self.reset()
 
     def _read_dampers(self, model: mujoco.MjModel) -> None:

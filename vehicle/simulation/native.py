@@ -64,7 +64,7 @@ def native_callback(rows: ElementRows) -> NativeCallback | str:
 
 def _difference(rows: ElementRows, callback: NativeCallback) -> str:
     """Name of the first value in which both forms differ in a moved state; empty where there is none."""
-    reference = ElementRows(rows.model, rows.preload)
+    reference = rows.anew()
     expected = _evaluate(reference, None)
     found = _evaluate(rows, callback)
     callback.reset()

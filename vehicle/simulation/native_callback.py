@@ -196,6 +196,10 @@ class NativeCallback:
             data.userdata[:USER_SIZE] = 0.0
         self.attached.clear()
 
+    def rewrite(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        """Rewrite the rows of an attached state, as `ElementRows.__call__` does."""
+        self.control(model._address, data._address)
+
     def step(self, data: mujoco.MjData) -> None:
         """One step of an attached state, the way the compiled loop takes it."""
         ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.step_address)(self.model._address, data._address)

@@ -48,11 +48,12 @@ class StaticTrim:
     residual: float
 
 
-def trim(model: mujoco.MjModel) -> StaticTrim:
+def trim(rows: ElementRows) -> StaticTrim:
     """Find the preloads of a car and write those of its joint springs into the model.
 
     Args:
-        model: compiled car; `qpos_spring` of the modal coordinates and of the stabilizer is set in place.
+        rows: element rows of a compiled car, without static forces; in its model `qpos_spring` of the modal
+            coordinates and of the stabilizer is set in place.
 
     Returns:
         The preloads of the rows, and the static loads.
@@ -60,9 +61,9 @@ def trim(model: mujoco.MjModel) -> StaticTrim:
     Raises:
         SimulationError: the car is not held in all directions by its elements.
     """
+    model = rows.model
     _reset_joint_springs(model)
     data = mujoco.MjData(model)
-    rows = ElementRows(model)
     with installed(rows):
         mujoco.mj_forward(model, data)
     e = rows.elements
@@ -89,7 +90,7 @@ def trim(model: mujoco.MjModel) -> StaticTrim:
         if joint_stiffness[dof] > 0.0:
             position = model.jnt_qposadr[joint]
             model.qpos_spring[position] = model.qpos0[position] - displacement[dof]
-    return _loads(model, preload, stiffness, hard)
+    return _loads(rows.anew(preload), stiffness, hard)
 
 
 def joint_spring_stiffness(model: mujoco.MjModel) -> Vector:
@@ -120,12 +121,12 @@ def _settle(stiffness: Vector, hard: Vector, force: Vector) -> tuple[Vector, Vec
     return solution[:size], solution[size:]
 
 
-def _loads(model: mujoco.MjModel, preload: Vector, stiffness: Vector, hard: Vector) -> StaticTrim:
+def _loads(rows: ElementRows, stiffness: Vector, hard: Vector) -> StaticTrim:
     """Static loads with the preloads in place, and the displacement that is left."""
-    data = mujoco.MjData(model)
-    rows = ElementRows(model, preload)
+    data = mujoco.MjData(rows.model)
     with installed(rows):
-        mujoco.mj_forward(model, data)
+        mujoco.mj_forward(rows.model, data)
+    preload = rows.preload
     e = rows.elements
     remaining, _ = _settle(stiffness, hard, data.qfrc_smooth)
     vertical = dict(zip(e.names, preload[e.rows][:, 2], strict=True))
