@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from scenarios.car_charts import figure_file
-from scenarios.comfort_observation import SEAT_RAIL, chosen_engine
+from scenarios.comfort_observation import chosen_engine
 from scenarios.comfort_sensitivity_claims import PUBLISHED
 from scenarios.comfort_sensitivity_runs import Changes, ComfortRuns, Curves, Point, Variation
 from scenarios.road_signals import PUBLISHED_SLIP, RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
@@ -134,7 +134,7 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
 
 def _first_record(comfort: ComfortRuns, car: Changes, road: str, engine: str) -> Run:
     source = comfort.questions(car, road, count=1)[0].source
-    return comfort.runs.car(car).run(source.signal(), engine=engine, channels=SEAT_RAIL)
+    return comfort.runs.car(car).run(source.signal(), engine=engine, channels=["seat_rail_acc_z"])
 
 
 def _history(axis: Any, run: Run, look: Mapping[str, Any]) -> None:

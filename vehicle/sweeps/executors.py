@@ -6,17 +6,14 @@ import importlib
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
-from contextlib import contextmanager
 from functools import partial
 from multiprocessing import connection, get_context, parent_process
 from typing import Any
 
 from vehicle.errors import ConfigurationError, MissingPartError
-
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-"""Environment variables that number the threads of a process."""
+from vehicle.threads import one_thread_each
 
 DASK = "dask://"
 
@@ -71,18 +68,6 @@ def workers_of(executor: Executor) -> int | None:
     # Both executors of the standard library keep it under this name, and neither has a public one.
     count = getattr(executor, "_max_workers", None)
     return count if isinstance(count, int) and count > 0 else None
-
-
-@contextmanager
-def one_thread_each() -> Iterator[None]:
-    """Have processes that start now use one thread; numerical libraries read this when they are loaded."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})
 
 
 def _ready() -> None:
