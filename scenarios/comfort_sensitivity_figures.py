@@ -69,7 +69,7 @@ def draw_variation(
         axes = figure.subplots(3, 2)
         for (history, spectrum, relative), road in zip(axes.T, ROAD_RMS, strict=True):
             for (value, car), colour in zip(shown.items(), COLOURS, strict=False):
-                run = _first_record(comfort, car, road, engine)
+                run = comfort.history(car, road, engine)
                 look = {
                     "color": colour,
                     "label": f"{value:g}{' (reference)' if value == nominal else ''}",
@@ -130,11 +130,6 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
         axis.axvline(ROAD_EDGE_HZ, color="#555555", linewidth=0.9)
         axis.set(xlabel="lower band edge [Hz]", ylabel="share of the time in slip [%]", ylim=(0.0, 100.0))
         axis.legend(loc="lower right")
-
-
-def _first_record(comfort: ComfortRuns, car: Changes, road: str, engine: str) -> Run:
-    source = comfort.questions(car, road, count=1)[0].source
-    return comfort.runs.car(car).run(source.signal(), engine=engine, channels=["seat_rail_acc_z"])
 
 
 def _history(axis: Any, run: Run, look: Mapping[str, Any]) -> None:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_observation import Observation, Question, RoadInput, chosen_engine, observe
 from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.car import Run
 from vehicle.parameters.vehicle import Vehicle
 
 Changes = tuple[str, ...]
@@ -199,6 +200,7 @@ class ComfortRuns:
         self.runs, self.records, self.folder = runs, records, folder
         self.engine = chosen_engine(runs.engine)
         self._done: dict[Question, Observation] = {}
+        self._histories: dict[Question, Run] = {}
 
     @property
     def computed(self) -> int:
@@ -253,6 +255,15 @@ class ComfortRuns:
             # They served an interrupted study; a finished one must not read them when the program has changed.
             (self.folder / "rows.jsonl").unlink()
         return [self._done[question] for question in questions]
+
+    def history(self, car: Changes, road: str, engine: str) -> Run:
+        """Seat rail in z over the first record of a road; kept, since the nominal car is in many figures."""
+        question = self.questions(car, road, engine=engine, count=1)[0]
+        if question not in self._histories:
+            signal = question.source.signal()
+            found = self.runs.car(car).run(signal, engine=engine, channels=["seat_rail_acc_z"])
+            self._histories[question] = found
+        return self._histories[question]
 
     def all_questions(self, variation: Variation, base: Changes = ()) -> list[Question]:
         """All runs that the curves of a variation need, those about one car side by side."""

@@ -39,7 +39,7 @@ class Slow(Executor):
         future: Future[Result] = Future()
         self.held.append(future)
         self.most = max(self.most, sum(not one.done() for one in self.held))
-        self.quiet = Timer(0.1, self.finish)
+        self.quiet = Timer(0.5, self.finish)
         self.quiet.start()
         return future
 
