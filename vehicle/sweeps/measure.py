@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from vehicle.analysis.comfort import comfort_value, rms_standard_error
-from vehicle.analysis.slip import first_slip, slip_share
+from vehicle.analysis.slip import slip_share
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, WHEELS, channel_units
@@ -37,7 +37,7 @@ class ComfortMeasure:
 
     Attributes:
         place: where comfort is measured.
-        skip: seconds at the beginning that are left out: the car starts at rest.
+        skip: seconds at the beginning that all but the first slip leave out: the car starts at rest.
         rms_of: further channels whose RMS about the mean is kept.
     """
 
@@ -70,7 +70,7 @@ class ComfortMeasure:
     def __call__(self, run: Run) -> dict[str, float]:
         """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip, RMS values.
 
-        The first slip is the first time above 1 mm/s after what is left out, NaN where there is none.
+        The first slip is the first time above 1 mm/s of the whole run, as in `summary.json`; NaN where there is none.
         """
         interval = run.recording.timestep
         kept = slice(round(self.skip / interval), None)
@@ -90,7 +90,7 @@ class ComfortMeasure:
             for wheel in WHEELS:
                 numbers[f"{kind}_{wheel}"] = slip_share(run[f"damper_{wheel}_velocity"][kept], velocity)
         for wheel in WHEELS:
-            first = first_slip(run.time[kept], run[f"damper_{wheel}_velocity"][kept], SATURATED_VELOCITY)
+            first = run.first_slip(wheel)
             numbers[f"first_slip_{wheel}"] = math.nan if first is None else first
         for name in self.rms_of:
             numbers[f"{name}_rms"] = float(np.std(run[name][kept]))
