@@ -20,7 +20,7 @@ from vehicle.simulation.element_rows import EMPTY_ROW, ElementRows
 from vehicle.simulation.native_arrays import Constants, Fields, Indices, State, constants_of, indices_of, share_state
 from vehicle.simulation.native_fields import pointer_offsets, scalar_offsets, step_address, user_size_offset
 from vehicle.simulation.native_pointer import field, float_table, floats, integer_table, integers, small_integer
-from vehicle.simulation.native_rows import rewrite
+from vehicle.simulation.native_rows import LOOSENED, rewrite
 
 USER_SIZE = 2
 """Numbers of userdata that the callbacks need: address of the table, stamp."""
@@ -141,7 +141,7 @@ def compile_callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, A
 
     word, number = numba.types.intp, numba.types.float64
     law = number(word, word, numba.types.int32)
-    options = {"cache": True, "fastmath": False, "boundscheck": False, "error_model": "numpy"}
+    options = {"cache": True, "fastmath": LOOSENED, "boundscheck": False, "error_model": "numpy"}
     return (
         numba.cfunc(numba.types.void(word, word), **options)(control),
         numba.cfunc(law, **options)(gain),

@@ -18,6 +18,8 @@ def _modal_rows(d: Fields, e: Indices, c: Constants, s: State) -> None:
     body, modes, column, place = e.modal[0, 0], e.modal[1, 0], e.modal[2, 0], e.modal[3, 0]
     turn = d.xmat[body]
     nodes, count = e.node_rows.shape[1], c.mode_shapes.shape[1]
+    t0, t1, t2, t3, t4 = turn[0], turn[1], turn[2], turn[3], turn[4]
+    t5, t6, t7, t8 = turn[5], turn[6], turn[7], turn[8]
     moved, moving = s.deflection[0], s.deflection[1]
     moved[:], moving[:] = 0.0, 0.0
     # Deflections of all nodes in body axes, mode by mode: long loops without sums that wait for each other.
@@ -28,14 +30,17 @@ def _modal_rows(d: Fields, e: Indices, c: Constants, s: State) -> None:
             moving[j] += shape[j] * v
     for node in range(nodes):
         at = node * modes
+        r0, r1, r2 = e.node_rows[0, node], e.node_rows[1, node], e.node_rows[2, node]
         for i in range(3):
             row = e.node_rows[i, node]
             x, y, z = turn[3 * i], turn[3 * i + 1], turn[3 * i + 2]
             d.efc_pos[row, 0] += x * moved[node] + y * moved[nodes + node] + z * moved[2 * nodes + node]
             d.efc_vel[row, 0] += x * moving[node] + y * moving[nodes + node] + z * moving[2 * nodes + node]
-            for k in range(at, at + modes):
-                along = x * c.node_shapes[0, k] + y * c.node_shapes[1, k] + z * c.node_shapes[2, k]
-                d.efc_J[row, column + k - at] = along
+        for k in range(modes):
+            x, y, z = c.node_shapes[0, at + k], c.node_shapes[1, at + k], c.node_shapes[2, at + k]
+            d.efc_J[r0, column + k] = t0 * x + t1 * y + t2 * z
+            d.efc_J[r1, column + k] = t3 * x + t4 * y + t5 * z
+            d.efc_J[r2, column + k] = t6 * x + t7 * y + t8 * z
 
 
 def _springs(d: Fields, e: Indices, c: Constants, s: State) -> None:
@@ -65,19 +70,19 @@ def _springs(d: Fields, e: Indices, c: Constants, s: State) -> None:
 def _local_axes(d: Fields, e: Indices, s: State) -> None:
     """Residual and rate of every element in its own axes, with the velocity of the plates taken off."""
     for n in range(e.rows.shape[0]):
-        frame = d.xmat[e.carriers[n, 0]]
+        frame, row = d.xmat[e.carriers[n, 0]], e.rows[n]
+        x, y, z = d.efc_pos[row[0], 0], d.efc_pos[row[1], 0], d.efc_pos[row[2], 0]
         for i in range(3):
-            s.residual[n, i] = 0.0
-            s.force[n, i] = d.efc_vel[e.rows[n, i], 0]
-            for j in range(3):
-                s.residual[n, i] += frame[3 * j + i] * d.efc_pos[e.rows[n, j], 0]
+            s.residual[n, i] = frame[i] * x + frame[3 + i] * y + frame[6 + i] * z
+            s.force[n, i] = d.efc_vel[row[i], 0]
     for tyre in range(e.tyres.shape[0]):
         for i in range(3):
             s.force[e.tyres[tyre, 0], i] -= s.plate_velocity[tyre, i]
     for n in range(e.rows.shape[0]):
         frame = d.xmat[e.carriers[n, 0]]
+        x, y, z = s.force[n, 0], s.force[n, 1], s.force[n, 2]
         for i in range(3):
-            s.rate[n, i] = frame[i] * s.force[n, 0] + frame[3 + i] * s.force[n, 1] + frame[6 + i] * s.force[n, 2]
+            s.rate[n, i] = frame[i] * x + frame[3 + i] * y + frame[6 + i] * z
 
 
 def _advance_branches(time: float, c: Constants, s: State) -> None:
@@ -111,11 +116,10 @@ def _elements(d: Fields, e: Indices, c: Constants, s: State) -> None:
             s.force[e.tyres[tyre, 0], i] += c.inertial[tyre, i] * s.plate_acceleration[tyre, i]
     for n in range(e.rows.shape[0]):
         frame = d.xmat[e.carriers[n, 0]]
+        x, y, z = s.force[n, 0], s.force[n, 1], s.force[n, 2]
         for i in range(3):
             row = e.rows[n, i]
-            s.explicit[0, row] = (
-                frame[3 * i] * s.force[n, 0] + frame[3 * i + 1] * s.force[n, 1] + frame[3 * i + 2] * s.force[n, 2]
-            )
+            s.explicit[0, row] = frame[3 * i] * x + frame[3 * i + 1] * y + frame[3 * i + 2] * z
             d.efc_D[row, 0] = c.impedance[n, i]
             d.efc_aref[row, 0] = 0.0
 
@@ -187,8 +191,11 @@ def _generalised_forces(d: Fields, e: Indices, s: State) -> None:
         row, rows, first, last = e.reach[entry, 0], e.reach[entry, 1], e.reach[entry, 2], e.reach[entry, 3]
         if rows == 3:
             x, y, z = s.explicit[0, row], s.explicit[0, row + 1], s.explicit[0, row + 2]
-            for j in range(first, last):
-                total[j] += x * d.efc_J[row, j] + y * d.efc_J[row + 1, j] + z * d.efc_J[row + 2, j]
+            # Views spare the inner loop the look for negative indices.
+            jx, jy, jz = d.efc_J[row, first:last], d.efc_J[row + 1, first:last], d.efc_J[row + 2, first:last]
+            part = total[first:last]
+            for j in range(last - first):
+                part[j] += x * jx[j] + y * jy[j] + z * jz[j]
         else:
             force = s.explicit[0, row]
             for j in range(first, last):
@@ -209,9 +216,13 @@ def _rewrite(time: float, d: Fields, e: Indices, c: Constants, s: State) -> None
     rotations(d, e, c, s)
 
 
+LOOSENED = {"reassoc", "contract", "nsz"}
+"""Sums in any order, with fused products, so that they fill the vector units: round-off, and nothing else."""
+
+
 def _compiled(function: Any) -> Any:
-    """A function for the compiled callback: no fast mathematics, division as numpy has it."""
-    return numba.njit(fastmath=False, boundscheck=False, error_model="numpy", inline="always")(function)
+    """A function for the compiled callback; division as numpy has it."""
+    return numba.njit(fastmath=LOOSENED, boundscheck=False, error_model="numpy", inline="always")(function)
 
 
 modal_rows, springs, local_axes = _compiled(_modal_rows), _compiled(_springs), _compiled(_local_axes)
