@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,9 +12,10 @@ from typing import Any
 from scenarios.car_runs import CarRuns
 from scenarios.claim import Claim, write_claims
 from scenarios.output_folder import prepare_folder
+from scenarios.study_command import scenario_parser
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import ENGINES, Run
-from vehicle.command_line import Parser, run_command
+from vehicle.command_line import parse_and_run
 from vehicle.errors import ConfigurationError
 
 QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
@@ -53,8 +53,12 @@ def car_parser(name: str, description: str) -> argparse.ArgumentParser:
         name: module name; results go to runs/<name> without --output.
         description: one line.
     """
-    parser = Parser(prog=f"python -m scenarios.{name}", description=description)
-    parser.add_argument("--output", type=Path, default=Path("runs") / name, metavar="DIR", help="folder of the results")
+    parser = scenario_parser(
+        name,
+        description,
+        quick="short signals; what they cannot judge is left open",
+        jobs="processes for independent runs; %(default)s by default",
+    )
     parser.add_argument(
         "--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default"
     )
@@ -69,10 +73,6 @@ def car_parser(name: str, description: str) -> argparse.ArgumentParser:
     parser.add_argument(
         "--engine", choices=ENGINES, default="mujoco", help="what computes the runs; %(default)s by default"
     )
-    parser.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes for independent runs; 1 by default")
-    parser.add_argument("--force", action="store_true", help="overwrite an existing folder")
-    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     return parser
 
 
@@ -91,10 +91,8 @@ def run_car_study(
     Returns:
         Exit code, as of `run_command`.
     """
-    argv = sys.argv[1:] if arguments is None else arguments
 
-    def job() -> None:
-        options = parser.parse_args(argv)
+    def job(options: argparse.Namespace) -> None:
         if options.jobs < 1:
             raise ConfigurationError(f"--jobs {options.jobs}: must be at least 1")
         started = clock.perf_counter()
@@ -109,7 +107,7 @@ def run_car_study(
         seconds = clock.perf_counter() - started
         print(f"{folder}: {agree} of {len(found.claims)} statements agree{left}; see results.md; {seconds:.0f} s")
 
-    return run_command(job, debug="--debug" in argv)
+    return parse_and_run(parser, job, arguments)
 
 
 def computed_by(run: Run) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +13,7 @@ from scenarios.car_runs import CarRuns
 from scenarios.comfort_observation import Observation, Question, RoadInput, chosen_engine, observe
 from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.car import Run
+from vehicle.parameters.number_paths import value_of
 from vehicle.parameters.vehicle import Vehicle
 
 Changes = tuple[str, ...]
@@ -27,9 +27,8 @@ class Variation:
     Attributes:
         name: of its files.
         label: of its axis, with the unit.
-        path: of the parameter.
+        path: of the parameter; a component of a vector has its axis behind it.
         values: what it takes; in the unit of the parameter.
-        component: of a parameter with three components; None for a number.
         figures: of source 1; empty beyond the source.
     """
 
@@ -37,29 +36,15 @@ class Variation:
     label: str
     path: str
     values: tuple[float, ...]
-    component: int | None = None
     figures: str = ""
 
     def nominal(self, vehicle: Vehicle) -> float:
         """Value of the unchanged car."""
-        found = self._found(vehicle)
-        return float(found if self.component is None else found[self.component])
+        return value_of(vehicle, self.path)
 
     def changes(self, vehicle: Vehicle, value: float) -> Changes:
         """Overrides that give the parameter a value; none for the value it has."""
-        if value == self.nominal(vehicle):
-            return ()
-        if self.component is None:
-            return (f"{self.path}={value!r}",)
-        members = list(self._found(vehicle))
-        members[self.component] = value
-        return (f"{self.path}={[float(member) for member in members]!r}",)
-
-    def _found(self, vehicle: Vehicle) -> Any:
-        found: Any = vehicle
-        for name in self.path.split("."):
-            found = getattr(found, name)
-        return found
+        return () if value == self.nominal(vehicle) else (f"{self.path}={value!r}",)
 
 
 FRICTION = Variation(
@@ -73,8 +58,7 @@ FRICTION = Variation(
 MOUNT_DAMPING = Variation(
     name="mount_damping",
     label="suspension mount damping, z [N s/m]",
-    path="bushings.suspension_mount.damping",
-    component=2,
+    path="bushings.suspension_mount.damping.z",
     values=(0.0, 500.0, 1000.0, 2000.0),
     figures="4.5 to 4.8",
 )
@@ -82,8 +66,7 @@ MOUNT_DAMPING = Variation(
 MOUNT_STIFFNESS = Variation(
     name="mount_stiffness",
     label="suspension mount stiffness, z [N/m]",
-    path="bushings.suspension_mount.stiffness",
-    component=2,
+    path="bushings.suspension_mount.stiffness.z",
     values=(3.5e5, 5.25e5, 7.0e5, 10.5e5, 14.0e5),
     figures="4.9 to 4.12",
 )

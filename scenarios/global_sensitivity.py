@@ -17,7 +17,7 @@ from scenarios.comfort_observation import RoadInput, RoadMeasure, chosen_engine
 from scenarios.global_sensitivity_figures import draw_morris, draw_scatter, draw_sobol
 from scenarios.output_folder import write_text
 from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.command_line import Parser, ProgressLine, run_command
+from vehicle.command_line import Parser, ProgressLine, parse_and_run
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.output_folder import write_json
 from vehicle.sweeps.case import Case, table_cases
@@ -102,8 +102,7 @@ def parser() -> Parser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    debug = "--debug" in (sys.argv[1:] if arguments is None else arguments)
-    return run_command(lambda: _job(parser().parse_args(arguments)), debug=debug)
+    return parse_and_run(parser(), _job, arguments)
 
 
 def points_of(method: str, runs: int, seed: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:

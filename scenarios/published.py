@@ -18,7 +18,7 @@ from typing import Any
 
 from scenarios.claim import Claim
 from scenarios.output_folder import prepare_folder, write_text
-from vehicle.command_line import Parser, run_command
+from vehicle.command_line import Parser, parse_and_run
 from vehicle.errors import DataError, SimulationError
 
 CAR_SCENARIOS = ("levels", "inertia", "bump", "stribeck", "comfort_sensitivity", "tornado", "tuning")
@@ -89,8 +89,7 @@ def parser() -> Parser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    argv = sys.argv[1:] if arguments is None else arguments
-    return run_command(lambda: _job(parser().parse_args(argv)), debug="--debug" in argv)
+    return parse_and_run(parser(), _job, arguments)
 
 
 def _job(options: argparse.Namespace) -> None:

@@ -20,7 +20,6 @@ class Parameter:
     Attributes:
         label: with its unit.
         path: of the parameter.
-        component: of a parameter with three components.
         ends: its two values, where they are not the nominal one -20 and +20 %.
         reason: why not.
         power: the value follows (1 -+ 20 %) to this power.
@@ -28,7 +27,6 @@ class Parameter:
 
     label: str
     path: str
-    component: int | None = None
     ends: tuple[float, float] | None = None
     reason: str = ""
     power: float = 1.0
@@ -37,16 +35,15 @@ class Parameter:
 PARAMETERS = (
     Parameter(label="Coulomb friction Fd [N]", path="damper.coulomb_friction"),
     Parameter(label="damper constant D [N s/m]", path="damper.viscous"),
-    Parameter(label="suspension mount stiffness, z [N/m]", path="bushings.suspension_mount.stiffness", component=2),
+    Parameter(label="suspension mount stiffness, z [N/m]", path="bushings.suspension_mount.stiffness.z"),
     Parameter(
         label="suspension mount damping, z [N s/m]",
-        path="bushings.suspension_mount.damping",
-        component=2,
+        path="bushings.suspension_mount.damping.z",
         ends=(0.0, 500.0),
         reason="nominal 0, so from there to the first step of source 1",
     ),
     Parameter(label="main spring [N/m]", path="main_spring.stiffness"),
-    Parameter(label="tyre stiffness, z [N/m]", path="bushings.tyre.stiffness", component=2),
+    Parameter(label="tyre stiffness, z [N/m]", path="bushings.tyre.stiffness.z"),
     Parameter(label="stabilizer [N m/rad]", path="stabilizer.torsional_stiffness"),
     Parameter(
         label="body stiffness, as factor on its frequencies [-]",
@@ -118,4 +115,4 @@ def all_bars(comfort: ComfortRuns) -> list[Bar]:
 
 
 def _variation(parameter: Parameter) -> Variation:
-    return Variation(name="", label=parameter.label, path=parameter.path, values=(), component=parameter.component)
+    return Variation(name="", label=parameter.label, path=parameter.path, values=())

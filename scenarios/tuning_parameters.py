@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.number_paths import value_of
 from vehicle.parameters.vehicle import Vehicle
-from vehicle.tuning.parameter import Parameter, value_of
+from vehicle.tuning.parameter import Parameter
 
 AUTHORS = (
     # Section 3.1.3.2: stiffness of the suspension mount, measured at its driving point.

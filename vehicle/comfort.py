@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from vehicle.command_line import Parser, run_command
+from vehicle.command_line import Parser, parse_and_run
 from vehicle.errors import DataError
 
 
@@ -100,8 +100,7 @@ def _table(result: dict[str, Any]) -> str:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command; return its exit code (0, 2 usage, 3 bad data, 6 output, 130 interrupted)."""
-    debug = "--debug" in (sys.argv[1:] if argv is None else argv)
-    return run_command(lambda: _job(_parser().parse_args(argv)), debug=debug)
+    return parse_and_run(_parser(), _job, argv)
 
 
 def _job(options: argparse.Namespace) -> None:

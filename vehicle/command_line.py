@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import FrameType
 
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
@@ -65,6 +65,24 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
         for number, handler in previous.items():
             signal.signal(number, handler)
     return 0
+
+
+def parse_and_run(
+    parser: argparse.ArgumentParser, job: Callable[[argparse.Namespace], None], arguments: Sequence[str] | None
+) -> int:
+    """Parse the arguments of a command and run its job.
+
+    Args:
+        parser: with the option --debug.
+        job: as of `run_command`, given the options.
+        arguments: without the program name; those of the process by default.
+
+    Returns:
+        Exit code, as of `run_command`.
+    """
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    # Looked for by hand: a failure to parse must show its traceback too.
+    return run_command(lambda: job(parser.parse_args(given)), debug="--debug" in given)
 
 
 _asked_to_end = threading.Event()

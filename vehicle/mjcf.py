@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from vehicle.command_line import Parser, run_command
+from vehicle.command_line import Parser, parse_and_run
 
 FOLDER = Path(__file__).resolve().parents[1] / "mjcf"
 """Folder of the files in the repository."""
@@ -26,8 +26,7 @@ def parser() -> Parser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    debug = "--debug" in (sys.argv[1:] if arguments is None else arguments)
-    return run_command(lambda: _job(parser().parse_args(arguments)), debug=debug)
+    return parse_and_run(parser(), _job, arguments)
 
 
 def _job(options: argparse.Namespace) -> None:

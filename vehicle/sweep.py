@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle.command_line import Parser, ProgressLine, run_command
+from vehicle.command_line import Parser, ProgressLine, parse_and_run
 from vehicle.names import WHEEL_OF_OPTION
 
 
@@ -65,8 +65,7 @@ def parser() -> Parser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    debug = "--debug" in (sys.argv[1:] if arguments is None else arguments)
-    return run_command(lambda: _job(parser().parse_args(arguments)), debug=debug)
+    return parse_and_run(parser(), _job, arguments)
 
 
 def _job(options: argparse.Namespace) -> None:

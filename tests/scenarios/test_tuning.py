@@ -13,10 +13,11 @@ from tests.tuning.two_masses import TRUE, MeasuredMasses
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.number_paths import value_of
 from vehicle.studies.tables import write_frf
 from vehicle.tuning.fit import fit
 from vehicle.tuning.full_steps import FullSteps
-from vehicle.tuning.parameter import Parameter, value_of
+from vehicle.tuning.parameter import Parameter
 
 MOUNT = "bushings.suspension_mount.stiffness.z"
 CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")

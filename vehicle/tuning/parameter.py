@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES
-from vehicle.parameters.toml_file import as_table
+from vehicle.parameters.number_paths import value_of
 from vehicle.parameters.vehicle import Vehicle
 
 
@@ -68,10 +65,10 @@ def checked_parameters(parameters: Sequence[Parameter]) -> tuple[Parameter, ...]
 
 
 def overrides_of(vehicle: Vehicle, values: Mapping[str, float]) -> tuple[str, ...]:
-    """Overrides "path=value" that put fitted values into a vehicle; components of one vector come together.
+    """Overrides "path=value" that put fitted values into a vehicle.
 
     Args:
-        vehicle: the car whose other values stay, which fills the components that are not fitted.
+        vehicle: the car they are for.
         values: path of `Parameter` to value.
 
     Returns:
@@ -80,66 +77,6 @@ def overrides_of(vehicle: Vehicle, values: Mapping[str, float]) -> tuple[str, ..
     Raises:
         ConfigurationError: a path that is no number of a vehicle.
     """
-    table = as_table(vehicle)
-    numbers: dict[str, str] = {}
-    vectors: dict[str, list[float]] = {}
-    for path, value in values.items():
-        if _is_number(_at(table, path)):
-            numbers[path] = repr(float(value))
-            continue
-        parent, _, axis = path.rpartition(".")
-        vector = _at(table, parent) if axis in AXES else None
-        if not isinstance(vector, list) or len(vector) != len(AXES):
-            raise _unknown(table, path)
-        vectors.setdefault(parent, [float(member) for member in vector])[AXES.index(axis)] = float(value)
-    return (
-        *(f"{path}={text}" for path, text in numbers.items()),
-        *(f"{path}={vector!r}" for path, vector in vectors.items()),
-    )
-
-
-def value_of(vehicle: Vehicle, path: str) -> float:
-    """Value of a parameter in a vehicle.
-
-    Raises:
-        ConfigurationError: the path is no number of a vehicle.
-    """
-    table = as_table(vehicle)
-    found = _at(table, path)
-    if found is None:
-        parent, _, axis = path.rpartition(".")
-        vector = _at(table, parent)
-        found = vector[AXES.index(axis)] if axis in AXES and isinstance(vector, list) else None
-    if not _is_number(found):
-        raise _unknown(table, path)
-    return float(found)
-
-
-def _unknown(table: Mapping[str, Any], path: str) -> ConfigurationError:
-    near = difflib.get_close_matches(path, _number_paths(table), n=1, cutoff=0.0)[0]
-    return ConfigurationError(f"parameter {path}: no number of a vehicle; the nearest is {near}")
-
-
-def _at(table: Mapping[str, Any], path: str) -> Any:
-    """What a dotted path leads to; None where it leads nowhere."""
-    inner: Any = table
-    for key in path.split("."):
-        inner = inner.get(key) if isinstance(inner, Mapping) else None
-    return inner
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _number_paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
-    found: list[str] = []
-    for key, value in table.items():
-        place = f"{prefix}{key}"
-        if isinstance(value, Mapping):
-            found += _number_paths(value, f"{place}.")
-        elif _is_number(value):
-            found.append(place)
-        elif isinstance(value, list) and len(value) == len(AXES) and all(_is_number(member) for member in value):
-            found += [f"{place}.{axis}" for axis in AXES]
-    return found
+    for path in values:
+        value_of(vehicle, path)
+    return tuple(f"{path}={float(value)!r}" for path, value in values.items())
