@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.compiler_cache import prepare_compiler_cache
 from vehicle.errors import MissingPartError
 
 MISSING = "the reduced engine needs numba; install the extra 'fast' (pip install 'vehicle[fast]')"
@@ -83,6 +84,7 @@ def compiled_march() -> March:
     Raises:
         MissingPartError: numba is not installed.
     """
+    prepare_compiler_cache()
     try:
         import numba
     except ImportError:
@@ -90,9 +92,10 @@ def compiled_march() -> March:
     options: dict[str, Any] = {"cache": True, "boundscheck": False, "error_model": "numpy", "nogil": True}
     # Sums over poles may be taken in any order, so that they fill the vector units; nothing else is loosened.
     fast = {"reassoc", "contract", "nsz"}
-    damper = numba.njit(solve_damper, inline="always", **options)
-    force_of = numba.njit(damper_force, inline="always", **options)
-    limit_of = numba.njit(friction_limit, **options)
+    # Known to the compiler by their names: what a function closes over is part of the key of the compiler's cache, and a
+    # compiled function is another object in every process.
+    for law in (solve_damper, damper_force, friction_limit):
+        numba.extending.register_jitable(fastmath=fast, boundscheck=False, error_model="numpy")(law)
 
     def march(
         pair_factors: Any,
@@ -140,8 +143,8 @@ def compiled_march() -> March:
         extra0, extra1 = 1.0 / (1.0 + g00 * d0), 1.0 / (1.0 + g11 * d1)
         for step in range(plates.shape[0] - 1):
             z, d = plates[step, 0], plates[step, 1]
-            l0 = limit_of(v0, laws[0, 0], laws[1, 0], laws[2, 0], laws[3, 0])
-            l1 = limit_of(v1, laws[0, 1], laws[1, 1], laws[2, 1], laws[3, 1])
+            l0 = friction_limit(v0, laws[0, 0], laws[1, 0], laws[2, 0], laws[3, 0])
+            l1 = friction_limit(v1, laws[0, 1], laws[1, 1], laws[2, 1], laws[3, 1])
             s0, s1 = 2.0 / np.pi * l0 * laws[4, 0], 2.0 / np.pi * l1 * laws[4, 1]
             both0, alone0 = 1.0 / (1.0 + g00 * (s0 + d0)), 1.0 / (1.0 + g00 * s0)
             both1, alone1 = 1.0 / (1.0 + g11 * (s1 + d1)), 1.0 / (1.0 + g11 * s1)
@@ -180,10 +183,10 @@ def compiled_march() -> March:
             for _ in range(TURNS):
                 # By turns with the other's last force; both at once, so that neither waits for the other.
                 u0, u1 = w0 + g01 * f1, w1 + g10 * f0
-                v0 = damper(u0, g00, s0, l0, d0, m0, both0, alone0, extra0)
-                v1 = damper(u1, g11, s1, l1, d1, m1, both1, alone1, extra1)
+                v0 = solve_damper(u0, g00, s0, l0, d0, m0, both0, alone0, extra0)
+                v1 = solve_damper(u1, g11, s1, l1, d1, m1, both1, alone1, extra1)
                 last0, last1 = f0, f1
-                f0, f1 = force_of(v0, s0, l0, d0, m0), force_of(v1, s1, l1, d1, m1)
+                f0, f1 = damper_force(v0, s0, l0, d0, m0), damper_force(v1, s1, l1, d1, m1)
                 if abs(g01 * (f1 - last1)) <= ACCURACY * g00 and abs(g10 * (f0 - last0)) <= ACCURACY * g11:
                     break
             phase += 1

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.compiler_cache import prepare_compiler_cache
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows
 
@@ -44,6 +45,7 @@ def native_callback(rows: ElementRows) -> NativeCallback | str:
     Returns:
         The callbacks, or a sentence that says why the run has to do without them.
     """
+    prepare_compiler_cache()
     try:
         importlib.import_module("numba")
     except ImportError:
