@@ -92,8 +92,8 @@ def compiled_march() -> March:
     options: dict[str, Any] = {"cache": True, "boundscheck": False, "error_model": "numpy", "nogil": True}
     # Sums over poles may be taken in any order, so that they fill the vector units; nothing else is loosened.
     fast = {"reassoc", "contract", "nsz"}
-    # Known to the compiler by their names: what a function closes over is part of the key of the compiler's cache, and a
-    # compiled function is another object in every process.
+    # Known to the compiler by their names: what a function closes over is part of the key of the compiler's cache, and
+    # a compiled function is another object in every process.
     for law in (solve_damper, damper_force, friction_limit):
         numba.extending.register_jitable(fastmath=fast, boundscheck=False, error_model="numpy")(law)
 
