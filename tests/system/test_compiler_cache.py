@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -29,8 +30,8 @@ def places(monkeypatch, tmp_path):
     """No place is chosen yet; the temporary folder is that of the test."""
     monkeypatch.delenv(compiler_cache.VARIABLE, raising=False)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    monkeypatch.setattr(compiler_cache.tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setattr(compiler_cache.sys, "modules", {})
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.delitem(sys.modules, "numba", raising=False)
     yield tmp_path
     os.environ.pop(compiler_cache.VARIABLE, None)
 
