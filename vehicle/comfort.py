@@ -34,8 +34,16 @@ def _parser() -> Parser:
         "--offset",
         choices=("refuse", "remove", "keep"),
         default="refuse",
-        help="mean of an axis: refuse a record where it changes a weighted RMS by more than 1 %% (default), remove it "
-        "(sensor offset, gravity), or keep it (a record that starts at rest)",
+        help="mean and drift of an axis: refuse a record where they change a weighted RMS or VDV by more than 1 %% or "
+        "the mean is that of gravity (default), remove them (a sensor's offset, gravity), or keep them: the record "
+        "starts at rest, so that its first seconds count for MTVV, crest factor and MSDV too",
+    )
+    parser.add_argument(
+        "--skip",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="seconds left out at the beginning of the weighted records; 0 by default",
     )
     parser.add_argument(
         "--mtvv", choices=("linear", "exponential"), default="linear", help="running average of the MTVV"
@@ -48,25 +56,37 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     """Read, treat the offset as asked, and evaluate."""
     from vehicle.analysis.acceleration_record import read_acceleration
     from vehicle.analysis.evaluation import AXES, application, evaluate
-    from vehicle.analysis.offset import OFFSET_EFFECT, offset_effect, without_offset
+    from vehicle.analysis.offset import LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line, without_offset
 
     application(options.place)
     record = read_acceleration(options.input)
     mean = record.xyz.mean(axis=1)
+    line = offset_line(record.xyz)
+    drift = line[:, -1] - line[:, 0]
     xyz = without_offset(record.xyz) if options.offset == "remove" else record.xyz
     if options.offset == "refuse":
-        for axis, effect, offset in zip(
-            AXES, offset_effect(record.time_step, record.xyz, place=options.place), mean, strict=True
-        ):
-            if effect > OFFSET_EFFECT:
+        effects = offset_effect(record.time_step, record.xyz, place=options.place)
+        for axis, effect, offset, change in zip(AXES, effects, mean, drift, strict=True):
+            if effect > OFFSET_EFFECT or abs(offset) > LARGEST_MEAN:
                 raise DataError(
-                    f"{options.input}: the mean of column {axis!r} is {offset:g} m/s2 and changes its weighted RMS by "
-                    f"{100 * effect:.3g} %, allowed is {100 * OFFSET_EFFECT:g} %; give --offset remove if it is a "
+                    f"{options.input}: the mean of column {axis!r} is {offset:.4g} m/s2, its drift {change:.2g} m/s2; "
+                    f"they change its weighted RMS or VDV by {100 * effect:.3g} %, allowed are "
+                    f"{100 * OFFSET_EFFECT:g} % and a mean of {LARGEST_MEAN:g} m/s2; give --offset remove if it is a "
                     "sensor's offset or gravity, --offset keep if the record starts at rest and the mean is real"
                 )
-    result = evaluate(record.time_step, xyz, place=options.place, average=options.mtvv)
-    means = dict(zip(AXES, (float(value) for value in mean), strict=True))
-    offset = {"treatment": "removed" if options.offset == "remove" else "kept", "mean": means}
+    result = evaluate(
+        record.time_step,
+        xyz,
+        place=options.place,
+        average=options.mtvv,
+        skip=options.skip,
+        from_rest=options.offset == "keep",
+    )
+    offset = {
+        "treatment": "removed" if options.offset == "remove" else "kept",
+        "mean": dict(zip(AXES, (float(value) for value in mean), strict=True)),
+        "drift": dict(zip(AXES, (float(value) for value in drift), strict=True)),
+    }
     return {"input": options.input, "offset": offset, **result, "notices": list(record.notices)}
 
 

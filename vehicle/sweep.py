@@ -92,8 +92,10 @@ def _job(options: argparse.Namespace) -> None:
     ]
     for source in inputs:
         duration = signal_of(source).duration
-        if options.skip >= duration:
-            raise ConfigurationError(f"--skip {options.skip:g} s: {source.name} is only {duration:g} s long")
+        if not 0.0 <= options.skip < duration:
+            raise ConfigurationError(
+                f"--skip {options.skip:g} s: allowed is 0 s to less than {source.name}, {duration:g} s"
+            )
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=fixed)
     make = executor_factory(options.executor, options.jobs)
     folder = sweep_folder(options.output, resume=options.resume, force=options.force)

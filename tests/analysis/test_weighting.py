@@ -181,3 +181,14 @@ def test_an_unknown_weighting_is_refused_with_those_that_exist():
 def test_a_frequency_that_is_not_finite_is_refused():
     with pytest.raises(ConfigurationError, match="Wk: frequencies must be finite"):
         weighting("Wk").spectrum_factor(np.nan)
+
+
+@pytest.mark.parametrize("name", WEIGHTINGS)
+def test_a_filter_has_settled_when_its_step_response_stays_below_a_hundredth(name):
+    curve, rate = weighting(name), 250
+    response = np.abs(weighted_record(1 / rate, np.ones(80 * rate), name))
+    last = np.flatnonzero(response[: 79 * rate] > 0.01 * response.max())[-1] / rate  # the end rings for Wj
+    assert 0.5 * curve.settling_s < last < curve.settling_s
+    # the range of the standard, and one over the width of its lowest one-third octave
+    assert curve.lowest_frequency == pytest.approx(0.1 if name == "Wf" else 0.5)
+    assert curve.shortest_record_s == pytest.approx(43.2 if name == "Wf" else 8.64, rel=1e-3)

@@ -20,7 +20,7 @@ from vehicle.analysis.exposure import (
     weighted_rms,
 )
 from vehicle.analysis.samples import checked_signals, checked_time_step
-from vehicle.analysis.weighting import weighted_record
+from vehicle.analysis.weighting import weighted_record, weighting
 from vehicle.errors import ConfigurationError, DataError
 
 AXES = ("x", "y", "z")
@@ -29,6 +29,10 @@ except on a backrest, where x is fore and aft as in the frame of the car."""
 MOTION_SICKNESS = "Wf"
 """Weighting of the motion sickness dose value. The standards define it vertically; on x and y it is given for
 comparison only."""
+MOTION_SICKNESS_PERIOD = 240.0
+"""Least measurement from which a motion sickness dose value should be estimated [s] (ISO 2631-1:1997, D.1)"""
+START_UP_EFFECT = 0.01
+"""Share by which a maximum in the start-up of a filter must exceed those after it to be worth a sentence [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -107,28 +111,98 @@ def application(name: str) -> Application:
     return APPLICATIONS[name]
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Span:
+    """Which part of the weighted records counts."""
+
+    time_step: float
+    """[s]"""
+    skip: float
+    """[s] left out at the beginning"""
+    from_rest: bool
+    """whether the filters are settled from the first sample on"""
+
+    def whole(self, weighted: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the record (n,) without the part left out."""
+        return weighted[round(self.skip / self.time_step) :]
+
+    def settled(self, weighted: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+        """Return the part of the record (n,) in which the filter has settled; empty if it never does."""
+        settling = 0.0 if self.from_rest else weighting(name).settling_s
+        return weighted[round(max(self.skip, settling) / self.time_step) :]
+
+
 def _axis(
-    time_step: float, record: NDArray[np.float64], name: str, factor: float, average: RunningAverage
-) -> dict[str, Any]:
-    """Return the measures of one axis (n,)."""
-    weighted = weighted_record(time_step, record, name)
-    duration = record.size * time_step
+    span: _Span, record: NDArray[np.float64], name: str, factor: float, average: RunningAverage
+) -> tuple[dict[str, Any], list[str]]:
+    """Return the measures of one axis (n,) and what must be said about them."""
+    step = span.time_step
+    response = weighted_record(step, record, name)
+    weighted, settled = span.whole(response), span.settled(response, name)
+    if not settled.size:
+        raise DataError(
+            f"acceleration: found {response.size * step:g} s, but weighting {name} settles in "
+            f"{weighting(name).settling_s:g} s; give a longer record, or say that it starts at rest (--offset keep)"
+        )
+    duration = weighted.size * step
     rms = weighted_rms(weighted)
-    dose = vibration_dose_value(time_step, weighted)
-    transient = mtvv(time_step, weighted, average=average)
-    return {
+    dose = vibration_dose_value(step, weighted)
+    transient = mtvv(step, settled, average=average)
+    said = []
+    if duration < weighting(name).shortest_record_s * (1.0 - 1e-9):
+        said.append(
+            f"{duration:g} s hold {duration * weighting(name).lowest_frequency:.1f} periods of "
+            f"{weighting(name).lowest_frequency:g} Hz, where {name} begins; {weighting(name).shortest_record_s:.3g} s "
+            "are needed to resolve it: take the values for this event alone, not for a ride"
+        )
+    peak, with_it = np.abs(settled).max(), np.abs(weighted).max()
+    if rms > 0.0 and with_it > (1.0 + START_UP_EFFECT) * peak:
+        said.append(
+            f"MTVV and crest factor leave out the first {weighting(name).settling_s:g} s, in which {name} settles; "
+            f"with them MTVV is {mtvv(step, weighted, average=average):.3g} instead of {transient:.3g} m/s2 and the "
+            f"peak {with_it:.3g} instead of {peak:.3g} m/s2 (--offset keep for a record that starts at rest)"
+        )
+    values = {
         "weighting": name,
         "multiplying_factor": factor,
         "weighted_rms": rms,
         "mtvv": transient,
-        "crest_factor": crest_factor(weighted),
+        "crest_factor": crest_factor(settled),
         "vdv": dose,
         "estimated_vdv": estimated_vibration_dose_value(rms, duration),
-        "msdv": motion_sickness_dose_value(time_step, weighted_record(time_step, record, MOTION_SICKNESS)),
+        "msdv": _motion_sickness(span, record),
         "msdv_weighting": MOTION_SICKNESS,
         "mtvv_ratio": transient / rms if rms > 0.0 else None,
         "vdv_ratio": dose / (rms * duration**0.25) if rms > 0.0 else None,
     }
+    return values, said
+
+
+def _motion_sickness(span: _Span, record: NDArray[np.float64]) -> float | None:
+    """Return MSDV of one axis (n,), from the settled part for the whole duration; None where the record is too short.
+
+    MSDV = a_w T^(1/2) with a_w of the part after the filter has settled: method b of the standard. Of a record from
+    rest all of it is settled, and this is method a, the integral.
+    """
+    weighted = weighted_record(span.time_step, record, MOTION_SICKNESS)
+    duration = span.whole(weighted).size * span.time_step
+    if duration < weighting(MOTION_SICKNESS).shortest_record_s * (1.0 - 1e-9):
+        return None
+    settled = span.settled(weighted, MOTION_SICKNESS)
+    dose = motion_sickness_dose_value(span.time_step, settled)
+    return float(dose * np.sqrt(duration / (settled.size * span.time_step)))
+
+
+def _about_motion_sickness(duration: float) -> list[str]:
+    """Return what must be said of the motion sickness dose value of a record of this duration [s]."""
+    curve = weighting(MOTION_SICKNESS)
+    if duration >= MOTION_SICKNESS_PERIOD * (1.0 - 1e-9):
+        return []
+    least = curve.shortest_record_s
+    held = f"{duration:g} s hold {duration * curve.lowest_frequency:.1f} periods of {curve.lowest_frequency:g} Hz"
+    if duration < least * (1.0 - 1e-9):
+        return [f"msdv: {held}, at least {least:.3g} s are needed to resolve that frequency, so it is not given"]
+    return [f"msdv: {held}; ISO 2631-1, D.1, asks for {MOTION_SICKNESS_PERIOD:g} s: a rough estimate"]
 
 
 def evaluate(
@@ -137,17 +211,23 @@ def evaluate(
     *,
     place: str = "seat",
     average: RunningAverage = "linear",
+    skip: float = 0.0,
+    from_rest: bool = False,
 ) -> dict[str, Any]:
     """Evaluate the acceleration of one point: weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums.
 
-    The filters are at rest before the record, so a constant offset acts as a step: remove the mean of a measured
-    record first (a sensor's offset, gravity), leave a simulated one that starts at rest as it is.
+    The filters are at rest before the record. That is exact for a simulated one that starts at rest. A record cut out
+    of a ride is switched on instead, and with it its mean and drift (a sensor's offset, gravity): a step, whose
+    response must die away. So its maxima (MTVV, crest factor) and its MSDV are those after each filter has settled
+    (3.5 s; Wf 17.5 s); RMS and VDV hold all of it, and `offset.offset_effect` tells what the mean does to them.
 
     Args:
         time_step: [s].
         xyz: acceleration of the point in x, y, z [m/s2], shape (3, n).
         place: name in `APPLICATIONS`: "seat" (z Wk, x and y Wd), "backrest", "feet", "standing", "seat_bs6841", ...
         average: of the running RMS in MTVV, "linear" or "exponential".
+        skip: seconds of the weighted records left out at the beginning; the filters run through them.
+        from_rest: the record starts at rest, so all of it counts.
 
     Returns:
         {"place", "standard", "duration_s", "sampling_rate_hz", "running_average",
@@ -156,13 +236,13 @@ def evaluate(
          "vector_sum": {"weighted_rms", "vdv", "health_weighted_rms"}, "reasons": [...]}.
         The axes are without multiplying factors, the sums with them; `vdv` is summed in the fourth power. `mtvv_ratio`
         (MTVV / a_w) above 1.5 or `vdv_ratio` (VDV / (a_w T^(1/4))) above 1.75 mean that the RMS alone understates the
-        shocks. A value that does not exist is None, and `reasons` says why.
+        shocks. A value that does not exist is None, and `reasons` says why: MSDV below 43.2 s, for instance.
 
     Raises:
-        DataError: not three axes, none of them moves, sampled below 250 Hz, not finite.
-        ConfigurationError: unknown place or average.
+        DataError: not three axes, none of them moves, sampled below 250 Hz, not finite, over before the filters settle.
+        ConfigurationError: unknown place or average, a skip that is negative, not finite or the whole record.
 
-    Source: ISO 2631-1:1997, clauses 6 to 8; BS 6841:1987.
+    Source: ISO 2631-1:1997, clauses 5.5 and 6 to 9, annex D; BS 6841:1987.
     """
     step = checked_time_step(time_step)
     use = application(place)
@@ -171,10 +251,16 @@ def evaluate(
         raise DataError(f"acceleration: found {array.shape[0]} signals, needed are the three axes x, y, z")
     if not array.any():
         raise DataError("acceleration: all three axes are zero throughout, so there is nothing to evaluate")
-    axes = {
-        axis: _axis(step, record, name, factor, average)
-        for axis, record, name, factor in zip(AXES, array, use.weightings, use.comfort_factors, strict=True)
-    }
+    if not 0.0 <= skip < (array.shape[1] - 1) * step:
+        raise ConfigurationError(
+            f"skip: found {skip:g} s, allowed is 0 s to less than the record, {array.shape[1] * step:g} s"
+        )
+    span = _Span(time_step=step, skip=skip, from_rest=from_rest)
+    axes, said = {}, []
+    for axis, record, name, factor in zip(AXES, array, use.weightings, use.comfort_factors, strict=True):
+        axes[axis], remarks = _axis(span, record, name, factor, average)
+        said += [f"{axis}: {remark}" for remark in remarks]
+    duration = span.whole(array[0]).size * step
     rms = [axes[axis]["weighted_rms"] for axis in AXES]
     sums: dict[str, float | None] = {
         "weighted_rms": vector_sum(rms, use.comfort_factors),
@@ -186,12 +272,13 @@ def evaluate(
         for axis in AXES
         if axes[axis]["crest_factor"] is None
     ]
+    reasons += said + _about_motion_sickness(duration)
     if use.health_factors is None:
         reasons.append(f"vector_sum.health_weighted_rms: the standard gives no health factors for {place}")
     return {
         "place": place,
         "standard": use.standard,
-        "duration_s": array.shape[1] * step,
+        "duration_s": duration,
         "sampling_rate_hz": 1.0 / step,
         "running_average": average,
         **axes,

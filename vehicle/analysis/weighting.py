@@ -43,6 +43,25 @@ class Weighting:
     gain: float = 1.0
     """factor K [-]"""
 
+    @property
+    def lowest_frequency(self) -> float:
+        """Lower end of the range the standard evaluates [Hz]: 0.5 (Wf: 0.1), which is f1 10^(1/10) rounded."""
+        return 1.25 * self.f1
+
+    @property
+    def settling_s(self) -> float:
+        """Time after which the response to a step stays below 1 % of its peak [s]: 1.4 / f1, 3.5 s (Wf: 17.5 s)."""
+        return 1.4 / self.f1
+
+    @property
+    def shortest_record_s(self) -> float:
+        """Least length that resolves the one-third octave at the lowest frequency [s]: 8.6 s (Wf: 43.2 s).
+
+        T B >= 1 with B = (2^(1/6) - 2^(-1/6)) f = 0.2316 f: 4.3 periods of f. Below, the band at the lower limit is not
+        told from its neighbours; for a good estimate ISO 2631-1:1997, 5.5, asks B T = 25 (108 s at 1 Hz).
+        """
+        return float(1.0 / ((2.0 ** (1 / 6) - 2.0 ** (-1 / 6)) * self.lowest_frequency))
+
     def transfer_function(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Return the complex factor H at frequencies [Hz] of any shape.
 

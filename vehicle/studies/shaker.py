@@ -201,7 +201,7 @@ def _comfort(run: Run, place: str) -> dict[str, Any]:
     xyz = np.array([run[f"{place}_acc_{axis}"] for axis in AXES])
     return {
         "rms_2_50_hz": {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall},
-        "iso2631": evaluate(run.recording.timestep, xyz),
+        "iso2631": evaluate(run.recording.timestep, xyz, from_rest=True),
     }
 
 
