@@ -15,8 +15,11 @@ too; its law is smooth, so that it is centred like the viscous one: D = (Ddeg - 
 Rotations need no rows: K_rot is soft against every inertia and undamped, so its torque is given explicitly,
 T = -K_rot sin(angle) n from the frames of both sites.
 
-Modal coordinates q of the flexible body enter a row at node n as J -> J +- R Phi_n, r -> r +- R Phi_n q and
-r' -> r' +- R Phi_n q', R being the rotation of the body.
+Modal coordinates q of the flexible body move node n by d = R Phi_n q, R being the rotation of the body. They enter a
+row there as r -> r +- d, and its derivative by the coordinates as J -> J +- (R Phi_n, -[d]x on what turns the body):
+without the second part the body would miss the torque d x F of every force at a node. The line of a main spring goes
+through the displaced seat: n = (x_up + d - x_low) / length, r = length - L0, J = n' (J_up + R Phi - [d]x - J_low).
+Without d in n, the transverse stiffness F / length of a loaded spring would not act on the modes.
 """
 
 from __future__ import annotations
@@ -164,7 +167,7 @@ class ElementRows:
         q_columns = e.modal_columns
         turned_rows = e.node_rows
         residual, rate = position[e.rows], velocity[e.rows]
-        spring_residual = position[e.springs]
+        ends = data.site_xpos[e.spring_sites]
         if q_columns.stop:
             turn = orientation[e.body].reshape(3, 3)
             modes = q_columns.stop - q_columns.start
@@ -172,15 +175,19 @@ class ElementRows:
             jacobian[turned_rows, q_columns] = shapes
             q = data.qpos[self.modal_positions]
             qd = data.qvel[q_columns]
-            position[turned_rows] += shapes @ q
-            velocity[turned_rows] += shapes @ qd
+            displaced = shapes @ q
+            lever = np.cross(data.cdof[e.body_turns, :3][:, None], displaced.T).T
+            jacobian[turned_rows[..., None], e.body_turns] += lever
+            position[turned_rows] += displaced
+            velocity[turned_rows] += shapes @ qd + lever @ data.qvel[e.body_turns]
             residual, rate = position[e.rows], velocity[e.rows]
-            ends = data.site_xpos[e.spring_sites]
-            line = ends[:, 1] - ends[:, 0]
-            line /= np.sqrt(np.einsum("ij,ij->i", line, line))[:, None]
-            columns = np.einsum("ij,ijk->ik", line @ turn, e.spring_shapes)
-            jacobian[e.springs, q_columns] = columns
-            spring_residual = spring_residual + columns @ q
+            ends[:, 1] += (e.spring_shapes @ q) @ turn.T
+        line = ends[:, 1] - ends[:, 0]
+        length = np.sqrt(np.einsum("ij,ij->i", line, line))
+        line /= length[:, None]
+        self._spring_rows(data, jacobian, ends, line)
+        if q_columns.stop:
+            jacobian[e.springs, q_columns] = np.einsum("ij,ijk->ik", line @ turn, e.spring_shapes)
         rate[e.tyres] -= self.plate_velocity
         frames = orientation[e.carriers].reshape(-1, 3, 3)
         residual = np.einsum("nji,nj->ni", frames, residual)
@@ -191,7 +198,7 @@ class ElementRows:
         force[e.tyres] += self.inertial * self.plate_acceleration
         explicit = self.explicit
         explicit[e.rows] = np.einsum("nij,nj->ni", frames, force)
-        explicit[e.springs] = self.spring_preload - e.spring_stiffness * spring_residual
+        explicit[e.springs] = self.spring_preload - e.spring_stiffness * (length - e.spring_lengths)
         explicit[e.hard_rows] = self.hard_preload
         # MuJoCo made the reference of the ideal joints before it knew of the modal coordinates.
         law = data.efc_KBIP[e.hard_rows]
@@ -219,6 +226,16 @@ class ElementRows:
         torque = np.einsum("nij,nj->ni", frames, self.rotation_preload) - e.rotation_stiffness * turned
         turning = np.einsum("ij,ij->i", data.cdof[:, :3], e.rotation_dofs.T @ torque)
         data.qfrc_applied[:] = explicit @ jacobian + turning
+
+    def _spring_rows(self, data: mujoco.MjData, jacobian: Vector, ends: Vector, line: Vector) -> None:
+        """n' (J_up - J_low) of the springs, for the coordinates that move their `ends` (2, 2, 3)."""
+        e = self.elements
+        spring, end, dof, tree = e.spring_dofs.T
+        # MuJoCo refers the motion of a tree to its centre of mass.
+        turning, moving = data.cdof[dof, :3], data.cdof[dof, 3:]
+        velocity = moving + np.cross(turning, ends[spring, end] - data.subtree_com[tree])
+        jacobian[e.springs] = 0.0
+        np.add.at(jacobian, (e.springs[spring], dof), (2 * end - 1) * np.einsum("ij,ij->i", line[spring], velocity))
 
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""

@@ -32,7 +32,10 @@ class Elements:
         hard_rows: rows of the ideal ball joints without a law, (k, 3).
         springs: rows of the main springs, (2,).
         spring_stiffness: [N/m], (2,).
+        spring_lengths: lengths in the design position [m], (2,).
         spring_sites: lower and upper site of each main spring, (2, 2).
+        spring_dofs: what moves the ends: spring, end (0 lower, 1 upper), velocity coordinate and the tree it belongs
+            to; a row each.
         dampers: equality rows of the dampers, (2,).
         frictions: friction rows of the dampers, (2,).
         valves: second friction rows of degressive dampers, (2,); none for linear ones.
@@ -43,6 +46,7 @@ class Elements:
         spring_shapes: shapes at the upper spring seats, (2, 3, modes).
         reach: where rows with explicit forces are not zero: first row, number of rows (3 or 1), first column, end.
         body: id of the flexible body.
+        body_turns: velocity coordinates that turn it, (3,).
         row_count: number of constraint rows.
     """
 
@@ -61,7 +65,9 @@ class Elements:
     hard_rows: Index
     springs: Index
     spring_stiffness: Vector
+    spring_lengths: Vector
     spring_sites: Index
+    spring_dofs: Index
     dampers: Index
     frictions: Index
     valves: Index
@@ -72,6 +78,7 @@ class Elements:
     spring_shapes: Vector
     reach: Index
     body: int
+    body_turns: Index
     row_count: int
 
 
@@ -110,7 +117,7 @@ def read_elements(model: mujoco.MjModel) -> Elements:
     row = 0
     names, rows, carriers, laws, rotation_sites, rotation_stiffness = [], [], [], [], [], []
     hard_rows, node_rows, node_shapes = [], [], []
-    springs, spring_stiffness, spring_sites, spring_shapes, dampers = [], [], [], [], []
+    springs, spring_stiffness, spring_lengths, spring_sites, spring_shapes, dampers = [], [], [], [], [], []
     reach: list[tuple[int, int, int, int]] = []
     modal = range(first, first + modes)
     for index in range(model.neq):
@@ -143,6 +150,7 @@ def read_elements(model: mujoco.MjModel) -> Elements:
             assert law is not None
             springs.append(row)
             spring_stiffness.append(law[0])
+            spring_lengths.append(float(model.tendon_length0[model.eq_obj1id[index]]))
             spring_sites.append((model.site(f"{name}/lower").id, model.site(f"{name}/upper").id))
             reach += _reach(model, row, 1, spring_sites[-1], modal)
             spring_shapes.append(np.zeros((3, modes)) if shape is None else shape.reshape(3, modes))
@@ -171,7 +179,9 @@ def read_elements(model: mujoco.MjModel) -> Elements:
         hard_rows=np.array(hard_rows, dtype=np.intp).reshape(-1, 3),
         springs=np.array(springs, dtype=np.intp),
         spring_stiffness=np.array(spring_stiffness),
+        spring_lengths=np.array(spring_lengths),
         spring_sites=np.array(spring_sites, dtype=np.intp).reshape(-1, 2),
+        spring_dofs=_spring_dofs(model, spring_sites),
         dampers=np.array(dampers, dtype=np.intp),
         # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
         frictions=row + np.argsort(np.argsort(dofs)),
@@ -183,6 +193,7 @@ def read_elements(model: mujoco.MjModel) -> Elements:
         spring_shapes=np.array(spring_shapes).reshape(len(springs), 3, modes),
         reach=np.array(reach, dtype=np.intp).reshape(-1, 4),
         body=_body_id(model),
+        body_turns=_body_turns(model),
         row_count=row + len(damper_joints) + len(valves),
     )
 
@@ -193,18 +204,45 @@ def _rotation_dofs(model: mujoco.MjModel, sites: list[tuple[int, int]]) -> Vecto
     for row, (moving, carrier) in zip(signs, sites, strict=True):
         row[_moved_by(model, moving)] += 1.0
         row[_moved_by(model, carrier)] -= 1.0
-    kinds = mujoco.mjtJoint
-    for joint in range(model.njnt):
-        # Slides, and the first three coordinates of free bodies, do not turn.
-        shifts = {int(kinds.mjJNT_SLIDE): 1, int(kinds.mjJNT_FREE): 3}.get(int(model.jnt_type[joint]), 0)
-        signs[:, model.jnt_dofadr[joint] : model.jnt_dofadr[joint] + shifts] = 0.0
+    signs[:, ~_turns(model)] = 0.0
     return signs
 
 
+def _turns(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
+    """Which velocity coordinates turn a body: all but slides and the first three of free bodies; (nv,)."""
+    found = np.ones(model.nv, dtype=np.bool_)
+    kinds = mujoco.mjtJoint
+    for joint in range(model.njnt):
+        shifts = {int(kinds.mjJNT_SLIDE): 1, int(kinds.mjJNT_FREE): 3}.get(int(model.jnt_type[joint]), 0)
+        found[model.jnt_dofadr[joint] : model.jnt_dofadr[joint] + shifts] = False
+    return found
+
+
+def _body_turns(model: mujoco.MjModel) -> Index:
+    """Velocity coordinates that turn the flexible body."""
+    dofs = np.array(_above(model, _body_id(model)), dtype=np.intp)
+    return dofs[_turns(model)[dofs]]
+
+
+def _spring_dofs(model: mujoco.MjModel, sites: list[tuple[int, int]]) -> Index:
+    """Spring, end, velocity coordinate and its tree, for all coordinates that move an end of a spring."""
+    found = [
+        (spring, end, dof, int(model.body_rootid[model.dof_bodyid[dof]]))
+        for spring, ends in enumerate(sites)
+        for end, site in enumerate(ends)
+        for dof in _moved_by(model, site)
+    ]
+    return np.array(found, dtype=np.intp).reshape(-1, 4)
+
+
 def _moved_by(model: mujoco.MjModel, site: int) -> list[int]:
-    """Velocity coordinates that move a site, from its body down to the world."""
+    """Velocity coordinates that move a site."""
+    return _above(model, int(model.site_bodyid[site]))
+
+
+def _above(model: mujoco.MjModel, body: int) -> list[int]:
+    """Velocity coordinates that move a body, from itself down to the world."""
     found: list[int] = []
-    body = int(model.site_bodyid[site])
     while body > 0:
         first = int(model.body_dofadr[body])
         found += range(first, first + int(model.body_dofnum[body]))

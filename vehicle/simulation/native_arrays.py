@@ -24,6 +24,7 @@ class Fields(NamedTuple):
     xmat: Vector
     site_xpos: Vector
     site_xmat: Vector
+    subtree_com: Vector
     cdof: Vector
     efc_J: Vector
     efc_pos: Vector
@@ -47,6 +48,7 @@ class Indices(NamedTuple):
     hard_rows: Integers
     springs: Integers
     spring_sites: Integers
+    spring_dofs: Integers
     dampers: Integers
     frictions: Integers
     valves: Integers
@@ -54,6 +56,7 @@ class Indices(NamedTuple):
     tyres: Integers
     node_rows: Integers
     reach: Integers
+    body_turns: Integers
     modal: Integers
     """Body, number of modes, first velocity and first position of the modal coordinates."""
 
@@ -69,6 +72,7 @@ class Constants(NamedTuple):
     damping: Vector
     rotation_stiffness: Vector
     spring_stiffness: Vector
+    spring_lengths: Vector
     decay: Vector
     branch_gain: Vector
     branch_slope: Vector
@@ -110,6 +114,10 @@ class State(NamedTuple):
     """Explicit forces of the elements, in world axes."""
     torque: Vector
     """Torques of the rotations, in world axes."""
+    ends: Vector
+    """Lower and upper end of each main spring, the upper one with its modal displacement."""
+    line: Vector
+    """Directions of the main springs."""
     deflection: Vector
     """Modal displacement and velocity of the nodes, in body axes."""
 
@@ -129,7 +137,8 @@ def indices_of(rows: ElementRows) -> Indices:
     """The indices of the element rows."""
     e = rows.elements
     own = ("rows", "carriers", "rotation_sites", "hard_rows", "springs", "spring_sites", "dampers", "frictions")
-    values = {name: _whole(getattr(e, name)) for name in (*own, "valves", "damper_dofs", "tyres", "node_rows", "reach")}
+    values = {name: _whole(getattr(e, name)) for name in (*own, "valves", "damper_dofs", "tyres", "node_rows")}
+    values |= {name: _whole(getattr(e, name)) for name in ("spring_dofs", "reach", "body_turns")}
     pairs = np.argwhere(e.rotation_dofs)
     values["turning"] = _whole(np.column_stack([pairs, e.rotation_dofs[tuple(pairs.T)]]))
     columns = e.modal_columns
@@ -163,13 +172,15 @@ def share_state(rows: ElementRows) -> State:
     rows.reset()
     values = {}
     for name in State._fields:
-        if name not in ("last_time", "force", "torque", "deflection"):
+        if name not in ("last_time", "force", "torque", "ends", "line", "deflection"):
             array = np.ascontiguousarray(getattr(rows, name), dtype=np.float64)
             setattr(rows, name, array)
             values[name] = array.reshape(1, -1) if array.ndim == 1 else array
     own = {
         "force": rows.elements.rows.shape,
         "torque": (max(len(rows.rotation_preload), 1), 3),
+        "ends": (max(2 * len(rows.elements.springs), 1), 3),
+        "line": (max(len(rows.elements.springs), 1), 3),
         "deflection": (2, max(rows.elements.node_rows.size, 1)),
     }
     values |= {name: np.zeros(shape) for name, shape in own.items()}

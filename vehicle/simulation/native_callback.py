@@ -49,6 +49,7 @@ def _fields(t: Any, data: int) -> Fields:
         field(t, data, 3), field(t, data, 4), field(t, data, 5), field(t, data, 6), field(t, data, 7),
         field(t, data, 8), field(t, data, 9), field(t, data, 10), field(t, data, 11), field(t, data, 12),
         field(t, data, 13), field(t, data, 14), field(t, data, 15), field(t, data, 16), field(t, data, 17),
+        field(t, data, 18),
     )  # fmt: skip
 
 
@@ -58,7 +59,8 @@ def _indices(t: Any, a: int) -> Indices:
         integer_table(t, a), integer_table(t, a + 1), integer_table(t, a + 2), integer_table(t, a + 3),
         integer_table(t, a + 4), integer_table(t, a + 5), integer_table(t, a + 6), integer_table(t, a + 7),
         integer_table(t, a + 8), integer_table(t, a + 9), integer_table(t, a + 10), integer_table(t, a + 11),
-        integer_table(t, a + 12), integer_table(t, a + 13), integer_table(t, a + 14),
+        integer_table(t, a + 12), integer_table(t, a + 13), integer_table(t, a + 14), integer_table(t, a + 15),
+        integer_table(t, a + 16),
     )  # fmt: skip
 
 
@@ -72,6 +74,7 @@ def _constants(t: Any, a: int) -> Constants:
         float_table(t, a + 16), float_table(t, a + 17), float_table(t, a + 18), float_table(t, a + 19),
         float_table(t, a + 20), float_table(t, a + 21), float_table(t, a + 22), float_table(t, a + 23),
         float_table(t, a + 24), float_table(t, a + 25), float_table(t, a + 26), float_table(t, a + 27),
+        float_table(t, a + 28),
     )  # fmt: skip
 
 
@@ -81,7 +84,7 @@ def _state(t: Any, a: int) -> State:
         float_table(t, a), float_table(t, a + 1), float_table(t, a + 2), float_table(t, a + 3),
         float_table(t, a + 4), float_table(t, a + 5), float_table(t, a + 6), float_table(t, a + 7),
         float_table(t, a + 8), float_table(t, a + 9), float_table(t, a + 10), float_table(t, a + 11),
-        float_table(t, a + 12),
+        float_table(t, a + 12), float_table(t, a + 13), float_table(t, a + 14),
     )  # fmt: skip
 
 
@@ -221,6 +224,7 @@ def _field_shapes(model: mujoco.MjModel, count: int) -> dict[str, tuple[int, int
         "xmat": (model.nbody, 9),
         "site_xpos": (model.nsite, 3),
         "site_xmat": (model.nsite, 9),
+        "subtree_com": (model.nbody, 3),
         "cdof": (model.nv, 6),
         "efc_J": (count, model.nv),
         "efc_KBIP": (count, 4),

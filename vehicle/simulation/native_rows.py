@@ -14,7 +14,7 @@ from vehicle.simulation.native_arrays import Constants, Fields, Indices, State
 
 
 def _modal_rows(d: Fields, e: Indices, c: Constants, s: State) -> None:
-    """J -> J +- R Phi_n, r -> r +- R Phi_n q, r' -> r' +- R Phi_n q' for the rows at flexible nodes."""
+    """J -> J +- (R Phi_n, -[d]x), r -> r +- d, r' -> r' +- (R Phi_n q' + w x d) for the rows at flexible nodes."""
     body, modes, column, place = e.modal[0, 0], e.modal[1, 0], e.modal[2, 0], e.modal[3, 0]
     turn = d.xmat[body]
     nodes, count = e.node_rows.shape[1], c.mode_shapes.shape[1]
@@ -31,11 +31,25 @@ def _modal_rows(d: Fields, e: Indices, c: Constants, s: State) -> None:
     for node in range(nodes):
         at = node * modes
         r0, r1, r2 = e.node_rows[0, node], e.node_rows[1, node], e.node_rows[2, node]
-        for i in range(3):
-            row = e.node_rows[i, node]
-            x, y, z = turn[3 * i], turn[3 * i + 1], turn[3 * i + 2]
-            d.efc_pos[row, 0] += x * moved[node] + y * moved[nodes + node] + z * moved[2 * nodes + node]
-            d.efc_vel[row, 0] += x * moving[node] + y * moving[nodes + node] + z * moving[2 * nodes + node]
+        x, y, z = moved[node], moved[nodes + node], moved[2 * nodes + node]
+        dx, dy, dz = t0 * x + t1 * y + t2 * z, t3 * x + t4 * y + t5 * z, t6 * x + t7 * y + t8 * z
+        d.efc_pos[r0, 0] += dx
+        d.efc_pos[r1, 0] += dy
+        d.efc_pos[r2, 0] += dz
+        x, y, z = moving[node], moving[nodes + node], moving[2 * nodes + node]
+        vx, vy, vz = t0 * x + t1 * y + t2 * z, t3 * x + t4 * y + t5 * z, t6 * x + t7 * y + t8 * z
+        for k in range(e.body_turns.shape[0]):
+            dof = e.body_turns[k, 0]
+            x, y, z = d.cdof[dof, 0], d.cdof[dof, 1], d.cdof[dof, 2]
+            x, y, z = y * dz - z * dy, z * dx - x * dz, x * dy - y * dx
+            d.efc_J[r0, dof] += x
+            d.efc_J[r1, dof] += y
+            d.efc_J[r2, dof] += z
+            turning = d.qvel[dof, 0]
+            vx, vy, vz = vx + x * turning, vy + y * turning, vz + z * turning
+        d.efc_vel[r0, 0] += vx
+        d.efc_vel[r1, 0] += vy
+        d.efc_vel[r2, 0] += vz
         for k in range(modes):
             x, y, z = c.node_shapes[0, at + k], c.node_shapes[1, at + k], c.node_shapes[2, at + k]
             d.efc_J[r0, column + k] = t0 * x + t1 * y + t2 * z
@@ -44,27 +58,42 @@ def _modal_rows(d: Fields, e: Indices, c: Constants, s: State) -> None:
 
 
 def _springs(d: Fields, e: Indices, c: Constants, s: State) -> None:
-    """Main springs: modal columns along the line of the spring, and the elastic force."""
+    """Main springs: the line through the displaced seat, its derivatives, and the elastic force."""
     body, modes, column, place = e.modal[0, 0], e.modal[1, 0], e.modal[2, 0], e.modal[3, 0]
     turn = d.xmat[body]
     for spring in range(e.springs.shape[0]):
         row = e.springs[spring, 0]
-        residual = d.efc_pos[row, 0]
-        if modes > 0:
-            lower, upper = d.site_xpos[e.spring_sites[spring, 0]], d.site_xpos[e.spring_sites[spring, 1]]
-            x, y, z = upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]
-            length = np.sqrt(x * x + y * y + z * z)
-            x, y, z = x / length, y / length, z / length
+        ends, line = s.ends[2 * spring : 2 * spring + 2], s.line[spring]
+        for i in range(3):
+            ends[0, i] = d.site_xpos[e.spring_sites[spring, 0], i]
+            ends[1, i] = d.site_xpos[e.spring_sites[spring, 1], i]
+            for j in range(3):
+                for k in range(modes):
+                    ends[1, i] += turn[3 * i + j] * c.spring_shapes[spring, j * modes + k] * d.qpos[place + k, 0]
+            line[i] = ends[1, i] - ends[0, i]
+        length = np.sqrt(line[0] * line[0] + line[1] * line[1] + line[2] * line[2])
+        for i in range(3):
+            line[i] /= length
+        for dof in range(d.efc_J.shape[1]):
+            d.efc_J[row, dof] = 0.0
+        for j in range(3):
+            along = line[0] * turn[j] + line[1] * turn[3 + j] + line[2] * turn[6 + j]
             for k in range(modes):
-                shape = 0.0
-                for j in range(3):
-                    along = x * turn[j] + y * turn[3 + j] + z * turn[6 + j]
-                    shape += along * c.spring_shapes[spring, j * modes + k]
-                d.efc_J[row, column + k] = shape
-                residual += shape * d.qpos[place + k, 0]
+                d.efc_J[row, column + k] += along * c.spring_shapes[spring, j * modes + k]
+        residual = length - c.spring_lengths[spring, 0]
         s.explicit[0, row] = c.spring_preload[spring, 0] - c.spring_stiffness[spring, 0] * residual
         d.efc_D[row, 0] = c.spring_impedance[spring, 0]
         d.efc_aref[row, 0] = 0.0
+    for entry in range(e.spring_dofs.shape[0]):
+        spring, end, dof, tree = e.spring_dofs[entry]
+        line, point, centre, motion = s.line[spring], s.ends[2 * spring + end], d.subtree_com[tree], d.cdof[dof]
+        x, y, z = point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]
+        velocity = (
+            line[0] * (motion[3] + motion[1] * z - motion[2] * y)
+            + line[1] * (motion[4] + motion[2] * x - motion[0] * z)
+            + line[2] * (motion[5] + motion[0] * y - motion[1] * x)
+        )
+        d.efc_J[e.springs[spring, 0], dof] += (2 * end - 1) * velocity
 
 
 def _local_axes(d: Fields, e: Indices, s: State) -> None:
