@@ -39,18 +39,34 @@ def test_the_march_converges_to_the_stiff_solution_with_second_order(parts, size
     model = state_space(quarter_car(CAR, damper="friction", **parts))
     fine = np.linspace(0.0, END, 6001)
     road = bumpy_road(fine, size)
-    reference = stiff_solution(model, fine[::16], road=Sampled(road, fine[1])).acceleration("body")
-    errors = []
-    for stride in (16, 8, 4):  # 2, 1, 0.5 ms
-        history = marched_solution(model, fine[stride], road[::stride], every=16 // stride)
-        error = history.acceleration("body") - reference
-        errors.append(np.sqrt(np.mean(error**2) / np.mean(reference**2)))
-    order = np.log2(errors[0] / errors[-1]) / 2
-    # Non-smooth motion: every stick begins inside a step, so single halvings scatter, and 2 ms is coarse for 25 Hz; a
-    # first-order scheme shows 1.0.
-    assert order > 1.4
+    reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
+    histories = [marched_solution(model, fine[n], road[::n], every=8 // n) for n in (8, 4, 2)]  # 1, 0.5, 0.25 ms
+    errors = {name: relative_errors(histories, reference, name) for name in ("body", "wheel", "damper")}
+    for name, (rough, _, finest) in errors.items():
+        # The sample at which a stick begins or ends is off by the step times the jump of the friction. The light damper
+        # feels that jump most and mixes both orders: found 1.3 to 2.1, and 1.8 to 2.0 for the others.
+        assert np.log2(rough / finest) / 2 > (1.2 if name == "damper" else 1.75), name
     # The stuck strut of the small road is a mode of 25 Hz held at the ends of the steps: (w h)^2/12 of its phase.
-    assert errors[-1] < (0.05 if size == 0.001 else 0.02)
+    assert errors["body"][1] < (0.05 if size == 0.001 else 0.02)
+    assert errors["damper"][2] < 0.15  # taken at the end of the step, the force of a stuck pair lags: 0.3 to 1.0
+
+
+def relative_errors(histories, reference, name):
+    """RMS of the deviation in acceleration over RMS of the reference, for each history."""
+    exact = reference.acceleration(name)
+    return [np.sqrt(np.mean((h.acceleration(name) - exact) ** 2) / np.mean(exact**2)) for h in histories]
+
+
+@pytest.mark.parametrize(("steepness", "name"), [(30.0, "body"), (30.0, "wheel"), (30.0, "damper")])
+def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
+    """A gentle law changes over the whole step: taken at its end the motion is first order."""
+    model = state_space(quarter_car(CAR, damper="friction", vary={"friction.steepness": steepness}))
+    fine = np.linspace(0.0, END, 6001)
+    road = bumpy_road(fine, 0.02)
+    reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
+    histories = [marched_solution(model, fine[n], road[::n], every=8 // n) for n in (4, 2, 1)]
+    rough, _, finest = relative_errors(histories, reference, name)
+    assert np.log2(rough / finest) / 2 == pytest.approx(2.0, abs=0.2)
 
 
 def test_without_friction_the_march_is_exact_for_straight_roads():
@@ -156,8 +172,13 @@ def test_the_friction_of_every_step_is_the_law_at_its_end_however_rough_the_road
     road = np.cumsum(np.random.default_rng(3).normal(scale=2e-3, size=400))
     history = marched_solution(model, 1e-3, road)
     law = SmoothCoulomb(limit=limits, steepness=1e6)
-    # Velocities are right to 1e-13 of the largest met in a step (1 m/s); the law has a slope of up to 2e8 N s/m.
-    assert history.sliding_force[1:, :, 0] == pytest.approx(law.force(history.sliding_velocity())[1:], abs=1e-4)
+    velocity, found = history.sliding_velocity()[1:], history.sliding_force[1:, :, 0]
+    slides = np.abs(velocity) > 0.05
+    assert 0.3 < slides.mean() < 1.0
+    # The law has a slope of up to 0.08 N s/m there: 1e-4 of the jumps of 600 N go into a pair taken for stuck by that.
+    assert found[slides] == pytest.approx(law.force(velocity)[slides], abs=0.05)
+    # What holds a stuck pair is between the forces of two steps, each within the limit.
+    assert (np.abs(found) <= limits + 1e-9).all()
 
 
 def test_the_viscous_law_is_centred():

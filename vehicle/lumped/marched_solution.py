@@ -10,8 +10,8 @@ import numpy.typing as npt
 from scipy.linalg import expm
 
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.laws.law import ForceLaw
 from vehicle.lumped.history import Array, History
+from vehicle.lumped.network import Slide
 from vehicle.lumped.state_space import StateSpace
 
 ITERATIONS = 120
@@ -24,11 +24,17 @@ def marched_solution(
     """March a stack of models with one sliding pair over a road given at every step.
 
     Over a step the linear part is exact for a road that moves on a straight line, and the sliding force is constant:
-    x+ = P x + R0 w + R1 (w+ - w) + S f, v+ = V x+. Friction is taken at the end of the step, f = friction(v+), so that
-    sticking is exact at any step (the constant force is the one that stops the pair); the viscous law is taken at the
-    mean of both velocities. What remains is one monotone equation for v+ in each model, solved to rounding by Newton's
-    method in a bracket. Second order in the step: sliding friction hardly depends on the velocity, and the instant
-    where sticking begins enters the displacement with the square of the step.
+    x+ = P x + R0 w + R1 (w+ - w) + S f, v+ = V x+, with the mean force of the step
+    f = theta friction(v+) + (1 - theta) friction(v) + viscous((v + v+) / 2),  theta = 1 / (1 - exp(-z)) - 1 / z.
+    z = G slope is the stiffness of the friction law over the step, G the velocity that a unit force takes away. A pair
+    that slides has z = 0 and theta = 1/2, the trapezium; a stuck one has theta = 1, the law at the end of the step:
+    sticking is exact at any step (the constant force is the one that stops the pair) and nothing rings. The slope is
+    the larger of those at v and at the velocity found with theta = 1. What remains is one monotone equation for v+ in
+    each model, solved to rounding by Newton's method in a bracket.
+
+    Second order in the step, in motion and in sliding force. The force that holds a stuck pair is known as the mean of
+    each step; at an instant it is the mean of the two steps that meet there. Only the single samples at which sticking
+    begins and ends are first order, for the force jumps or bends inside a step.
 
     Args:
         model: models with exactly one sliding pair; leading axes "..." are the stack.
@@ -43,6 +49,8 @@ def marched_solution(
     Raises:
         ConfigurationError: no or several sliding pairs, a bad step, or a road that does not fit the stack.
         SimulationError: a solution that is not finite.
+
+    Source: exponential fitting of theta: Liniger and Willoughby, SIAM J. Numer. Anal. 7 (1970).
     """
     shape, size = model.models, model.state.shape[-1]
     if len(model.slides) != 1:
@@ -66,20 +74,29 @@ def marched_solution(
         np.zeros((*shape, size)) if initial is None else np.array(np.broadcast_to(initial, (*shape, size)), dtype=float)
     )
     speed = np.einsum("...i,...i->...", row, state) + model.slide_road_rate[..., 0] * rates[0]
-    force = np.zeros(shape)
+    force, stuck = np.zeros(shape), np.zeros(shape)
     kept = range(0, len(driven), every)
     states, forces = np.empty((len(kept), *shape, size)), np.empty((len(kept), *shape))
-    states[0], forces[0] = state, pair.friction.force(speed) + (pair.viscous.force(speed) if pair.viscous else 0.0)
+    states[0], forces[0] = state, _at_once(pair, speed)
     for step in range(1, len(driven)):
         free = (propagate @ state[..., None])[..., 0]
         free += at_start * ahead[step - 1][..., None] + over_step * (ahead[step] - ahead[step - 1])[..., None]
         arriving = np.einsum("...i,...i->...", row, free) + model.slide_road_rate[..., 0] * rates[step - 1]
-        balance = _balance(pair.friction, pair.viscous, gain, arriving, speed)
-        speed = _root(balance, arriving, speed)
+        before, earlier, stuck_earlier = speed, force, stuck
+        steep = gain * pair.friction.slope(before)
+        stuck = 2.0 * _end_share(steep) - 1.0
+        stopped = _root(_balance(pair, gain, arriving, before, 1.0), arriving, before)
+        share = _end_share(np.maximum(steep, gain * pair.friction.slope(stopped)))
+        speed = _root(_balance(pair, gain, arriving, before, share), arriving, before, stopped)
         force = (arriving - speed) / gain
         state = free + by_force * force[..., None]
+        if (step - 1) % every == 0 and step > 1:
+            # Stuck by this share, the pair is held by the mean of the forces of both steps; where the earlier step
+            # still slid, by that of the later one.
+            holding = earlier + (1.0 - 0.5 * stuck_earlier) * (force - earlier)
+            forces[(step - 1) // every] += stuck * (holding - forces[(step - 1) // every])
         if step % every == 0:
-            states[step // every], forces[step // every] = state, force
+            states[step // every], forces[step // every] = state, _at_once(pair, speed)
     if not np.isfinite(states).all():
         raise SimulationError("marched_solution: a state is not finite; take a smaller step or check the parameters")
     at_kept = np.minimum(np.arange(len(kept)) * every, len(rates) - 1)
@@ -115,27 +132,42 @@ def _propagators(model: StateSpace, step: float) -> tuple[Array, Array, Array, A
     )
 
 
+def _at_once(pair: Slide, velocity: Array) -> Array:
+    """Force of both laws at a velocity."""
+    return pair.friction.force(velocity) + (pair.viscous.force(velocity) if pair.viscous else 0.0)
+
+
+def _end_share(steepness: Array) -> Array:
+    """theta(z) = 1 / (1 - exp(-z)) - 1 / z: 1/2 + z/12 for small z, 1 for large ones."""
+    z = np.maximum(steepness, 1e-4)  # below, the difference of two large numbers is rounding, and theta 1/2
+    return np.asarray(-1.0 / np.expm1(-z) - 1.0 / z)
+
+
 def _balance(
-    friction: ForceLaw, viscous: ForceLaw | None, gain: Array, arriving: Array, before: Array
+    pair: Slide, gain: Array, arriving: Array, before: Array, share: Array | float
 ) -> Callable[[Array], tuple[Array, Array]]:
-    """v - v_free + G f(v) and its derivative: zero where the sliding force fits the velocity it leads to."""
+    """v - v_free + G f(v) and its derivative: zero where the mean force of the step fits the velocity it leads to."""
+    known = (1.0 - share) * pair.friction.force(before)
 
     def balance(velocity: Array) -> tuple[Array, Array]:
-        force, slope = friction.force(velocity), friction.slope(velocity)
-        if viscous is not None:
+        force, slope = known + share * pair.friction.force(velocity), share * pair.friction.slope(velocity)
+        if pair.viscous is not None:
             middle = 0.5 * (velocity + before)
-            force, slope = force + viscous.force(middle), slope + 0.5 * viscous.slope(middle)
+            force, slope = force + pair.viscous.force(middle), slope + 0.5 * pair.viscous.slope(middle)
         return velocity - arriving + gain * force, 1.0 + gain * slope
 
     return balance
 
 
-def _root(balance: Callable[[Array], tuple[Array, Array]], arriving: Array, before: Array) -> Array:
+def _root(
+    balance: Callable[[Array], tuple[Array, Array]], arriving: Array, before: Array, guess: Array | None = None
+) -> Array:
     """Root of an increasing function for each model: Newton's method, safeguarded by bisection."""
-    # Every law opposes the velocity it sees, so the root lies between zero, the free and the earlier velocity.
-    reach = np.abs(arriving) + np.abs(before)
+    # Laws oppose the velocities they see: the root of theta = 1 lies between zero, the free and the earlier velocity,
+    # and half the friction of the earlier one moves it by no more than that friction does at all.
+    reach = np.abs(arriving) + np.abs(before) + np.abs(balance(np.zeros_like(before))[0])
     low, high = -reach, reach
-    velocity, last = before, 2.0 * reach
+    velocity, last = before if guess is None else guess, 2.0 * reach
     for _ in range(ITERATIONS):
         value, slope = balance(velocity)
         low, high = np.where(value < 0.0, velocity, low), np.where(value > 0.0, velocity, high)
