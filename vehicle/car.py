@@ -30,12 +30,15 @@ from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.frequency_response import matrix_response
 from vehicle.linear.matrices import CarMatrices, car_matrices
 from vehicle.linear.modes import Mode, car_modes
+from vehicle.linear.stability import require_stable
+from vehicle.linear.step_error import require_accurate_step
 from vehicle.names import AXES, WHEELS, acceleration_channels, channel_units
 from vehicle.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced
 from vehicle.simulation.car_model import CarModel, build_model
+from vehicle.simulation.judgement import require_finite
 from vehicle.simulation.recording import Recording
 from vehicle.simulation.run import Progress, simulate
 
@@ -57,6 +60,8 @@ class Car:
         self.vehicle = load_vehicle() if vehicle is None else vehicle
         self.folder = folder
         self.origin: dict[str, object] = {"file": None, "overrides": []}
+        self.overrides: tuple[str, ...] = ()
+        self._checked: set[str] = set()
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
@@ -76,6 +81,7 @@ class Car:
         changes = list(overrides)
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
+        car.overrides = tuple(changes)
         return car
 
     @cached_property
@@ -97,6 +103,23 @@ class Car:
     def poles(self) -> PoleModel:
         """The same matrices as scalar equations of the poles: what the reduced engine marches."""
         return pole_model(self.matrices)
+
+    def check(self, engine: str = "mujoco") -> None:
+        """Refuse a car that cannot be run, before anything is: for each engine once.
+
+        Args:
+            engine: as of `run`; the time step is asked of "mujoco" alone.
+
+        Raises:
+            ConfigurationError: no such car can be, a motion of it grows by itself, or the step does not answer it.
+        """
+        if engine in self._checked:
+            return
+        if engine == "mujoco":
+            require_accurate_step(self.model, self.matrices)
+        else:
+            require_stable(self.model, self.matrices, self.poles.poles)
+        self._checked.add(engine)
 
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
@@ -129,7 +152,8 @@ class Car:
             The run; `run.recording.statistics` says which engine made it.
 
         Raises:
-            ConfigurationError: the engine or a channel does not exist.
+            ConfigurationError: the engine or a channel does not exist, a motion of the car grows by itself, or the
+                time step of MuJoCo does not answer it.
             MissingPartError: the reduced engine was asked for and numba is not installed.
             SimulationError: the run could not be carried through.
         """
@@ -139,6 +163,7 @@ class Car:
             if name not in channel_units():
                 raise ConfigurationError(f"no channel {name!r}; there are {', '.join(channel_units())}")
         if engine == "reduced" or (engine == "auto" and has_compiler()):
+            self.check("reduced")
             recording = simulate_reduced(
                 self.poles,
                 signal,
@@ -147,9 +172,12 @@ class Car:
                 tyre_load=self.model.static.tyre_load,
                 channels=channels,
             )
+            require_finite(recording)
             if engine == "reduced" or recording.statistics.within_validity:
                 return Run(car=self, signal=signal, recording=recording)
+        self.check("mujoco")
         recording = simulate(self.model, signal, progress=progress)
+        require_finite(recording)
         if channels is not None:
             recording = recording.only(channels)
         return Run(car=self, signal=signal, recording=recording)

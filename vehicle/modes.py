@@ -43,6 +43,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     """Modes of the car and of its free body, in plain numbers and texts."""
     body = car.model.superelement
     trimmed = car.trimmed_body
+    found = car.modes(damper)
     return {
         "damper": damper,
         "inertia_variant": car.vehicle.body.inertia_variant,
@@ -53,8 +54,9 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
                 "description": _named(mode.description, body.mode_names),
                 "energy": mode.energy,
             }
-            for mode in car.modes(damper)
+            for mode in found
         ],
+        "growing": [mode.description.removeprefix("grows: ") for mode in found if mode.grows],
         "free_body": {
             "frequency_hz": [float(value) for value in trimmed.frequencies * car.vehicle.body.frequency_scale],
             "description": list(trimmed.mode_names),
@@ -84,6 +86,8 @@ def report(found: dict[str, Any]) -> str:
         lines.append(
             f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<52} {text}"
         )
+    if found["growing"]:
+        lines.append(f"this car does not stand: {', '.join(found['growing'])} grows by itself (negative damping above)")
     free = found["free_body"]
     lines.append("free trimmed body")
     for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):

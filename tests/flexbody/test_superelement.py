@@ -91,7 +91,7 @@ BAD = {
     "negative mass": (at("node_mass", 3, -1.0), "node_mass of 'corner_3': -1 kg; masses must not be negative"),
     "negative frequency": (at("frequencies", 0, -19.0), "frequencies[0]: -19 Hz; elastic modes have positive"),
     "unsorted": (swap_modes, "Sort the modes by frequency"),
-    "damping in percent": (at("damping_ratio", 2, 2.0), "damping_ratio[2]: 2; allowed is 0 to below 1"),
+    "damping in percent": (at("damping_ratio", 2, 2.0), "damping_ratio[2]: 2; allowed is 0 to 0.3"),
     "positions in mm": (scaled("positions", 1e3), "the body is 2000 m long, at most 30 m; looks like mm"),
     "positions in km": (scaled("positions", 1e-3), "the body is 0.002 m long"),
     "shapes in mm": (scaled("shapes", 1e3), "modal masses are 1e+06 instead of 1; looks like mm"),

@@ -7,10 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.errors import ConfigurationError
 from vehicle.flexbody.inertia import about_cog, inertia_tensor, nearest_physical
 from vehicle.parameters.body import TrimmedBody
 
 Vector = npt.NDArray[np.float64]
+
+LARGEST_REPAIR = 0.02
+"""Largest change of a component of the tensor over its largest principal moment: moments of a body are measured, by
+swinging it, within 1 to 2 %, so a tensor this far beside a physical one may be that of a real body. The published one
+needs 0.018."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -22,6 +28,7 @@ class RigidBody:
     inertia: Vector
     report: str
     """what had to be repaired in the tensor, in words"""
+    repaired: bool
 
     @property
     def full_inertia(self) -> Vector:
@@ -38,7 +45,32 @@ def rigid_body(body: TrimmedBody) -> RigidBody:
 
     Returns:
         Mass properties that MuJoCo accepts, and a sentence about the repair.
+
+    Raises:
+        ConfigurationError: the tensor is farther from a physical one than `LARGEST_REPAIR`.
     """
     origin = inertia_tensor(ixx=body.ixx, iyy=body.iyy, izz=body.izz, ixy=body.ixy, izx=body.izx, iyz=body.iyz)
-    physical = nearest_physical(about_cog(origin, body.mass, body.cog))
-    return RigidBody(mass=body.mass, cog=np.array(body.cog), inertia=physical.inertia, report=physical.describe())
+    given = about_cog(origin, body.mass, body.cog)
+    low, middle, high = (float(moment) for moment in np.linalg.eigvalsh(given))
+    # Where the smallest moment exceeds the sum of the others, all are negative and no tensor of a body is near.
+    near = middle + high > low
+    change = float(np.abs(nearest_physical(given).change).max()) if near else np.inf
+    if not change <= LARGEST_REPAIR * high:
+        raise ConfigurationError(
+            f"body.ixx_{body.inertia_variant} ({body.ixx:g}), body.iyy ({body.iyy:g}), body.izz ({body.izz:g}), "
+            f"body.ixy ({body.ixy:g}), body.izx ({body.izx:g}), body.iyz ({body.iyz:g} kg m2): with body.mass "
+            f"({body.mass:g} kg) at body.cog {list(body.cog)} the principal moments about the centre of gravity are "
+            f"{low:.4g}, {middle:.4g} and {high:.4g} kg m2. Of a real body none is negative, and the two smaller add "
+            f"up to the largest at least ({low + middle:.4g} >= {high:.4g}?). The nearest physical tensor differs by "
+            f"{change:.3g} kg m2, allowed are {LARGEST_REPAIR * high:.3g} ({LARGEST_REPAIR:.0%} of the largest); "
+            "check signs and digits; the values are integrals about the origin of the vehicle frame, so they change "
+            "with mass and centre of gravity"
+        )
+    physical = nearest_physical(given)
+    return RigidBody(
+        mass=body.mass,
+        cog=np.array(body.cog),
+        inertia=physical.inertia,
+        report=physical.describe(),
+        repaired=physical.repaired,
+    )

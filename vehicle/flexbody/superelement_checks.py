@@ -16,6 +16,7 @@ NORMALISATION = 1e-6
 """largest deviation of phi^T M phi from the identity, and of the modes' rigid content from zero [1]"""
 _LARGEST_BODY = 30.0  # m; a road vehicle in millimetres is thousands
 _SMALLEST_BODY = 0.05  # m; a road vehicle in kilometres is below
+_HIGHEST_DAMPING = 0.3  # trimmed bodies have 0.01 to 0.08; ten times that is no vibration any more
 _HIGHEST_FIRST_MODE = 90.0  # Hz; trimmed bodies begin between 15 and 60 Hz, which is 94 rad/s and more
 
 
@@ -100,13 +101,13 @@ def _check_values(body: Superelement) -> None:
             f"frequencies: mode {i + 2} ({body.frequencies[i + 1]:g} Hz) is below mode {i + 1} "
             f"({body.frequencies[i]:g} Hz). Sort the modes by frequency, their shapes and damping with them.",
         )
-    bad = np.flatnonzero((body.damping_ratio < 0.0) | (body.damping_ratio >= 1.0))
+    bad = np.flatnonzero((body.damping_ratio < 0.0) | (body.damping_ratio > _HIGHEST_DAMPING))
     if bad.size:
         i = int(bad[0])
         _refuse(
             body,
-            f"damping_ratio[{i}]: {body.damping_ratio[i]:g}; allowed is 0 to below 1. Give the share of critical "
-            "damping, 0.02 for 2 %.",
+            f"damping_ratio[{i}]: {body.damping_ratio[i]:g}; allowed is 0 to {_HIGHEST_DAMPING:g}. Give the share of "
+            "critical damping, 0.02 for 2 %.",
         )
 
 

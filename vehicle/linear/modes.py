@@ -22,14 +22,30 @@ class Mode:
         damping_ratio: -Re(s) / |s| [-].
         shape: complex displacement of the velocity coordinates; (n,).
         energy: share of the kinetic energy by group of parts; sums to 1.
+        growth: Re(s) [1/s].
+        grows: whether the motion grows by itself, beyond round-off.
         description: what moves.
     """
 
     frequency: float
     damping_ratio: float
+    growth: float
+    grows: bool
     shape: npt.NDArray[np.complex128]
     energy: dict[str, float]
     description: str
+
+
+GROWTH_FLOOR = 1e-4
+"""Growth [1/s] below which a pole counts as neutral: e-fold in three hours, far beyond any record."""
+
+ROUND_OFF = 1e-6
+"""Growth over |s| below which it is round-off of the matrices, whose differences are good to 1e-8."""
+
+
+def grows(poles: npt.NDArray[np.complex128]) -> npt.NDArray[np.bool_]:
+    """Which poles [rad/s] grow beyond round-off."""
+    return np.asarray(poles.real > GROWTH_FLOOR + ROUND_OFF * np.abs(poles))
 
 
 def free_basis(matrices: CarMatrices, *, stuck: bool) -> Vector:
@@ -77,24 +93,28 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> l
         highest: highest natural frequency [Hz].
 
     Returns:
-        Modes sorted by natural frequency; overdamped motions (real poles) are left out.
+        Modes sorted by natural frequency; overdamped motions (real poles) are left out. What grows is listed at any
+        frequency, real poles too, with "grows: " before its description.
     """
     matrix, basis = state_matrix(matrices, stuck=stuck)
     poles, vectors = np.linalg.eig(matrix)
     found = []
     size = basis.shape[1]
-    for index in np.flatnonzero(poles.imag > 1e-6):
+    growing = grows(poles)
+    for index in np.flatnonzero((poles.imag > 1e-6) | (growing & (poles.imag >= 0.0))):
         frequency = float(abs(poles[index])) / (2.0 * np.pi)
-        if frequency <= highest:
+        if frequency <= highest or growing[index]:
             shape = basis @ vectors[:size, index]
             energy = _energy(matrices, shape)
             found.append(
                 Mode(
                     frequency=frequency,
                     damping_ratio=float(-poles[index].real / abs(poles[index])),
+                    growth=float(poles[index].real),
+                    grows=bool(growing[index]),
                     shape=shape,
                     energy=energy,
-                    description=_describe(matrices, shape, energy),
+                    description=("grows: " if growing[index] else "") + _describe(matrices, shape, energy),
                 )
             )
     return sorted(found, key=lambda mode: mode.frequency)

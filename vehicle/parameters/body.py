@@ -12,7 +12,14 @@ from vehicle.parameters.quantity import quantity, validate
 class TrimmedBody:
     """Mass properties about the origin of the vehicle frame; products as integrals (Izx > 0 because m x z is)."""
 
-    mass: float = quantity("kg", "mass of the trimmed body", above=0.0)
+    mass: float = quantity(
+        "kg",
+        "mass of the trimmed body",
+        above=0.0,
+        at_least=100.0,
+        at_most=5000.0,
+        why="without engine and axles the body of a micro car has 200 kg, that of a loaded van 3000 kg",
+    )
     cog: Point = quantity("m", "centre of gravity", length=3)
     inertia_variant: str = quantity("-", "which Ixx is used", choices=("published", "improved"))
     ixx_published: float = quantity("kg m2", "integral of y2 + z2, as published", above=0.0)
@@ -25,8 +32,20 @@ class TrimmedBody:
     superelement: str = quantity("-", "modal model: file name beside the vehicle file, or of the package")
     flexible: bool = True
     attachment_flexibility: bool = True
-    frequency_scale: float = quantity("-", "factor on all natural frequencies of the flexible modes", above=0.0)
-    spring_seat_mass: float = quantity("kg", "mass fixed to the body at each strut top", at_least=0.0)
+    frequency_scale: float = quantity(
+        "-",
+        "factor on all natural frequencies of the flexible modes",
+        above=0.0,
+        at_most=20.0,
+        why="a body 400 times as stiff is rigid: flexible = false",
+    )
+    spring_seat_mass: float = quantity(
+        "kg",
+        "mass fixed to the body at each strut top",
+        at_least=0.0,
+        at_most=50.0,
+        why="half a main spring, which has 1 to 10 kg",
+    )
 
     def __post_init__(self) -> None:
         validate(self)

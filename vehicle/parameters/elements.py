@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.quantity import quantity, validate
+
+STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
+STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
+MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on a shaker move by 1e-6 to a few m/s"}
+RUBBED: dict[str, Any] = {
+    "at_most": 1e4,
+    "why": "a seal rubs with 50 to 500 N; the weight on a wheel is a few thousand",
+}
+TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bushing:
     """Linear bushing: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle."""
 
-    stiffness: Point = quantity("N/m", "Kx, Ky, Kz", at_least=0.0, length=3)
-    damping: Point = quantity("N s/m", "Dx, Dy, Dz", at_least=0.0, length=3)
-    rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0)
+    stiffness: Point = quantity("N/m", "Kx, Ky, Kz", at_least=0.0, length=3, **STIFFEST)
+    damping: Point = quantity("N s/m", "Dx, Dy, Dz", at_least=0.0, length=3, **STRONGEST)
+    rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
 
     def __post_init__(self) -> None:
         validate(self)
@@ -25,12 +35,14 @@ class Bushing:
 class Hydromount:
     """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s."""
 
-    stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3)
-    damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3)
-    rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0)
-    maxwell_stiffness: float = quantity("N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0)
+    stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
+    damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3, **STRONGEST)
+    rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
+    maxwell_stiffness: float = quantity(
+        "N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0, **STIFFEST
+    )
     maxwell_damping: float = quantity(
-        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0
+        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, **STRONGEST
     )
 
     def __post_init__(self) -> None:
@@ -55,7 +67,9 @@ class Bushings:
 class MainSpring:
     """Linear spring between the lower spring seat and the strut top, along its own line."""
 
-    stiffness: float = quantity("N/m", "stiffness", above=0.0)
+    stiffness: float = quantity(
+        "N/m", "stiffness", above=0.0, at_least=1e3, at_most=1e6, why="1e4 N/m in a micro car, 2e5 N/m in a van"
+    )
 
     def __post_init__(self) -> None:
         validate(self)
@@ -65,7 +79,9 @@ class MainSpring:
 class Stabilizer:
     """Torsion spring between the two halves of the stabilizer bar."""
 
-    torsional_stiffness: float = quantity("N m/rad", "torque over relative angle of the halves", at_least=0.0)
+    torsional_stiffness: float = quantity(
+        "N m/rad", "torque over relative angle of the halves", at_least=0.0, **TWISTED
+    )
 
     def __post_init__(self) -> None:
         validate(self)
@@ -78,17 +94,28 @@ class Damper:
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
     """
 
-    viscous: float = quantity("N s/m", "D, damping constant", at_least=0.0)
+    viscous: float = quantity("N s/m", "D, damping constant", at_least=0.0, **STRONGEST)
     viscous_law: str = quantity("-", "law of the damping", choices=("linear", "degressive"))
-    degressive_viscous: float = quantity("N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0)
-    degressive_velocity: float = quantity("m/s", "Vdeg, where the degressive law turns flatter", above=0.0)
+    degressive_viscous: float = quantity(
+        "N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0, **STRONGEST
+    )
+    degressive_velocity: float = quantity("m/s", "Vdeg, where the degressive law turns flatter", above=0.0, **MOVING)
     friction_law: str = quantity("-", "friction law", choices=("coulomb", "stribeck"))
-    coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0)
-    smoothing: float = quantity("s/m", "eps, slope of the smooth friction law", above=0.0)
-    stribeck_friction: float = quantity("N", "Fs, friction at rest of the Stribeck law", at_least=0.0)
-    stribeck_velocity: float = quantity("m/s", "vs, critical velocity of the Stribeck law", above=0.0)
-    stribeck_exponent: float = quantity("-", "delta, exponent of the Stribeck law", above=0.0)
-    slip_velocity: float = quantity("m/s", "velocity above which the damper counts as slipping", above=0.0)
+    coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
+    smoothing: float = quantity(
+        "s/m",
+        "eps, slope of the smooth friction law",
+        above=0.0,
+        at_least=10.0,
+        at_most=1e8,
+        why="friction is full at a few times 1/eps; beyond 1e9 the integration drowns in round-off",
+    )
+    stribeck_friction: float = quantity("N", "Fs, friction at rest of the Stribeck law", at_least=0.0, **RUBBED)
+    stribeck_velocity: float = quantity("m/s", "vs, critical velocity of the Stribeck law", above=0.0, **MOVING)
+    stribeck_exponent: float = quantity(
+        "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual"
+    )
+    slip_velocity: float = quantity("m/s", "velocity above which the damper counts as slipping", above=0.0, **MOVING)
 
     def __post_init__(self) -> None:
         validate(self)

@@ -19,6 +19,7 @@ def quantity(
     above: float | None = None,
     at_least: float | None = None,
     at_most: float | None = None,
+    why: str = "",
     length: int | None = None,
     choices: tuple[str, ...] | None = None,
     default: Any = dataclasses.MISSING,
@@ -31,6 +32,7 @@ def quantity(
         above: the value (each component) must be greater than this.
         at_least: the value (each component) must not be less than this.
         at_most: the value (each component) must not exceed this.
+        why: reason of the range, shown where it is left.
         length: number of components of a vector; None for a scalar.
         choices: allowed words of a text field.
         default: value where a file leaves the field out; by default it must be given.
@@ -44,6 +46,7 @@ def quantity(
         "above": above,
         "at_least": at_least,
         "at_most": at_most,
+        "why": why,
         "length": length,
         "choices": choices,
     }
@@ -99,6 +102,7 @@ def _check(path: str, value: Any, metadata: Any) -> None:
 def _check_number(path: str, number: Any, metadata: Any) -> None:
     """Check one number against the range of its field."""
     unit = metadata["unit"]
+    why = f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""  # a negative mass needs no reason
     if isinstance(number, bool) or not isinstance(number, int | float):
         raise ConfigurationError(f"{path}: found {number!r}, needed is a number [{unit}]")
     if not math.isfinite(number):
@@ -106,6 +110,6 @@ def _check_number(path: str, number: Any, metadata: Any) -> None:
     if metadata["above"] is not None and not number > metadata["above"]:
         raise ConfigurationError(f"{path}: found {number!r} {unit}, must be greater than {metadata['above']!r}")
     if metadata["at_least"] is not None and number < metadata["at_least"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {metadata['at_least']!r}")
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {metadata['at_least']!r}{why}")
     if metadata["at_most"] is not None and number > metadata["at_most"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {metadata['at_most']!r}")
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {metadata['at_most']!r}{why}")

@@ -12,6 +12,7 @@ from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.elements import Bushings, Damper, MainSpring, Stabilizer
 from vehicle.parameters.hardpoints import Hardpoints
 from vehicle.parameters.parts import Part, require_parts
+from vehicle.parameters.plausible import require_plausible
 from vehicle.parameters.quantity import quantity, validate
 from vehicle.parameters.toml_file import build, override, read_table
 
@@ -35,7 +36,9 @@ class Vehicle:
     """Everything that defines a car on its rig; SI units, frame of the hardpoints."""
 
     name: str = quantity("-", "name of the car")
-    gravity: float = quantity("m/s2", "gravity", at_least=0.0)
+    gravity: float = quantity(
+        "m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0 leaves the weight out"
+    )
     hardpoints: Hardpoints
     body: TrimmedBody
     parts: Mapping[str, Part]
@@ -48,6 +51,7 @@ class Vehicle:
     def __post_init__(self) -> None:
         validate(self)
         require_parts(self.parts, self.hardpoints)
+        require_plausible(self)
 
 
 def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Vehicle:

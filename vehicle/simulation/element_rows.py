@@ -47,15 +47,21 @@ def prepare_model(model: mujoco.MjModel) -> None:
     Args:
         model: compiled car, as generated; changed in place, once.
     """
+    model.dof_armature += joint_weights(model)
+    # Bodies with a single slide take their mass from constants that are derived here.
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
+def joint_weights(model: mujoco.MjModel) -> Vector:
+    """Weight B h/2 + K h2/12 [kg or kg m2] of the springs and dampers inside joints, per velocity coordinate; (nv,)."""
     step = model.opt.timestep
+    weights = np.zeros(model.nv)
     for joint in range(model.njnt):
         dof = model.jnt_dofadr[joint]
         damping = float(np.ravel(model.dof_damping[dof])[0])
         stiffness = float(np.ravel(model.jnt_stiffness[joint])[0])
-        if damping > 0.0 or stiffness > 0.0:
-            model.dof_armature[dof] += damping * step / 2 + FOURTH_ORDER * stiffness * step**2
-    # Bodies with a single slide take their mass from constants that are derived here.
-    mujoco.mj_setConst(model, mujoco.MjData(model))
+        weights[dof] = damping * step / 2 + FOURTH_ORDER * stiffness * step**2
+    return weights
 
 
 class ElementRows:

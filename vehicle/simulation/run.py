@@ -16,6 +16,7 @@ from vehicle.names import WHEELS
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.element_rows import ElementRows, prepare_model
+from vehicle.simulation.judgement import judge_energy
 from vehicle.simulation.native import native_callback
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recorder import CHUNK, Recorder
@@ -54,7 +55,8 @@ def simulate(
     Raises:
         ConfigurationError: the recording rate is no whole fraction of the step rate.
         MissingPartError: `native` is True and the compiled form cannot be had; the message says why.
-        SimulationError: the state is no longer finite, or MuJoCo warned; the message says when and where.
+        SimulationError: the state is no longer finite, MuJoCo warned, or the energy balance does not close; the
+            message says when and where.
     """
     every = record_every(car)
     model = car.spec.compile()
@@ -97,14 +99,15 @@ def simulate(
     warnings = _warnings(data)
     if warnings:
         raise SimulationError(f"MuJoCo warned during the run: {'; '.join(warnings)}; no result of it may be used")
+    energies = recorder.energies()
     statistics = Statistics(
         engine="mujoco",
         callback="python" if callback is None else "native",
         timestep=step,
         steps=count,
         wall_time=wall,
-        warnings=recorder.warnings(),
-        energies=recorder.energies(),
+        warnings=(*recorder.warnings(), *judge_energy(energies, 1.0 / (every * step))),
+        energies=energies,
         notices=notices,
     )
     return recorder.recording(signal, statistics)
@@ -175,7 +178,8 @@ def _check_state(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder,
     pose_time, pose = recorder.last_pose(good)
     raise SimulationError(
         f"the state is no longer finite at t = {(recorder.done + good) * interval:.4f} s (joint {joint}); "
-        "reduce solver.timestep or check the parameters that you changed",
+        "the step answers the car at rest, so it is this motion that it cannot hold: check the input, and the "
+        "parameters that you changed",
         state={"time": np.array(pose_time), "qpos": pose},
     )
 

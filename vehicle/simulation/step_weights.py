@@ -23,11 +23,6 @@ late, like a mass of (theta - 1/2) B h beside the row: nothing against the masse
 (0.5 kg), but not at stiffer branches, which the average calms anyway."""
 
 
-def explicit_share(average: Vector | float) -> Vector:
-    """Weight of a stiffness in the limit of the step: 1 with the fourth-order average, 0 with the unconditional one."""
-    return np.asarray((UNCONDITIONAL - average) / (UNCONDITIONAL - FOURTH_ORDER))
-
-
 def average(phase: Vector) -> Vector:
     """Weight beta with which a stiff row is averaged over three steps, from (w h)2 of the row alone.
 

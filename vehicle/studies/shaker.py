@@ -19,6 +19,7 @@ from vehicle.errors import SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES, WHEELS, acceleration_channels
 from vehicle.output_folder import output_folder, write_json, write_whole
+from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text
 from vehicle.rendering.plots import plot_frf, plot_time
 from vehicle.studies.tables import write_frf, write_time_csv, write_time_npz
@@ -65,8 +66,8 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
     Raises:
         VehicleError: whatever goes wrong; nothing half-written is left behind.
     """
-    # A car that cannot be built is refused before anything is written.
-    _ = car.model
+    # A car that cannot be run is refused before anything is written.
+    car.check(options.engine)
     with output_folder(options.output, force=options.force, protect=options.input_file) as folder:
         try:
             run = car.run(signal, progress, engine=options.engine)
@@ -129,15 +130,23 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
     """
     statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
     energies = statistics.energies
-    notices = [*run.signal.notices, *response.reasons, *_unsettled(run), *statistics.notices]
-    inertia = rigid_body(run.car.vehicle.body).report
+    body = rigid_body(run.car.vehicle.body)
+    idle = idle_parameters(run.car.vehicle, run.car.overrides)
+    notices = [
+        *([body.report] if body.repaired else []),
+        *idle,
+        *run.signal.notices,
+        *response.reasons,
+        *_unsettled(run),
+        *statistics.notices,
+    ]
     return {
         "frame": FRAME,
         "vehicle": {
             "name": run.car.vehicle.name,
             **run.car.origin,
             "inertia_variant": run.car.vehicle.body.inertia_variant,
-            "inertia": inertia,
+            "inertia": body.report,
             "superelement": run.car.model.superelement.provenance,
         },
         "input": {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time as clock
 from dataclasses import dataclass, field
@@ -67,4 +68,8 @@ def carry_out(case: Case, measure: Measure, program: str) -> Result:
         values = {name: float(value) for name, value in measure(run).items()}
     except (VehicleError, ArithmeticError, ValueError, MemoryError) as error:
         return Result(reason=f"{type(error).__name__}: {error}", seconds=clock.perf_counter() - started)
+    # NaN is a number that does not exist, as the first slip of a damper that never slips.
+    infinite = [name for name, value in values.items() if math.isinf(value)]
+    if infinite:
+        return Result(reason=f"{', '.join(infinite)}: infinite", seconds=clock.perf_counter() - started)
     return Result(values=values, engine=run.recording.statistics.engine, seconds=clock.perf_counter() - started)

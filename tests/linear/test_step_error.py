@@ -1,0 +1,96 @@
+"""Item 51: a step that would not answer the car is refused before the run, with the part and the step that does."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError
+from vehicle.linear.step_error import _Judge, require_accurate_step
+
+MOUNT = "bushings.suspension_mount.stiffness=[3e6, 3e6, {}]"
+
+REFUSED = {
+    "a stiff mount": (
+        [MOUNT.format(3e7)],
+        r"at which the ringing of damper_top_fr_acc_z after the damper breaks away is \+3\d % off, allowed are 10 % "
+        r"\(\d+ Hz: damper_top_fr moves, held by bushings\.suspension_mount\.stiffness\.z \(3e\+07\)\); "
+        r"give solver\.timestep=0\.0005, or another value of that parameter where it is a mistake",
+    ),
+    "a stiffer one": (
+        [MOUNT.format(1e9)],
+        r".* is \+4\d % off, .*stiffness\.z \(1e\+09\)\); give solver\.timestep=0\.0005",
+    ),
+    "a torque arm of steel": (
+        ["bushings.torque_arm_engine.stiffness=[1e8, 1.3e5, 6.5e5]"],
+        r"at which the integration is unstable \(\d+ Hz: torque_arm moves, held by "
+        r"bushings\.torque_arm_engine\.stiffness\.x \(1e\+08\)\); give solver\.timestep=0\.000125",
+    ),
+    "a step of 2 ms": (
+        ["solver.timestep=0.002", "solver.record_rate=500"],
+        r"at which the integration is unstable .*; give solver\.timestep=0\.001,",
+    ),
+    "a tyre of steel": (
+        ["bushings.tyre.stiffness=[1.5e5, 1.5e5, 1e10]"],
+        r"at which .*held by bushings\.tyre\.stiffness\.z \(1e\+10\)\); ",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_the_part_and_the_step_are_named(case):
+    settings, expected = REFUSED[case]
+    car = Car.load(None, settings)
+    with pytest.raises(ConfigurationError) as caught:
+        require_accurate_step(car.model, car.matrices)
+    step = f"{car.vehicle.solver.timestep:g}"
+    assert re.match(rf"solver\.timestep: found {step} s, {expected}", str(caught.value)), str(caught.value)
+    advice = re.search(r"give (solver\.timestep=[0-9.e-]+)", str(caught.value))
+    if advice:
+        better = Car.load(None, [*settings, advice.group(1).rstrip(".")])
+        require_accurate_step(better.model, better.matrices)
+
+
+def test_the_reduced_engine_does_not_depend_on_the_step(high_piece):
+    coarse, fine = (
+        Car.load(None, [MOUNT.format(3e7), f"solver.timestep={step}"]).run(high_piece, engine="reduced")
+        for step in (0.001, 0.0001)
+    )
+    np.testing.assert_array_equal(coarse["damper_top_fr_acc_z"], fine["damper_top_fr_acc_z"])
+
+
+def test_a_run_is_refused_before_it_begins(high_piece):
+    begun: list[float] = []
+    with pytest.raises(ConfigurationError, match=r"^solver\.timestep: found 0\.001 s, .*stiffness\.z"):
+        Car.load(None, [MOUNT.format(3e7)]).run(high_piece, begun.append)
+    assert not begun
+
+
+@pytest.mark.parametrize("mount", [7e5, 2e6])
+def test_what_is_accepted_is_accurate(mount, high_piece):
+    """And the numbers beside LOCAL_LIMIT: the RMS of the damper top is far better than its ringing."""
+    coarse, fine = (
+        Car.load(None, [MOUNT.format(mount), f"solver.timestep={step}"]).run(high_piece) for step in (1e-3, 1.25e-4)
+    )
+    for channel in ("damper_top_fr_acc_z", "damper_top_fr_acc_y", "knuckle_fr_acc_z", "seat_rail_acc_z"):
+        ratio = np.sqrt(np.mean(coarse[channel] ** 2) / np.mean(fine[channel] ** 2))
+        assert ratio == pytest.approx(1.0, abs=0.03), channel
+
+
+def test_every_setting_of_the_studies_is_accepted_at_the_default_step():
+    ends = [
+        *(f"bushings.suspension_mount.stiffness.z={value}" for value in (3.5e5, 14e5)),
+        "bushings.suspension_mount.damping.z=2000",
+        *(f"damper.viscous={value}" for value in (1125, 3375)),
+        "damper.viscous_law=degressive",
+        *(f"body.frequency_scale={value}" for value in (0.8, 1.25)),
+        "body.flexible=false",
+        "body.inertia_variant=improved",
+        "bushings.hydromount.stiffness.z=6e5",
+    ]
+    for setting in ends:
+        car = Car.load(None, [setting])
+        assert _Judge(car.model, car.matrices).worst(1e-3) is None, setting

@@ -1,0 +1,126 @@
+"""The linear part of one step of the time integration as a matrix: what a step makes of every pole of the car.
+
+The rows answer with f = f0 - D J a (`vehicle.simulation.element_rows`), and MuJoCo's Euler steps with it. In the
+motions u = N y that the ideal joints allow, with v the velocity at the middle of the past step, F the branch forces,
+
+    (M + J' D J) a = -(K y + C v + j' f2) + load,   v+ = v + h a,   y+ = y + h v+,
+    p = e F + g j v,   f2 = p + beta ((e - 2) p + g j v + F),   F+ = p + s j a,
+
+e, g, s being decay, gain and slope of a branch over the step. An eigenvalue z of this map stands for the pole
+ln(z)/h that the run has, where the matrices have s.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.linear.matrices import CarMatrices
+from vehicle.simulation.callbacks import installed
+from vehicle.simulation.car_model import CarModel
+from vehicle.simulation.element_rows import ElementRows, joint_weights
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class StepMap:
+    """x+ = matrix x + load f with x = (y, v, F).
+
+    Attributes:
+        matrix: (2 m + b, 2 m + b).
+        load: columns of the nonlinear forces of the two dampers; (2 m + b, 2).
+    """
+
+    matrix: Vector
+    load: Vector
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class StepRows:
+    """What the rows of a car add to a step, at one length of it.
+
+    Attributes:
+        timestep: h [s].
+        mass: M + J' D J without the dampers; (n, n).
+        dampers: weight D of the viscous part of the dampers [kg]; (2,).
+        decay, gain, slope, average: e, g, s and beta of the branches; (b,).
+    """
+
+    timestep: float
+    mass: Vector
+    dampers: Vector
+    decay: Vector
+    gain: Vector
+    slope: Vector
+    average: Vector
+
+
+def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows:
+    """Weights of the rows of a car for a step [s]; `matrices` are those of the same car."""
+    model = copy.copy(car.model)
+    model.opt.timestep = timestep
+    rows = ElementRows(model, car.static.preload)
+    data = mujoco.MjData(model)
+    with installed(rows):
+        mujoco.mj_forward(model, data)
+    e = rows.elements
+    jacobian = data.efc_J.reshape(e.row_count, model.nv)
+    weights = np.zeros(e.row_count)
+    weights[e.rows] = rows.impedance
+    weights[e.springs] = rows.spring_impedance
+    present = e.branch_stiffness > 0.0
+    return StepRows(
+        timestep=timestep,
+        mass=matrices.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model)),
+        dampers=rows.damper_impedance,
+        decay=rows.decay[present],
+        gain=rows.branch_gain[present],
+        slope=rows.branch_slope[present],
+        average=rows.branch_average[present],
+    )
+
+
+def step_map(rows: StepRows, matrices: CarMatrices, basis: Vector, *, stuck: bool) -> StepMap:
+    """Map of one step of a car.
+
+    Args:
+        rows: of the step.
+        matrices: of the car.
+        basis: N of `free_basis`; (n, m).
+        stuck: True with the dampers locked, False with their viscous part alone.
+
+    Returns:
+        The map.
+    """
+    h, mass, damping = rows.timestep, rows.mass.copy(), matrices.damping.copy()
+    if not stuck:
+        mass[matrices.dampers, matrices.dampers] += rows.dampers
+        damping[matrices.dampers, matrices.dampers] += matrices.viscous
+    branch = matrices.branch_rows @ basis
+    e, beta = rows.decay, rows.average
+    force, rate = e + beta * ((e - 2.0) * e + 1.0), (1.0 + beta * (e - 1.0)) * rows.gain
+    forces = np.hstack(
+        [
+            -basis.T @ matrices.stiffness @ basis,
+            -basis.T @ damping @ basis - branch.T @ (rate[:, None] * branch),
+            -branch.T * force,
+            basis[matrices.dampers].T,
+        ]
+    )
+    acceleration = np.linalg.solve(basis.T @ mass @ basis, forces)
+    size, count = basis.shape[1], len(branch)
+    v, f = slice(size, 2 * size), slice(2 * size, 2 * size + count)
+    whole = np.zeros((2 * size + count, 2 * size + count + 2))
+    whole[v] = h * acceleration
+    whole[v, v] += np.eye(size)
+    whole[:size] = h * whole[v]
+    whole[:size, :size] += np.eye(size)
+    whole[f] = rows.slope[:, None] * (branch @ acceleration)
+    whole[f, v] += rows.gain[:, None] * branch
+    whole[f, f] += np.diag(e)
+    return StepMap(matrix=whole[:, :-2], load=whole[:, -2:])

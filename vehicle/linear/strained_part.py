@@ -1,0 +1,71 @@
+"""Which part moves most in a mode of the car, and which parameter holds it: the words of a refusal."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError
+from vehicle.linear.matrices import CarMatrices
+from vehicle.names import AXES
+from vehicle.parameters.number_paths import value_of
+from vehicle.simulation.callbacks import installed
+from vehicle.simulation.car_model import CarModel
+from vehicle.simulation.element_rows import ElementRows
+from vehicle.simulation.elements import numeric
+from vehicle.simulation.standing import element_parameter
+from vehicle.simulation.static_trim import joint_spring_stiffness
+
+Complex = npt.NDArray[np.complex128]
+
+
+def moving_part(matrices: CarMatrices, shape: Complex) -> str:
+    """Name of the rigid part, or "flexible body", with the largest kinetic energy in a shape (n,)."""
+    energy = {
+        body: float(np.real(np.vdot(rows @ shape, matrices.body_masses[body] @ (rows @ shape))))
+        for body, rows in matrices.body_rows.items()
+    }
+    energy["flexible body"] = float(np.sum(np.abs(shape[matrices.modal]) ** 2))
+    return max(energy, key=lambda name: energy[name])
+
+
+def holding_parameter(car: CarModel, matrices: CarMatrices, pole: complex, shape: Complex) -> str:
+    """Path and value of the parameter whose element works most in a mode, K |r|2 or |s| B |r|2.
+
+    Args:
+        car, matrices: the car.
+        pole: s [rad/s].
+        shape: displacements; (n,).
+
+    Returns:
+        As "bushings.suspension_mount.stiffness.z (3e+07)".
+    """
+    rows = ElementRows(car.model, car.static.preload)
+    data = mujoco.MjData(car.model)
+    with installed(rows):
+        mujoco.mj_forward(car.model, data)
+    e = rows.elements
+    jacobian = data.efc_J.reshape(e.row_count, car.model.nv)
+    square = np.abs(jacobian @ shape) ** 2
+    speed = abs(pole)
+    work: dict[str, float] = {}
+    for name, own, k, b, k2 in zip(e.names, e.rows, e.stiffness, e.damping, e.branch_stiffness, strict=True):
+        for axis, r, stiffness, drag in zip(AXES, own, k + k2, speed * b, strict=True):
+            kind = "stiffness" if stiffness >= drag else "damping"
+            work[element_parameter(name, kind, axis)] = float(max(stiffness, drag) * square[r])
+    turned = rows.rotation_jacobian(data) @ shape
+    resisting = [name for name in e.names if numeric(car.model, f"law/{name}")[12] > 0.0]  # type: ignore[index]
+    for name, stiffness, turn in zip(resisting, e.rotation_stiffness[:, 0], turned, strict=True):
+        work[element_parameter(name, "rotational_stiffness", "")] = float(stiffness * np.sum(np.abs(turn) ** 2))
+    work["main_spring.stiffness"] = float(np.max(e.spring_stiffness * square[e.springs], initial=0.0))
+    work["damper.viscous"] = float(np.max(speed * rows.viscous * np.abs(shape[e.damper_dofs]) ** 2, initial=0.0))
+    inside = joint_spring_stiffness(car.model) * np.abs(shape) ** 2
+    work["body.frequency_scale"] = float(np.sum(inside[e.modal_columns]))
+    inside[e.modal_columns] = 0.0
+    work["stabilizer.torsional_stiffness"] = float(np.sum(inside))
+    path = max(work, key=lambda name: work[name])
+    try:
+        return f"{path} ({value_of(car.vehicle, path):g})"
+    except ConfigurationError:
+        return path

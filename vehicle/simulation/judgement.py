@@ -1,0 +1,70 @@
+"""What a finished run says about itself: whether its numbers are numbers, and whether its energy balance closes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle.errors import SimulationError
+from vehicle.simulation.recording import Energies, Recording
+
+LARGEST = 1e8
+"""Largest value of a channel: forces of cars are below 1e6 N, accelerations below 1e5 m/s2."""
+
+RESIDUAL_WARNED = 1e-2
+"""Energy residual above which a run warns; the shipped inputs are between 1e-4 and 3e-4, a bump below 1e-3."""
+
+RESIDUAL_FAILED = 5e-2
+"""Energy residual above which a run fails: a level that is 2.5 % wrong everywhere would give it."""
+
+ENERGY_ROUND_OFF = 1e-7
+"""Energy [J] that may be missing in any run: round-off of the weight's potential energy, 1e4 J, over many sums."""
+
+BALANCED_RATE = 100.0
+"""Rate of the samples [Hz] from which their powers can be integrated: the high input has a residual of 2e-4 from
+samples at 1 kHz and of 1e-3 at this rate."""
+
+
+def require_finite(recording: Recording) -> None:
+    """Refuse a recording with a value that is no number, or beyond every car.
+
+    Raises:
+        SimulationError: naming the channel, the time and the value.
+    """
+    for name, values in recording.channels.items():
+        # One pass over the channel: NaN and infinity fail the comparison too.
+        if not -LARGEST < values.min() <= values.max() < LARGEST:
+            bad = int(np.argmin(np.abs(values) < LARGEST))
+            raise SimulationError(
+                f"channel {name} is {values[bad]:.3g} {recording.units[name]} at t = {recording.time[bad]:.4f} s: the "
+                "car does not hold this motion; check the input and the parameters that you changed"
+            )
+
+
+def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
+    """Sentences about the energy balance of a run.
+
+    Args:
+        energies: the balance.
+        rate: of the samples that it was summed from [Hz].
+
+    Returns:
+        Warnings.
+
+    Raises:
+        SimulationError: more than `RESIDUAL_FAILED` of the work is missing.
+    """
+    missing = abs(energies.work_in - energies.dissipated - energies.stored)
+    if missing <= ENERGY_ROUND_OFF or energies.residual <= RESIDUAL_WARNED:
+        return ()
+    said = (
+        f"energy residual {energies.residual:.2g}: of {energies.work_in:.3g} J put in by the plates {missing:.3g} J "
+        "are unaccounted for"
+    )
+    if rate < BALANCED_RATE:
+        return (f"{said}; it is summed from samples at {rate:g} Hz, too few to judge the run by",)
+    if energies.residual > RESIDUAL_FAILED:
+        raise SimulationError(
+            f"{said}, allowed are {RESIDUAL_FAILED:g}: the integration does not hold the laws of this car. Reduce "
+            "solver.timestep, or check the parameters that you changed"
+        )
+    return (f"{said} (up to {RESIDUAL_WARNED:g} is usual); check the run with half its solver.timestep",)

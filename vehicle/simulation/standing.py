@@ -1,0 +1,81 @@
+"""Whether a car can stand as its parameters say: on all its supports, on springs of sensible sag, on a body."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle.errors import ConfigurationError
+from vehicle.flexbody.superelement import Superelement
+from vehicle.names import AXES
+from vehicle.parameters.vehicle import Vehicle
+from vehicle.simulation.elements import Elements
+from vehicle.simulation.static_trim import GROUND_CONTACTS, StaticTrim
+
+LARGEST_SAG = 0.5
+"""Static deflection [m] that no spring of a road vehicle has: a soft car spring sags by 0.2 m, an engine by 5 mm."""
+
+LOWEST_BODY_MODE = 5.0
+"""Frequency [Hz] below which no elastic mode of a road vehicle's body lies: convertibles have 12, vans and buses 8."""
+
+
+def element_parameter(name: str, kind: str, axis: str) -> str:
+    """Parameter path of an element of the model: "bushing/tyre_fr" is bushings.tyre, of both sides."""
+    group, _, place = name.partition("/")
+    if group != "bushing":
+        return f"the attachment stiffness of {place} in body.superelement"
+    for side in ("_fr", "_fl", "_right", "_left"):
+        place = place.removesuffix(side)
+    return ".".join(word for word in ("bushings", place, kind, axis) if word)
+
+
+def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
+    """Refuse a body whose first elastic mode is among the rigid-body modes of the car.
+
+    Raises:
+        ConfigurationError: naming the mode and the parameters.
+    """
+    scale, first = vehicle.body.frequency_scale, float(body.frequencies[0])
+    if vehicle.body.flexible and first * scale < LOWEST_BODY_MODE:
+        raise ConfigurationError(
+            f"body.frequency_scale: found {scale:g} -, which puts the first mode of the body ({first:g} Hz in "
+            f"body.superelement = {vehicle.body.superelement}) at {first * scale:.3g} Hz, allowed are "
+            f"{LOWEST_BODY_MODE:g} Hz and more (a convertible has 12 Hz)"
+        )
+
+
+def require_standing(vehicle: Vehicle, elements: Elements, static: StaticTrim) -> None:
+    """Refuse a car that would tip off one of its supports, or sag beyond any spring.
+
+    Args:
+        vehicle: parameters.
+        elements: constants of its elements.
+        static: its static loads.
+
+    Raises:
+        ConfigurationError: naming the parameters.
+    """
+    if vehicle.gravity == 0.0:
+        return
+    loads = {f"tyre {wheel}": load for wheel, load in static.tyre_load.items()}
+    loads |= {f"rear support {side}": load for side, load in static.rear_support_load.items()}
+    for name, load in loads.items():
+        if load <= 0.0:
+            raise ConfigurationError(
+                f"body.cog: found {list(vehicle.body.cog)} m, with which {name} would carry {load:.0f} N and the car "
+                "would tip off it; it must lie between hardpoints.tyre_patch and hardpoints.rear_support (check "
+                "body.mass and parts.engine too)"
+            )
+    preload = static.preload
+    sags = {"main_spring.stiffness": float(np.max(np.abs(preload[elements.springs]) / elements.spring_stiffness))}
+    for name, rows, stiffness in zip(elements.names, elements.rows, elements.stiffness, strict=True):
+        for axis, row, k in zip(AXES, rows, stiffness, strict=True):
+            # On the ground the car is set down without horizontal force.
+            if k > 0.0 and (axis == "z" or not name.startswith(GROUND_CONTACTS)):
+                sags[element_parameter(name, "stiffness", axis)] = float(abs(preload[row]) / k)
+    worst = max(sags, key=lambda name: sags[name])
+    if sags[worst] > LARGEST_SAG:
+        raise ConfigurationError(
+            f"{worst}: too soft for the weight it carries (body.mass {vehicle.body.mass:g} kg, gravity "
+            f"{vehicle.gravity:g} m/s2): it would sag by {sags[worst]:.3g} m, allowed are {LARGEST_SAG:g} m (a soft "
+            "car spring sags by 0.2 m)"
+        )
