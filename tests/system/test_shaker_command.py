@@ -60,6 +60,15 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
         assert word in outcome.out
 
 
+def test_what_was_repaired_and_what_has_no_effect_is_said(shaker, short_signal, tmp_path):
+    settings = ["--set", "damper.stribeck_velocity=0.05", "--engine", "reduced"]
+    for variant, repaired in (("published", True), ("improved", False)):
+        outcome = shaker("--input", "short.csv", "--set", f"body.inertia_variant={variant}", *settings, "--force")
+        assert outcome.code == 0, outcome.err
+        assert ("note        The inertia tensor breaks the triangle inequality" in outcome.out) is repaired
+        assert "note        damper.stribeck_velocity=0.05: without effect; it belongs to " in outcome.out
+
+
 def test_the_same_command_twice_gives_the_same_bytes(shaker, short_signal, tmp_path):
     for folder in ("first", "second"):
         assert shaker("--input", "short.csv", "--output", folder, "--quiet").code == 0
