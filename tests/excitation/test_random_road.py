@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.signal import welch
@@ -114,6 +116,7 @@ def test_the_band_edge_does_not_change_the_road():
         ({"lower_band_edge": 0.0}, "band 0.0 to 50.0 Hz"),
         ({"upper_band_edge": 450.0}, "upper <= 400 Hz (0.8 of the Nyquist frequency)"),
         ({"lower_band_edge": 2.01, "upper_band_edge": 2.09}, "holds no multiple of 0.2 Hz; take a longer record"),
+        ({"level": "bands"}, "level 'bands'; allowed: record, lines"),
         ({"taper_length": 3.0}, "taper 3.0 s; allowed: 0 to half of the record, 2.5 s"),
     ],
 )
@@ -121,3 +124,26 @@ def test_bad_parameters_are_refused(change, message):
     with pytest.raises(ConfigurationError) as caught:
         random_road(**{"rms": 1e-4, "seed": 5, "duration": 5.0, **change})
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("order", [0, 2])
+def test_each_line_has_the_level_of_the_density(order):
+    road = partial(random_road, rms=5e-4, duration=20.0, lower_band_edge=4.0, roll_off_order=order, level="lines")
+    records = [road(seed=seed, taper_length=0.0).displacement["fr"] for seed in (1, 2)]
+    assert abs(np.corrcoef(records[0], records[1])[0, 1]) < 0.5
+    for z in records:
+        power = 2.0 * np.abs(np.fft.rfft(z[:-1]) / (z.size - 1)) ** 2  # A_k^2 / 2 of each line
+        k = np.arange(20 if order else 80, 1001)  # 1 or 4 to 50 Hz at 0.05 Hz
+        density = 1.0 / k**2.0 / (1.0 + (80 / k) ** (2 * order) if order else 1.0)
+        assert power[k] == pytest.approx(5e-4**2 * density / density.sum(), rel=1e-9)
+        assert power.sum() - power[0] == pytest.approx(5e-4**2, rel=1e-9)
+    tapered = road(seed=1)
+    # (1 - cos)^2 / 4 has the mean 3/8: two ends of 0.5 s of 20 s lose 5/8 of 1/20, half of it in the RMS: 1.6 %
+    assert tapered.rms("fr") == pytest.approx(5e-4 * (1.0 - 0.016), rel=0.02)
+    assert tapered.displacement["fr"][0] == tapered.displacement["fr"][-1] == 0.0
+
+
+def test_the_text_says_what_is_exact():
+    said = [random_road(rms=1e-4, seed=5, duration=5.0, level=level).source for level in ("record", "lines")]
+    assert "RMS 0.0001 m (of the record, exact)" in said[0]
+    assert "RMS 0.0001 m (before the taper, each line exactly at its level)" in said[1]
