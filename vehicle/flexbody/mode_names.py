@@ -66,7 +66,7 @@ def _region(position: FloatArray) -> str:
         return "front end"
     if x > 3.2:
         return "rear end"
-    return "cowl" if z > 1.0 else "floor"
+    return "belt" if z > 1.0 else "floor"
 
 
 def mode_names(

@@ -3,8 +3,9 @@
 The thesis publishes the number of nodes only. Interface and output points are the assumed hardpoints of the car; the
 other nodes follow the joints of a body in white (sills, pillars, roof rails, rear rails) of a compact estate 4.4 m
 long. Both sides are the same but for the engine mounts and the driver's seat. Member groups are the beams that real
-bodies have, plus crossed struts for what sheet metal and bonded glass add in shear. `require_nodes` compares the
-interface points with the hardpoints of the car that is assembled.
+bodies have, plus crossed struts for what sheet metal and bonded glass add in shear; doors hang on hinges and seals and
+are mass at the belt of the B pillar. `require_nodes` compares the interface points with the hardpoints of the car that
+is assembled.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ _PAIRS: dict[str, Point] = {  # right side (y > 0); the left is mirrored
     "sill_rear": (3.020, 0.700, 0.660),
     "a_pillar_top": (1.980, 0.580, 1.780),
     "b_pillar_top": (2.450, 0.540, 1.860),
-    "c_pillar_top": (3.250, 0.540, 1.870),
+    "b_pillar_belt": (2.450, 0.660, 1.200),  # carries the doors
     "c_pillar_belt": (3.400, 0.580, 1.270),
     "d_pillar_belt": (4.230, 0.600, 1.270),
     "rear_end": (4.380, 0.520, 0.830),
@@ -95,31 +96,38 @@ MEMBERS: dict[str, tuple[str, ...]] = {
     "sills": ("sill_front-sill_middle", "sill_middle-sill_rear", "sill_rear-rear_support"),
     "hinge pillars": ("cowl-sill_front",),
     "a pillars": ("cowl-a_pillar_top",),
-    "centre pillars": ("sill_middle-b_pillar_top",),
-    "rear pillars": ("sill_rear-c_pillar_belt", "c_pillar_belt-c_pillar_top"),
+    "centre pillars": ("sill_middle-b_pillar_belt", "b_pillar_belt-b_pillar_top"),
+    "rear pillars": (
+        "sill_rear-c_pillar_belt",
+        "c_pillar_belt_right-roof_right_rear",
+        "c_pillar_belt_left-roof_left_rear",
+    ),
     "roof rails": (
         "a_pillar_top-b_pillar_top",
-        "b_pillar_top-c_pillar_top",
-        "c_pillar_top_right-roof_right_rear",
-        "c_pillar_top_left-roof_left_rear",
+        "b_pillar_top_right-roof_right_rear",
+        "b_pillar_top_left-roof_left_rear",
     ),
-    "roof bows": ("a_pillar_top", "b_pillar_top", "c_pillar_top", "roof_left_rear-roof_right_rear"),
+    "roof bows": ("a_pillar_top", "b_pillar_top", "roof_left_rear-roof_right_rear"),
     "cowl": ("cowl",),
     "floor": (
-        "bottom_body-seat_rail",
-        "bottom_body-seat_rail_right",
         "seat_rail-sill_front_left",
         "seat_rail_right-sill_front_right",
         "seat_rail-rear_support_left",
         "seat_rail_right-rear_support_right",
         "rear_support",
     ),
-    "floor cross members": (
+    "tunnel": (
+        "bottom_body-seat_rail",
+        "bottom_body-seat_rail_right",
+        "seat_rail-sill_rear_left",
+        "seat_rail_right-sill_rear_right",
+    ),
+    "seat cross members": (
         "seat_rail-seat_rail_right",
         "seat_rail-sill_middle_left",
         "seat_rail_right-sill_middle_right",
-        "sill_rear",
     ),
+    "floor cross members": ("sill_rear",),
     "rear rails": ("rear_support-rear_end", "rear_end"),
     "wheelhouses": ("rear_support-c_pillar_belt",),
     "rear seat back": ("c_pillar_belt", "c_pillar_belt=rear_support"),
@@ -133,19 +141,25 @@ MEMBERS: dict[str, tuple[str, ...]] = {
     "seat frame": ("seat-seat_rail",),
     "roof skin": (
         "a_pillar_top=b_pillar_top",
-        "b_pillar_top=c_pillar_top",
-        "c_pillar_top_right-roof_left_rear",
-        "c_pillar_top_left-roof_right_rear",
+        "b_pillar_top_right-roof_left_rear",
+        "b_pillar_top_left-roof_right_rear",
     ),
     "windscreen": ("cowl=a_pillar_top",),
     "firewall": ("cowl=sill_front", "cowl-bottom_body"),
     "floor skin": ("sill_rear=rear_support", "rear_support=rear_end"),
+    "front floor skin": (
+        "seat_rail-sill_rear_right",
+        "seat_rail_right-sill_rear_left",
+        "seat_rail-sill_front_right",
+        "seat_rail_right-sill_front_left",
+    ),
+    "wings": ("rail_front-cowl",),
     "quarter panels": (
-        "c_pillar_belt_right-roof_right_rear",
-        "c_pillar_belt_left-roof_left_rear",
-        "c_pillar_top-d_pillar_belt",
+        "b_pillar_top-c_pillar_belt",
         "c_pillar_belt-rear_end",
         "rear_support-d_pillar_belt",
+        "roof_right_rear-rear_end_right",
+        "roof_left_rear-rear_end_left",
     ),
     "tailgate skin": (
         "d_pillar_belt_right-roof_left_rear",
