@@ -34,8 +34,8 @@ _PROVENANCE = (
     "torsion mode and the strut tops' stiffness along z, to the vertical wheel mode at 28 Hz of the complete car; the "
     "stiffness at the engine mounts, to the engine modes of 10 to 20 Hz. "
     "Published results used: these frequencies, and the seat-rail levels of figures 4.1 and 4.2 (limits of the rail's "
-    "amplitudes). Seen while limits and nominal sections were chosen, in no residual: comfort figures 4.3 to 4.12, slip "
-    "shares, bump figures 3.13 to 3.18. None of these counts as predicted. "
+    "amplitudes). Seen while limits and nominal sections were chosen, in no residual: comfort figures 4.3 to 4.12, "
+    "slip shares, bump figures 3.13 to 3.18. None of these counts as predicted. "
     "Written by python -m vehicle.flexbody.build."
 )
 

@@ -99,11 +99,13 @@ def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> 
 
 
 def _excess_motion(frame: BodyFrame, shapes: FloatArray) -> FloatArray:
-    """Penalties [1] for a loud seat rail, for nodes that move far more than the body around them, and lopsided pairs."""
+    """Penalties [1] for a loud seat rail, nodes that move far more than the body around them, and lopsided pairs."""
     amplitude = np.linalg.norm(shapes, axis=2)  # (modes, n)
     facing = mirror_nodes(frame.positions)
     interface = np.array([name.startswith(_INTERFACES) for name in frame.nodes])
-    rail, other = (np.abs(shapes[:, frame.nodes.index(name)]) for name in ("seat_rail", "seat_rail_right"))  # (modes, 3)
+    rail, other = (
+        np.abs(shapes[:, frame.nodes.index(name)]) for name in ("seat_rail", "seat_rail_right")
+    )  # (modes, 3)
     right = np.flatnonzero((facing >= 0) & (frame.positions[:, 1] > 0.0))
     energy = frame.node_mass * amplitude**2
     sides = amplitude[:, right], amplitude[:, facing[right]]
@@ -143,7 +145,11 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
     point = np.log([start[group] for group in groups])
     for weight in weights:
         stage = least_squares(
-            lambda x, w=weight: residuals(frame, factors(x), w), point, bounds=(-_FACTOR, _FACTOR), max_nfev=40, diff_step=1e-6
+            lambda x, w=weight: residuals(frame, factors(x), w),
+            point,
+            bounds=(-_FACTOR, _FACTOR),
+            max_nfev=40,
+            diff_step=1e-6,
         )
         point = stage.x
     best = factors(point)
