@@ -45,7 +45,8 @@ from vehicle.simulation.run import Progress, simulate
 ENGINES = ("mujoco", "reduced", "auto")
 
 SATURATED_VELOCITY = 1e-3
-"""Damper velocity [m/s] above which the smooth friction law is within 0.6 % of its limit."""
+"""Damper velocity [m/s] above which the smooth friction law is within 0.6 % of its limit: stick has ended. No slip yet:
+that is `damper.slip_velocity`."""
 
 
 class Car:
@@ -264,19 +265,18 @@ class Run:
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
         """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""
-        _check_wheel(wheel)
+        return slip_share(*self._damper(wheel, velocity))
+
+    def first_slip(self, wheel: str, velocity: float | None = None) -> float | None:
+        """First time [s] with |damper velocity| above a velocity [m/s], by default as `slip_share`; None for never."""
+        return first_slip(self.time, *self._damper(wheel, velocity))
+
+    def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
+        """Velocity of a damper, and the one that counts as slip [m/s]."""
+        if wheel not in WHEELS:
+            raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(WHEELS)}")
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
-        return slip_share(self.recording[f"damper_{wheel}_velocity"], limit)
-
-    def first_slip(self, wheel: str, velocity: float = SATURATED_VELOCITY) -> float | None:
-        """First time [s] with |damper velocity| above a velocity [m/s]; None where there is none."""
-        _check_wheel(wheel)
-        return first_slip(self.time, self.recording[f"damper_{wheel}_velocity"], velocity)
-
-
-def _check_wheel(wheel: str) -> None:
-    if wheel not in WHEELS:
-        raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(WHEELS)}")
+        return self.recording[f"damper_{wheel}_velocity"], limit
 
 
 def _is_stuck(damper: str) -> bool:

@@ -158,14 +158,17 @@ def _job(options: argparse.Namespace) -> None:
 
 def report(summary: dict[str, Any], output: Path) -> str:
     """The summary as a page of text."""
-    share, saturated, first = summary["slip_share"], summary["friction_saturated_share"], summary["first_slip_s"]
+    share, first = summary["slip_share"], summary["first_slip_s"]
+    saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
     lines = [
         f"input       {summary['input']['file']}, RMS {1e3 * summary['input']['rms_m']:.4g} mm, "
         f"{summary['input']['duration_s']:g} s, wheel {summary['input']['wheel']}",
-        f"damper      in slip for {100 * share['fr']:.2f} % (right) and {100 * share['fl']:.2f} % (left) of the time, "
-        f"|v| > {1e3 * share['slip_velocity']:g} mm/s",
-        f"            friction saturated (|v| > 1 mm/s) for {100 * saturated['fr']:.2f} % and "
-        f"{100 * saturated['fl']:.2f} %; first {_time(first['fr'])} (right), {_time(first['fl'])} (left)",
+        f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for {100 * share['fr']:.2f} % (right) and "
+        f"{100 * share['fl']:.2f} % (left) of the time; first {_time(first['fr'])} (right), "
+        f"{_time(first['fl'])} (left)",
+        f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
+        f"{100 * saturated['fr']:.2f} % and {100 * saturated['fl']:.2f} %; first {_time(ended['fr'])} (right), "
+        f"{_time(ended['fl'])} (left)",
     ]
     for channel in (f"knuckle_{summary['input']['wheel']}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
         strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]

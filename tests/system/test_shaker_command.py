@@ -32,6 +32,12 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
     assert set(summary["slip_share"]) == {"fr", "fl", "slip_velocity"}
     assert set(summary["friction_saturated_share"]) == set(summary["first_slip_s"]) == {"fr", "fl"}
     assert summary["friction_saturated_share"]["fr"] >= summary["slip_share"]["fr"] > 0.0
+    # One velocity for share and first time; the friction is saturated sooner, and has its own key.
+    with np.load(folder / "time.npz") as arrays:
+        first = arrays["time"][np.abs(arrays["damper_fr_velocity"]) > summary["slip_share"]["slip_velocity"]][0]
+    assert summary["first_slip_s"]["fr"] == pytest.approx(first, abs=1e-9)
+    assert summary["first_friction_saturated_s"]["fr"] < summary["first_slip_s"]["fr"]
+    assert f"in slip (|v| > 12 mm/s) for {100 * summary['slip_share']['fr']:.2f} %" in outcome.out
     assert set(summary["comfort"]["seat_rail"]["rms_2_50_hz"]) == {"x", "y", "z", "overall"}
     assert set(summary["static"]) == {"tyre_load_n", "rear_support_load_n", "residual_m"}
     assert summary["static"]["residual_m"] < 1e-6

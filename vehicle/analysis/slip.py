@@ -1,4 +1,9 @@
-"""How long a damper slips: share of the time, first instant, intervals."""
+"""How long a damper slips: share of the time, first instant, intervals.
+
+A damper slips while |v| > v_slip, with v_slip = `damper.slip_velocity` of the parameters. Slip shares, first slips,
+sweeps, tables, figures and the lamps of the films all use that velocity. Where the friction alone is meant, which
+reaches its limit at 1 mm/s, the name says "saturated".
+"""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class Trace:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Lamp:
-    """State of a damper."""
+    """State of a damper: slipping is above `damper.slip_velocity`, as in all tables."""
 
     label: str
     slipping: bool

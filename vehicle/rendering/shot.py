@@ -196,7 +196,7 @@ class Shot:
             f"{Path(run.signal.source).name}: RMS {1e3 * run.signal.rms(run.wheel):.3g} mm under the "
             f"{SIDE_OF_WHEEL[run.wheel]} front wheel",
             f"motion exaggerated {cut.exaggeration:g} times, {speed}",
-            f"excerpt from {cut.start:.2f} s ({cut.reason})",
+            f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
         ]
 
     def _traces(self) -> list[Trace]:

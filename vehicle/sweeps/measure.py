@@ -70,7 +70,8 @@ class ComfortMeasure:
     def __call__(self, run: Run) -> dict[str, float]:
         """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip, RMS values.
 
-        The first slip is the first time above 1 mm/s of the whole run, as in `summary.json`; NaN where there is none.
+        Slip is above `damper.slip_velocity`, the saturated share above 1 mm/s. The first slip is that of the whole run,
+        as in `summary.json`; NaN where there is none.
         """
         interval = run.recording.timestep
         kept = slice(round(self.skip / interval), None)
