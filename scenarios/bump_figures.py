@@ -83,7 +83,8 @@ def friction_figure(path: Path, runs: Mapping[float, Run], values: BumpNumbers, 
     shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(runs)))
     note = _caption(
         next(iter(runs.values())),
-        "A = 7.5 mm; left: relative acceleration along the strut axis; right: first sample of the damper above 1 mm/s",
+        "A = 7.5 mm; left: relative acceleration along the strut axis; right: first sample of the damper above "
+        f"{1e3 * values.slip_velocity:g} mm/s, which is slip, and above 1 mm/s, where stick has ended",
     )
     with figure_file(
         path, (12.5, 4.6), "First slip after the 7.5 mm bump against friction (figure 3.12)", note
@@ -101,10 +102,11 @@ def friction_figure(path: Path, runs: Mapping[float, Run], values: BumpNumbers, 
         history.axvline(5.035, color="#555555", linewidth=0.9, linestyle="--", label="published, 125 N")
         history.set(xlabel="time [s]", ylabel="relative acceleration [m/s²]")
         history.legend(loc="best")
-        known = [(friction, time) for friction, time in values.first_slip.items() if time is not None]
-        times.plot(*zip(*known, strict=True), "o-", color=COLOURS[0], label="here")
+        for found, style, label in ((values.first_slip, "o-", "first slip"), (values.stick_end, "o:", "end of stick")):
+            known = [(friction, time) for friction, time in found.items() if time is not None]
+            times.plot(*zip(*known, strict=True), style, color=COLOURS[0], label=label)
         times.errorbar([PUBLISHED_FRICTION], [5.035], yerr=[0.01], fmt="s", color=COLOURS[1], label="published, ±10 ms")
-        times.set(xlabel="friction limit Fd [N]", ylabel="first slip [s]")
+        times.set(xlabel="friction limit Fd [N]", ylabel="time [s]")
         times.ticklabel_format(axis="y", useOffset=False)
         times.legend(loc="upper left")
 

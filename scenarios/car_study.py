@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import time as clock
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from scenarios.car_runs import CarRuns
-from scenarios.claim import Claim, write_claims
+from scenarios.claim import Claim, headline, write_claims
 from scenarios.output_folder import prepare_folder
 from scenarios.study_command import scenario_parser
 from vehicle.analysis.frf import FrequencyResponse
@@ -102,10 +102,9 @@ def run_car_study(
         folder = prepare_folder(options.output, force=options.force)
         found = study(runs, folder, options)
         found.write(folder)
-        agree = sum(claim.within for claim in found.claims)
         left = f", {len(found.unjudged)} not judged" if found.unjudged else ""
         seconds = clock.perf_counter() - started
-        print(f"{folder}: {agree} of {len(found.claims)} statements agree{left}; see results.md; {seconds:.0f} s")
+        print(f"{folder}: {headline([asdict(claim) for claim in found.claims])}{left}; see results.md; {seconds:.0f} s")
 
     return parse_and_run(parser, job, arguments)
 

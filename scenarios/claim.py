@@ -1,4 +1,8 @@
-"""Published statements beside our numbers, as `results.md` and `results.json`."""
+"""Published statements beside our numbers, as `results.md` and `results.json`.
+
+A row says where its published side stands in the source and what ours is: only `predicted` rows are evidence for the
+model, and only they are in the headline.
+"""
 
 from __future__ import annotations
 
@@ -7,26 +11,56 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
 
 from scenarios.output_folder import write_text
+
+Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate"]
+"""`predicted`: nothing was adjusted to it. `fitted`: a number that the source leaves open was fitted to it. `chosen`:
+of several readings of the source the one was taken that agrees with it. `own check`: not a published result.
+`duplicate`: the same statement again, at another place or by another definition."""
+
+Source = Literal["text", "table", "axis interval", "inferred"]
+"""Where the source has it. `axis interval`: between two labels of an axis, which are all that is left of a figure.
+`inferred`: concluded by us."""
+
+Interval = tuple[float, float]
+
+STATUSES: tuple[Status, ...] = get_args(Status)
+
+LEGEND = (
+    "Only `predicted` rows, numbers and trends to which nothing was adjusted, count in the headline. `fitted`: "
+    "what the source leaves open was fitted to it; `chosen`: a reading of the source was chosen by it; `own "
+    "check`: not a published result; `duplicate`: the statement of another row again. `source` `axis interval`: "
+    "only the labels of the axes are left of the figure; the extreme of the curve lies in `interval`. `deviation` "
+    "is (ours - published) / published where both are numbers, and from the nearer end of an interval, 0 inside."
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Claim:
-    """One row: what is printed, what we find, whether the two agree, and why."""
+    """One row: what is printed, what we find, whether the two agree, why, and what kind of row it is."""
 
     name: str
     published: float | str
     ours: float | str
     deviation: float | None
-    """(ours - published) / published where both are numbers, else None."""
+    """(ours - published) / published where both are numbers, that from the nearer end of an interval, else None."""
     within: bool
     """Whether ours agrees with the print, by the rule given in `why`."""
     why: str
+    status: Status
+    source: Source
+    interval: Interval | None = None
+    """Lowest and highest published value, infinite where it is open; None where the print is no interval."""
 
 
-def number_claim(name: str, published: float, ours: float, tolerance: float, why: str) -> Claim:
+def number_claim(
+    name: str, published: float, ours: float, tolerance: float, why: str, *, status: Status, source: Source
+) -> Claim:
     """Row of a printed number.
 
     Args:
@@ -35,6 +69,7 @@ def number_claim(name: str, published: float, ours: float, tolerance: float, why
         ours: own value.
         tolerance: largest |ours - published|, in the unit of the value.
         why: reason of the tolerance, and of a disagreement.
+        status, source: as of `Claim`.
     """
     return Claim(
         name=name,
@@ -43,12 +78,100 @@ def number_claim(name: str, published: float, ours: float, tolerance: float, why
         deviation=float(ours - published) / published,
         within=bool(abs(ours - published) <= tolerance),
         why=why,
+        status=status,
+        source=source,
     )
 
 
-def statement_claim(name: str, published: str, ours: str, holds: bool, why: str) -> Claim:
+def statement_claim(
+    name: str, published: str, ours: str, holds: bool, why: str, *, status: Status, source: Source
+) -> Claim:
     """Row of a printed statement in words."""
-    return Claim(name=name, published=published, ours=ours, deviation=None, within=bool(holds), why=why)
+    return Claim(
+        name=name,
+        published=published,
+        ours=ours,
+        deviation=None,
+        within=bool(holds),
+        why=why,
+        status=status,
+        source=source,
+    )
+
+
+def interval_claim(name: str, interval: Interval, ours: float, why: str, *, status: Status = "predicted") -> Claim:
+    """Row of an extreme that is only known to lie between two labels of an axis; it agrees inside.
+
+    Args:
+        name: what is compared, with its unit.
+        interval: lowest and highest value; infinite where it is open.
+        ours: own value.
+        why: which axis, and the reason of a disagreement.
+        status: as of `Claim`.
+    """
+    low, high = interval
+    nearest = min(max(ours, low), high)
+    inside = bool(low <= ours <= high)
+    return Claim(
+        name=name,
+        published=_between(interval),
+        ours=float(ours),
+        deviation=0.0 if inside else float(ours - nearest) / abs(nearest) if nearest else None,
+        within=inside,
+        why=why,
+        status=status,
+        source="axis interval",
+        interval=interval,
+    )
+
+
+def spread_claim(
+    name: str, interval: Interval, ours: npt.ArrayLike, why: str, *, status: Status = "predicted"
+) -> Claim:
+    """Row of an extreme of one stretch of a random signal, against ours over many stretches.
+
+    It agrees when the whole interval lies between the 5th and the 95th percentile of ours: wherever in it the published
+    extreme is, it is an ordinary one.
+
+    Args:
+        name: what is compared, with its unit.
+        interval: lowest and highest value of the published extreme.
+        ours: own values, one for each stretch, (n,).
+        why: which axis and stretches, and the reason of a disagreement.
+        status: as of `Claim`.
+    """
+    low, middle, high = (float(value) for value in np.percentile(np.asarray(ours), (5.0, 50.0, 95.0)))
+    return Claim(
+        name=name,
+        published=_between(interval),
+        ours=f"5th to 95th percentile {low:.3g} to {high:.3g}, median {middle:.3g}",
+        deviation=None,
+        within=bool(low <= interval[0] and interval[1] <= high),
+        why=f"the interval must lie between our percentiles; {why}",
+        status=status,
+        source="axis interval",
+        interval=interval,
+    )
+
+
+def headline(rows: Sequence[Mapping[str, Any]]) -> str:
+    """How many predicted rows agree, and how many rows are of another kind: "3 of 4 predicted rows agree; ..."."""
+    counts = {status: [bool(row["within"]) for row in rows if row["status"] == status] for status in STATUSES}
+    others = [
+        f"{len(found)} {status} ({sum(found)} agree)" for status, found in counts.items() if status != "predicted"
+    ]
+    predicted = counts["predicted"]
+    return f"{sum(predicted)} of {len(predicted)} predicted rows agree; beside them {', '.join(others)}"
+
+
+def table_lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The rows as a Markdown table."""
+    columns = ("name", "published", "ours", "deviation", "within", "status", "source", "interval", "why")
+    lines = [f"| {' | '.join(columns)} |", "|" + "---|" * len(columns)]
+    for row in rows:
+        cells = (_cell(name, row[name]).replace("|", "\\|") for name in columns)
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
 
 
 def write_claims(
@@ -63,25 +186,32 @@ def write_claims(
         notes: paragraphs below the table.
         data: further numbers for the JSON file, under their own keys.
     """
-    agree = sum(claim.within for claim in claims)
-    lines = [f"# {title}", "", f"{agree} of {len(claims)} statements, printed or our own check, agree.", ""]
-    lines += ["| name | published | ours | deviation | within | why |", "|---|---|---|---|---|---|"]
-    for claim in claims:
-        deviation = "" if claim.deviation is None else f"{100.0 * claim.deviation:+.1f} %"
-        cells = (claim.name, _text(claim.published), _text(claim.ours), deviation, _yes(claim.within), claim.why)
-        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    rows = [asdict(claim) for claim in claims]
+    lines = [f"# {title}", "", f"{headline(rows)}.", "", LEGEND, "", *table_lines(rows)]
     for note in notes:
         lines += ["", note]
     write_text(folder / "results.md", "\n".join(lines) + "\n")
-    content = {"title": title, "rows": [asdict(claim) for claim in claims], "notes": list(notes), **data}
+    content = {"title": title, "rows": rows, "notes": list(notes), **data}
     write_text(folder / "results.json", json.dumps(_plain(content), indent=1, allow_nan=False) + "\n")
 
 
-def _yes(value: bool) -> str:
-    return "yes" if value else "NO"
+def _between(interval: Interval) -> str:
+    low, high = interval
+    if math.isinf(high):
+        return f"{low:g} or more"
+    return f"{high:g} or less" if math.isinf(low) else f"{low:g} to {high:g}"
 
 
-def _text(value: float | str) -> str:
+def _cell(name: str, value: Any) -> str:
+    if value is None:
+        return ""
+    if name == "deviation":
+        return f"{100.0 * value:+.1f} %"
+    if name == "within":
+        return "yes" if value else "NO"
+    if name == "interval":
+        # An open end is None in the JSON file, infinite before.
+        return "[" + ", ".join("" if end is None or math.isinf(end) else f"{end:g}" for end in value) + "]"
     return value if isinstance(value, str) else f"{value:.4g}"
 
 

@@ -18,6 +18,7 @@ from scenarios.car_runs import CarRuns
 from scenarios.car_study import QUICK_NOTE, Findings, run_car_study
 from scenarios.claim import Claim
 from scenarios.comfort_command import QUICK, comfort_parser, records_of
+from scenarios.comfort_levels import level_claims, road_levels
 from scenarios.comfort_sensitivity_beyond import beyond_findings, beyond_questions, rigid_curves
 from scenarios.comfort_sensitivity_claims import TITLES, order_claims, size_claims, slip_claims
 from scenarios.comfort_sensitivity_figures import draw_variation
@@ -63,7 +64,11 @@ def study(comfort: ComfortRuns, folder: Path, *, quick: bool, source_only: bool)
     if beyond:
         more, numbers = beyond_findings(comfort, folder, curves)
         notes, data = [*notes, *more], {**data, **numbers}
-    claims = all_claims(comfort, curves, rigid)
+    levels = road_levels(comfort)
+    data["levels"] = {
+        road: {"largest_seat_rail": one.seat_rail.tolist(), "swing": one.swing.tolist()} for road, one in levels.items()
+    }
+    claims = [*all_claims(comfort, curves, rigid), *level_claims(levels)]
     judged = [claim for claim in claims if claim.name == SURE] if quick else claims
     left = [claim for claim in claims if claim not in judged]
     return Findings(

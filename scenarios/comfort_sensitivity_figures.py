@@ -82,16 +82,12 @@ def draw_variation(
             _comfort(relative, curves[road], ROAD_COLOURS[road], "this car" if beside else None)
             for (label, others), style in zip((beside or {}).items(), ("--", ":"), strict=False):
                 _comfort(relative, others[road], "#555555", label, style)
-            ends = {} if base else PUBLISHED.get((variation.name, road), {})
+            _, ends = ("", {}) if base else PUBLISHED.get((variation.name, road), ("", {}))
             if ends:
-                relative.plot(
-                    list(ends),
-                    list(ends.values()),
-                    "D",
-                    mfc="none",
-                    color=COLOURS[1],
-                    label="published, read off the axes",
-                )
+                middle = [0.5 * (low + high) for low, high in ends.values()]
+                half = [0.5 * (high - low) for low, high in ends.values()]
+                look = {"fmt": "none", "color": COLOURS[1], "linewidth": 4.0, "alpha": 0.6}
+                relative.errorbar(list(ends), middle, yerr=half, label="published, interval of the axis", **look)
             if beside or ends:
                 relative.legend()
             relative.set_xlabel(variation.label)

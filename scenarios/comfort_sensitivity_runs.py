@@ -243,10 +243,13 @@ class ComfortRuns:
         """Seat rail in z over the first record of a road; kept, since the nominal car is in many figures."""
         question = self.questions(car, road, engine=engine, count=1)[0]
         if question not in self._histories:
-            signal = question.source.signal()
-            found = self.runs.car(car).run(signal, engine=engine, channels=["seat_rail_acc_z"])
-            self._histories[question] = found
+            self._histories[question] = self.run_of(question)
         return self._histories[question]
+
+    def run_of(self, question: Question) -> Run:
+        """Seat rail in z of a question, run here and not kept."""
+        car = self.runs.car(question.car)
+        return car.run(question.source.signal(), engine=question.engine, channels=["seat_rail_acc_z"])
 
     def all_questions(self, variation: Variation, base: Changes = ()) -> list[Question]:
         """All runs that the curves of a variation need, those about one car side by side."""

@@ -9,11 +9,12 @@ import argparse
 import math
 import sys
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from scenarios.claim import write_claims
+from scenarios.claim import headline, write_claims
 from scenarios.complete_car_quarter import complete_car_quarter
 from scenarios.damper_choice_claims import (
     half_optimum_claims,
@@ -97,8 +98,7 @@ def study(options: argparse.Namespace) -> str:
         data["refit"] = _refit(parameters)
         notes.append(_refit_note(data["refit"]))
     write_claims(folder, TITLE, claims, notes, data)
-    agree = sum(claim.within for claim in claims)
-    return f"{folder}: {agree} of {len(claims)} printed statements agree; see results.md"
+    return f"{folder}: {headline([asdict(claim) for claim in claims])}; see results.md"
 
 
 def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:

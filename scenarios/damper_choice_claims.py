@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -13,6 +15,14 @@ from vehicle.lumped.road_holding_models import quarter_car_model
 from vehicle.parameters.damper_choice import DamperChoiceParameters
 
 Array = npt.NDArray[np.float64]
+
+FITTED: dict[str, Any] = {"status": "fitted", "source": "text"}
+"""The car that the source does not give was fitted to these (`vehicle.lumped.damper_fit`)."""
+
+PREDICTED: dict[str, Any] = {"status": "predicted", "source": "text"}
+
+COMPARED: dict[str, Any] = {"status": "own check", "source": "text"}
+"""By another measure than the one that the source optimises."""
 
 READING = 125.0
 """Half of the 250 N s/m to which the source reads its optima [N s/m]."""
@@ -48,7 +58,9 @@ def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
     )
     why = "c / (2 sqrt(k m)); one sqrt(k m) is fitted to four printed ratios, so each may be off by its last digit"
     return [
-        number_claim(f"{name}: damping ratio at {c:.0f} N s/m", printed, c / (2.0 * np.sqrt(k * m)), 0.011, why)
+        number_claim(
+            f"{name}: damping ratio at {c:.0f} N s/m", printed, c / (2.0 * np.sqrt(k * m)), 0.011, why, **FITTED
+        )
         for name, ratios, k, m in ends
         for c, printed in ratios.items()
     ]
@@ -68,6 +80,7 @@ def quarter_response_claims(lines: Array, responses: dict[float, Array]) -> list
             f"{QUARTER_DAMPING[-1]:.0f} N s/m",
             len(peaks[0]) == 2 and len(peaks[-1]) == 1 and abs(peaks[0][1] - 7.0) < 1.0,
             "7 Hz is read from an axis with ticks every 5 Hz: within 1 Hz",
+            **FITTED,
         )
     )
     for c, curve in zip(QUARTER_DAMPING, body, strict=True):
@@ -79,6 +92,7 @@ def quarter_response_claims(lines: Array, responses: dict[float, Array]) -> list
                 0.5,
                 "read from an axis with ticks every 5 Hz: within 0.5 Hz; the peak moves up with damping, as the wheel "
                 "locks to the body on the tyre",
+                **FITTED,
             )
         )
     rows.append(
@@ -90,6 +104,7 @@ def quarter_response_claims(lines: Array, responses: dict[float, Array]) -> list
             all(len(_local_peaks(lines, curve)) == 1 for curve in body)
             and bool(np.all(np.diff(body.max(axis=1)) < 0.0)),
             "counted on lines 0.01 Hz apart up to 15 Hz",
+            **FITTED,
         )
     )
     return rows
@@ -109,6 +124,7 @@ def half_response_claims(lines: Array, responses: dict[float, Array]) -> list[Cl
             f"pitch {_values(pitch)} rad/m, heave {_values(heave)} m/m at {dampings} N s/m",
             bool(np.all(np.diff(pitch) > 0.0) and np.all(np.diff(heave) < 0.0)),
             "equal dampers at unequal arms couple heave and pitch through c (a - b); the springs nearly balance",
+            **FITTED,
         )
     )
     rows.append(
@@ -118,6 +134,7 @@ def half_response_claims(lines: Array, responses: dict[float, Array]) -> list[Cl
             float(lines[stack[:, 2].argmax(axis=1)].mean()),
             0.5,
             "printed as the frequency of the quarter car; read from an axis with ticks every 5 Hz",
+            **FITTED,
         )
     )
     return rows
@@ -129,6 +146,7 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHoldin
     below, above = (
         float(np.interp(best.damping + shift, found.damping, found.quarter)) - best.value for shift in (-ASIDE, ASIDE)
     )
+    kind = FITTED if measure == "printed" else COMPARED
     rows = [
         number_claim(
             f"figure 9: quarter car optimum damping, {measure} measure [N s/m]",
@@ -136,6 +154,7 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHoldin
             best.damping,
             250.0,
             f"printed as 3500 to 4000; R = {best.value:.3f} there",
+            **kind,
         ),
         statement_claim(
             f"figure 9: steeper below the optimum than above, {measure} measure",
@@ -143,6 +162,7 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHoldin
             f"R rises by {below:.3f} to {ASIDE:.0f} N s/m below, by {above:.3f} to {ASIDE:.0f} N s/m above",
             below > above,
             "both flanks at the same distance from the optimum",
+            **(PREDICTED if measure == "printed" else COMPARED),
         ),
     ]
     if measure == "printed":
@@ -162,6 +182,8 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHoldin
                 not bool(np.all(np.diff(signed) > 0.0)),
                 "bands in which the wheel moves more than the road count negative, so the signed sum only rises with "
                 "damping; the printed curves must come from magnitudes, and R as printed is taken with them",
+                status="chosen",
+                source="text",
             )
         )
     return rows
@@ -171,12 +193,18 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
     """Rows on figures 10 to 13 for one measure; the values of R only for the printed one."""
     front, rear = found.equal_optima
     first, second, third = found.read_off[:3]
+    kind = FITTED if measure == "printed" else COMPARED
     why = "printed to 250 N s/m"
     if measure == "physical":
         why += "; the source optimises the printed measure, to which the car is fitted: here for comparison"
     rows = [
         number_claim(
-            f"figure 10: front optimum, equal dampers, {measure} measure [N s/m]", 4000.0, front.damping, READING, why
+            f"figure 10: front optimum, equal dampers, {measure} measure [N s/m]",
+            4000.0,
+            front.damping,
+            READING,
+            why,
+            **kind,
         ),
         number_claim(
             f"figure 10: rear optimum, equal dampers, {measure} measure [N s/m]",
@@ -184,6 +212,7 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
             rear.damping,
             2.0 * READING,
             f"{why}; both 3000 and 3250 are printed, their middle is compared",
+            **kind,
         ),
         statement_claim(
             f"optimum front above rear, {measure} measure",
@@ -192,13 +221,19 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
             f"rear {second.rear:.0f} N s/m after the iteration",
             front.damping > rear.damping and second.front > second.rear,
             "the rear wheel is heavier than the front one in the fitted car",
+            **kind,
         ),
     ]
     for step, printed, figure in ((first, 4250.0, 11), (second, 3000.0, 12), (third, 4250.0, 13)):
         ours = step.front if step.changed == "front" else step.rear
         rows.append(
             number_claim(
-                f"figure {figure}: {step.changed} damping, {measure} measure [N s/m]", printed, ours, READING, why
+                f"figure {figure}: {step.changed} damping, {measure} measure [N s/m]",
+                printed,
+                ours,
+                READING,
+                why,
+                **kind,
             )
         )
     rows.append(
@@ -209,6 +244,7 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
             + ", ".join(f"{s.changed} {s.front if s.changed == 'front' else s.rear:.0f}" for s in found.read_off),
             len(found.read_off) == 3,
             "each end read among multiples of 250 N s/m, as printed",
+            **kind,
         )
     )
     return rows
@@ -239,6 +275,7 @@ def rate_claims(found: RoadHolding, at_front: Array, at_rear: Array) -> list[Cla
                 float(ours),
                 RATE_READING if "front" in name else 2.0 * RATE_READING,
                 "two digits read from a figure whose axis ends at 9 (front) or 10 (rear): 0.05 and 0.1",
+                **FITTED,
             )
         )
     fronts = [float(at_front[0]), first.fluctuation[0], second.fluctuation[0]]
@@ -250,6 +287,7 @@ def rate_claims(found: RoadHolding, at_front: Array, at_rear: Array) -> list[Cla
             f"{_values(np.array(fronts))} and {_values(np.array(rears))}",
             bool(np.all(np.diff(fronts) < 0.0) and np.all(np.diff(rears) < 0.0)),
             "needs strong coupling of the ends: the fit takes a moment of inertia far below that of a real car",
+            **FITTED,
         )
     )
     return rows
@@ -271,6 +309,7 @@ def _regions(name: str, lines: Array, curves: Array, low_edge: float, printed_ed
             spread < SAME,
             f"rule: less than {SAME} m/m, a tenth of the printed axis; differences here come from the "
             "body resonance, whose height depends on damping",
+            **PREDICTED,
         ),
         statement_claim(
             f"{name}: 2 to 6 Hz less with low damping, beyond less with high damping",
@@ -278,6 +317,7 @@ def _regions(name: str, lines: Array, curves: Array, low_edge: float, printed_ed
             f"the curves of lowest and highest damping cross at {crossing:.1f} Hz",
             bool(np.all(above[middle]) and not np.any(above[high]) and abs(crossing - 6.0) < 1.5),
             "rule: in order from 3 to 5 Hz and above 8 Hz, crossing within 1.5 Hz of 6 Hz, a third of a tick interval",
+            **PREDICTED,
         ),
     ]
 

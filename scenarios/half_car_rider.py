@@ -8,11 +8,12 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from scenarios.claim import write_claims
+from scenarios.claim import headline, write_claims
 from scenarios.half_car_rider_base_case import base_case_claims, base_case_table
 from scenarios.half_car_rider_claims import (
     dose_claims,
@@ -72,8 +73,7 @@ def study(options: argparse.Namespace) -> str:
     base = {"base_case": base_case_table(car, history)}
     notes = [_lift_off_note(outcomes[PASSIVE], free_outcomes), _law_table(outcomes), SETTLING_NOTE, ASSUMED]
     write_claims(folder, TITLE, claims, notes, {**_data(outcomes, free_outcomes, studied, factors, scan), **base})
-    agree = sum(claim.within for claim in claims)
-    return f"{folder}: {agree} of {len(claims)} printed statements agree; see results.md"
+    return f"{folder}: {headline([asdict(claim) for claim in claims])}; see results.md"
 
 
 def _scan_speeds(quick: bool) -> list[float]:

@@ -61,6 +61,8 @@ def base_case_claims(car: HalfCarRiderParameters, history: MotionHistory) -> lis
                 f"upper {upper:.3g} {unit}, lower {lower:.3g} {unit}",
                 upper > lower,
                 _why_upper(car, history, quantity),
+                status="predicted",
+                source="text",
             )
         )
     seat, body = _peaks(car, history, ("seat", "body"))
@@ -74,6 +76,8 @@ def base_case_claims(car: HalfCarRiderParameters, history: MotionHistory) -> lis
             seat > body,
             "the seat is not printed; the assumed one isolates from the pulse of the bump. With a seat of "
             f"{STIFF_SEAT:.0f} N/m it would be {stiff_seat:.3g} against {stiff_body:.3g} m/s2",
+            status="predicted",
+            source="text",
         )
     )
     for name, quantity, printed, limit, figure in SETTLING:
@@ -116,8 +120,9 @@ def _settling(
     )
     label = f"{figure}: settling time of {name} {quantity} [s]"
     if limit:
-        return statement_claim(label, f"longer than {printed}", f"{ours:.2f}", ours >= printed - READING, why)
-    return number_claim(label, printed, ours, READING, why)
+        text, holds = f"longer than {printed}", ours >= printed - READING
+        return statement_claim(label, text, f"{ours:.2f}", holds, why, status="predicted", source="text")
+    return number_claim(label, printed, ours, READING, why, status="predicted", source="text")
 
 
 def base_case_table(car: HalfCarRiderParameters, history: MotionHistory) -> dict[str, dict[str, Any]]:

@@ -49,6 +49,8 @@ def dose_claims(
                     f"{_changes(change)} from {factors[0]:.0%} to {factors[-1]:.0%}, at {_speeds()} km/h",
                     _agrees(direction, change, LITTLE * np.abs(mass)),
                     f"rule: {_rule(direction)} at every speed; {reasons[parameter]}",
+                    status="predicted",
+                    source="text",
                 )
             )
     for limb in ("upper", "lower"):
@@ -63,6 +65,8 @@ def dose_claims(
                 f"mean change {mass.mean():.1%}, {stiffness.mean():.1%} against {unsprung.mean():.1%}",
                 bool(min(mass.mean(), stiffness.mean()) > unsprung.mean()),
                 "mean over the five speeds of the magnitude of the change from 80 to 120 %",
+                status="predicted",
+                source="text",
             )
         )
     return rows
@@ -102,6 +106,8 @@ def travel_claims(
                 f"{_changes(change)} from {factors[0]:.0%} to {factors[-1]:.0%}, at {_speeds()} km/h",
                 _agrees(direction, change, np.zeros_like(change)),
                 f"rule: {_rule(direction)} at every speed; {_why_travel(car, parameter, factors)}",
+                status="predicted",
+                source="text",
             )
         )
     return rows
@@ -147,6 +153,8 @@ def speed_claims(
             "the impulse h0 wb 2 / (pi v) k that reaches the body falls as 1 / v. The dose value is largest at "
             f"{scan['speed'][peak]:.0f} km/h ({scan['upper'][peak]:.2f}, {at_peak:.0f} ms on the bump) and falls from "
             "there on, with linear and with one-sided tyres",
+            status="predicted",
+            source="text",
         ),
         statement_claim(
             "VDV of 15 m/s^1.75 is severe discomfort",
@@ -154,6 +162,8 @@ def speed_claims(
             f"largest of the study {max(upper):.2f} m/s^1.75",
             max(upper) < 15.0,
             "one bump stays far below the limit; unweighted acceleration, as in the source",
+            status="own check",
+            source="text",
         ),
     ]
 
@@ -168,6 +178,8 @@ def matrix_claim(car: HalfCarRiderParameters) -> Claim:
         printed < 0.0,
         "typing errors: neither is symmetric and the pitch damping is negative, so the printed equations grow for "
         "ever; the figures of the source cannot come from them as they stand",
+        status="own check",
+        source="text",
     )
 
 

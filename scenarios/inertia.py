@@ -11,7 +11,7 @@ from pathlib import Path
 
 from scenarios.car_runs import CarRuns, Case
 from scenarios.car_study import Findings, car_parser, run_car_study, setting
-from scenarios.inertia_claims import frf_claim, mode_claims, mode_table, roll_mode
+from scenarios.inertia_claims import mode_claims, mode_table, roll_claims, roll_mode, roll_peak
 from scenarios.inertia_figures import CHANNELS, inertia_figure
 from scenarios.levels import TOO_SHORT, level_signal
 
@@ -28,16 +28,19 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     responses = [run.frf(CHANNELS) for run in found]
     rolls = [roll_mode(car) for car in cars]
     by_label = dict(zip(VARIANTS, found, strict=True))
-    inertia_figure(folder / "seat_rail.png", by_label, responses, [roll.frequency for roll in rolls])
-    seen = frf_claim(responses[0], rolls[0].frequency)
+    frequencies = [roll.frequency for roll in rolls]
+    inertia_figure(folder / "seat_rail.png", by_label, responses, frequencies)
+    peaks = [roll_peak(response, roll) for response, roll in zip(responses, frequencies, strict=True)]
+    seen = roll_claims(peaks, frequencies)
     claims = mode_claims(cars)
     return Findings(
         title="Moment of inertia Ixx of the body (source 1, sections 3.2.1 and 3.4)",
-        claims=claims if quick else [*claims, seen],
-        unjudged={seen.name: TOO_SHORT} if quick else {},
+        claims=claims if quick else [*claims, *seen],
+        unjudged={claim.name: TOO_SHORT for claim in seen} if quick else {},
         notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, found[0], quick)],
         data={
-            "roll_hz": {name: mode.frequency for name, mode in zip(VARIANTS.values(), rolls, strict=True)},
+            "roll_hz": dict(zip(VARIANTS.values(), frequencies, strict=True)),
+            "roll_peak_hz": dict(zip(VARIANTS.values(), peaks, strict=True)),
             "modes": {
                 name: [
                     {"frequency_hz": m.frequency, "damping_ratio": m.damping_ratio, "description": m.description}

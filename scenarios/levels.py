@@ -13,7 +13,14 @@ from pathlib import Path
 from scenarios.car_runs import CarRuns, Case
 from scenarios.car_study import Findings, car_parser, run_car_study, setting
 from scenarios.inputs.make_inputs import LEVELS, SEED
-from scenarios.levels_claims import frequency_claims, numbers, order_claims, slip_claims, slip_table
+from scenarios.levels_claims import (
+    axis_claims,
+    frequency_claims,
+    numbers,
+    order_claims,
+    slip_claims,
+    slip_table,
+)
 from scenarios.levels_figures import CHANNELS, OUTPUTS, level_figures
 from vehicle.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER
 from vehicle.excitation.csv_file import read_signal
@@ -52,6 +59,7 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     values = {level: numbers(run, responses[level]) for level, run in by_level.items()}
     slip_velocity = runs.car().vehicle.damper.slip_velocity
     claims = [*slip_claims(values, slip_velocity), *frequency_claims(values), *order_claims(values)]
+    claims += axis_claims(responses)
     judged = order_claims(values) if quick else claims
     names = {claim.name for claim in judged}
     return Findings(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.claim import Claim, number_claim, statement_claim
+from scenarios.claim import Claim, interval_claim, number_claim, statement_claim
 from scenarios.levels_figures import CHANNELS
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
@@ -21,6 +22,9 @@ PUBLISHED_SLIP = {"low": (0.0, 0.0), "mid": (0.039, 0.0), "high": (0.218, 0.0)}
 SLIP_TOLERANCE = 0.03
 """Three points: what a quarter of the slip velocity, which is not published, changes in the high level. One record of
 60 s alone tells the share to 0.2 points (mid) and 0.6 points (high; standard error of its twelfths)."""
+
+FRF_AXIS = (1e1, 1e5)
+"""Ends of the axes of the FRFs [(m/s2)/m]."""
 
 WHEEL_BAND = (20.0, 35.0)
 """The vertical wheel mode is looked for here [Hz]."""
@@ -105,10 +109,11 @@ def slip_claims(found: Mapping[str, LevelNumbers], slip_velocity: float) -> list
                 f"shares; tolerance {100 * SLIP_TOLERANCE:g} points, what a quarter of the slip velocity changes"
             )
             name = f"slip share of the {wheel} damper, {level} [%]"
+            kind: dict[str, Any] = {"status": "fitted", "source": "table" if wheel == "right" else "text"}
             if share > 0.0:
-                claims.append(number_claim(name, 100 * share, 100 * ours, 100 * SLIP_TOLERANCE, why))
+                claims.append(number_claim(name, 100 * share, 100 * ours, 100 * SLIP_TOLERANCE, why, **kind))
             else:
-                claims.append(statement_claim(name, "0", f"{100 * ours:.2f}", ours <= SLIP_TOLERANCE, why))
+                claims.append(statement_claim(name, "0", f"{100 * ours:.2f}", ours <= SLIP_TOLERANCE, why, **kind))
     return claims
 
 
@@ -117,7 +122,13 @@ def frequency_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
     low, mid, high = (found[level] for level in ("low", "mid", "high"))
     return [
         number_claim(
-            "vertical wheel mode, low [Hz]", 28.0, low.wheel_hz, 0.05 * 28.0, "where the knuckle FRF passes 90 deg; 5 %"
+            "vertical wheel mode, low [Hz]",
+            28.0,
+            low.wheel_hz,
+            0.05 * 28.0,
+            "where the knuckle FRF passes 90 deg; 5 %. Body torsion and strut-top attachment were fitted to it",
+            status="fitted",
+            source="text",
         ),
         statement_claim(
             "vertical wheel mode for mid and high against low",
@@ -126,6 +137,8 @@ def frequency_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
             low.wheel_hz > mid.wheel_hz > high.wheel_hz,
             "where the knuckle FRF passes 90 deg; falling from level to level. Largest lines: "
             f"{low.wheel_peak_hz:.1f}, {mid.wheel_peak_hz:.1f}, {high.wheel_peak_hz:.1f} Hz",
+            status="predicted",
+            source="text",
         ),
     ]
 
@@ -140,6 +153,8 @@ def order_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
             f"peak {low.wheel_peak:.3g}, {mid.wheel_peak:.3g}, {high.wheel_peak:.3g} (m/s2)/m",
             low.wheel_peak > mid.wheel_peak > high.wheel_peak,
             "the same input in larger: a lower peak is more damping",
+            status="predicted",
+            source="text",
         ),
         statement_claim(
             "rigid body modes in the knuckle for mid and high against low",
@@ -147,6 +162,8 @@ def order_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
             f"peak {low.body_peak:.3g}, {mid.body_peak:.3g}, {high.body_peak:.3g} (m/s2)/m",
             low.body_peak > mid.body_peak > high.body_peak,
             f"largest line of the knuckle FRF in {BODY_BAND[0]:g} to {BODY_BAND[1]:g} Hz",
+            status="predicted",
+            source="text",
         ),
         statement_claim(
             "damper top against knuckle, low",
@@ -154,6 +171,8 @@ def order_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
             f"ratio {low.damper_ratio:.3f}",
             abs(low.damper_ratio - 1.0) <= 0.05,
             f"mean of |H| over |H|, {DAMPER_BAND[0]:g} to {DAMPER_BAND[1]:g} Hz; equal in a figure with log axes: 5 %",
+            status="predicted",
+            source="text",
         ),
         statement_claim(
             "damper top against knuckle, mid and high",
@@ -161,7 +180,36 @@ def order_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
             f"ratio {mid.damper_ratio:.3f}, {high.damper_ratio:.3f}",
             high.damper_ratio < mid.damper_ratio < low.damper_ratio,
             "falling from level to level",
+            status="predicted",
+            source="text",
         ),
+    ]
+
+
+def axis_claims(responses: Mapping[str, FrequencyResponse]) -> list[Claim]:
+    """Largest and smallest line of all FRFs against the axes of figures 3.3 to 3.36.
+
+    Args:
+        responses: level to FRFs, rows as `CHANNELS`.
+    """
+    lines = {
+        f"{channel}, {level}, {frequency:.3g} Hz": magnitude
+        for level, found in responses.items()
+        for channel, row in zip(CHANNELS, np.abs(found.response), strict=True)
+        for frequency, magnitude in zip(found.frequency, row, strict=True)
+        if np.isfinite(magnitude)
+    }
+    return [
+        interval_claim(
+            f"{word} line of the FRFs, 1 to 50 Hz [(m/s2)/m]",
+            FRF_AXIS,
+            float(lines[where]),
+            f"{where}; every figure from 3.3 to 3.36 has this axis; nine outputs, three levels",
+        )
+        for word, where in (
+            ("largest", max(lines, key=lines.__getitem__)),
+            ("smallest", min(lines, key=lines.__getitem__)),
+        )
     ]
 
 

@@ -11,13 +11,14 @@ import json
 import sys
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from scenarios.claim import Claim
+from scenarios.claim import LEGEND, headline, table_lines
 from scenarios.output_folder import prepare_folder, write_text
+from scenarios.slip_definition import definition_lines
 from vehicle.command_line import Parser, parse_and_run
 from vehicle.errors import DataError, SimulationError
 
@@ -50,14 +51,18 @@ COMPLETE_CAR = (
     Row(name="slip share, low / mid / high", patterns=("levels: slip share of the *",)),
     Row(name="vertical wheel mode", patterns=("levels: vertical wheel mode*",)),
     Row(name="damper top and knuckle FRF", patterns=("levels: damper top against knuckle*",)),
-    Row(name="roll mode of the body", patterns=("inertia: roll mode*",)),
+    Row(name="roll mode of the body", patterns=("inertia: roll peak*",)),
     Row(name="six rigid body modes", patterns=("inertia: six rigid body modes",)),
     Row(name="engine modes", patterns=("inertia: engine modes",)),
     Row(name="flexible body modes", patterns=("inertia: flexible modes*",)),
+    Row(name="FRFs, axes", patterns=("levels: * line of the FRFs*",)),
     Row(name="bump 7.5 mm, first slip", patterns=("bump: bump 7.5 mm, first slip*",)),
+    Row(name="bump 7.5 mm, extremes", patterns=("bump: bump 7.5 mm, lowest*", "bump: bump 7.5 mm, highest*")),
     Row(name="bump 1.5 mm, no slip, rings down slowly", patterns=("bump: bump 1.5 mm*", "bump: *ring*down*")),
     Row(name="Stribeck law, extra peak", patterns=("stribeck: *",)),
     Row(name="road slip share", patterns=("comfort_sensitivity: *slip share*",)),
+    Row(name="level of the seat rail", patterns=("comfort_sensitivity: largest *",)),
+    Row(name="swing of a road", patterns=("comfort_sensitivity: swing *",)),
     Row(name="comfort against Fd", patterns=("comfort_sensitivity: *Fd*",)),
     Row(name="comfort against mount damping", patterns=("comfort_sensitivity: *mount damping*",)),
     Row(name="comfort against mount stiffness", patterns=("comfort_sensitivity: *mount stiffness*",)),
@@ -103,11 +108,10 @@ def _job(options: argparse.Namespace) -> None:
         results[name] = scenario_results(name, options)
         seconds[name] = clock.perf_counter() - began
     rows = collect(results)
-    uncovered = missing_rows(rows)
+    uncovered = missing_rows(results)
     write(folder, rows, results, uncovered, quick=options.quick)
-    agree = sum(bool(row["within"]) for row in rows)
     print(
-        f"{folder}: {agree} of {len(rows)} rows agree; see results.md; {clock.perf_counter() - started:.0f} s ("
+        f"{folder}: {headline(rows)}; see results.md; {clock.perf_counter() - started:.0f} s ("
         + ", ".join(f"{name} {value:.0f}" for name, value in seconds.items())
         + ")"
     )
@@ -137,30 +141,21 @@ def scenario_results(name: str, options: argparse.Namespace) -> dict[str, Any]:
 
 
 def collect(results: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of all scenarios with the scenario before their names; those not judged in this run too."""
-    rows = []
-    for scenario, content in results.items():
-        for row in content["rows"]:
-            rows.append({**row, "name": f"{scenario}: {row['name']}"})
-        for name, why in content.get("not_judged", {}).items():
-            rows.append(
-                asdict(
-                    Claim(
-                        name=f"{scenario}: {name}",
-                        published="see the scenario",
-                        ours="not judged in this run",
-                        deviation=None,
-                        within=False,
-                        why=why,
-                    )
-                )
-            )
-    return rows
+    """Rows of all scenarios with the scenario before their names."""
+    return [
+        {**row, "name": f"{scenario}: {row['name']}"}
+        for scenario, content in results.items()
+        for row in content["rows"]
+    ]
 
 
-def missing_rows(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Rows of the table of published results that no claim answers."""
-    names = [str(row["name"]) for row in rows]
+def missing_rows(results: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Rows of the table of published results that no claim answers, not even one that was left open."""
+    names = [
+        f"{scenario}: {name}"
+        for scenario, content in results.items()
+        for name in (*(row["name"] for row in content["rows"]), *content.get("not_judged", {}))
+    ]
     return [
         row.name
         for row in COMPLETE_CAR
@@ -177,49 +172,21 @@ def write(
     quick: bool,
 ) -> None:
     """Write `results.md` and `results.json`."""
-    agree = sum(bool(row["within"]) for row in rows)
-    lines = ["# Published results of the complete car and of the quarter car, and ours", ""]
-    lines.append(
-        f"{agree} of {len(rows)} rows agree. A row agrees by the rule that its last column gives; rows that do not say "
-        "why. `deviation` is (ours - published) / published where both are numbers."
-    )
+    lines = ["# Published results of the complete car and of the quarter car, and ours", "", f"{headline(rows)}.", ""]
+    lines.append(f"A row agrees by the rule that its last column gives; rows that do not say why. {LEGEND}")
     if quick:
         lines += ["", "Made with `--quick`: short signals, numbers differ from those of the full study."]
     if uncovered:
         lines += ["", "Published results that no row answers: " + "; ".join(uncovered) + "."]
+    lines += ["", *definition_lines(results)]
     for scenario, content in results.items():
-        own = [row for row in rows if str(row["name"]).startswith(f"{scenario}: ")]
-        good = sum(bool(row["within"]) for row in own)
-        lines += [
-            "",
-            f"## {content['title']}",
-            "",
-            f"`python -m scenarios.{scenario}`: {good} of {len(own)} agree.",
-            "",
-        ]
-        lines += ["| result | published | ours | deviation | within | why |", "|---|---|---|---|---|---|"]
-        lines += [_line(row, scenario) for row in own]
+        own = content["rows"]
+        lines += ["", f"## {content['title']}", "", f"`python -m scenarios.{scenario}`: {headline(own)}.", ""]
+        lines += table_lines(own)
         for note in content.get("notes", ()):
             lines += ["", str(note)]
     write_text(folder / "results.md", "\n".join(lines) + "\n")
     write_text(folder / "results.json", json.dumps(list(rows), indent=1, allow_nan=False) + "\n")
-
-
-def _line(row: Mapping[str, Any], scenario: str) -> str:
-    deviation = "" if row["deviation"] is None else f"{100.0 * row['deviation']:+.1f} %"
-    cells = (
-        str(row["name"]).removeprefix(f"{scenario}: "),
-        _text(row["published"]),
-        _text(row["ours"]),
-        deviation,
-        "yes" if row["within"] else "NO",
-        str(row["why"]),
-    )
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
-
-
-def _text(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 if __name__ == "__main__":

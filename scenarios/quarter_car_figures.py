@@ -273,7 +273,7 @@ def figure_b_1(runs: Runs, path: Path) -> None:
                 law = SmoothCoulomb(limit=runs.car.friction.limit, steepness=steepness)
                 v = velocity * reach / 0.015
                 panel.plot(v, law.force(v), color=color, linewidth=1.2, label=f"eps {steepness:.0e} s/m")
-                history, _ = runs.run_time(LEVELS[0], steepness)
+                history = runs.with_small_mass(LEVELS[0], steepness)
                 met = history.sliding_velocity()[::50]
                 panel.plot(met, law.force(met), ".", color=color, markersize=3)
             panel.set_xlim(-reach, reach)

@@ -216,13 +216,9 @@ class Runs:
         law = Switch(limit=p.friction_limit, band=p.stick_band, return_time=p.return_time)
         return self._once("mass switch", lambda: switch_solution(model, law, times, force=drive))
 
-    def run_time(self, rms: float, steepness: float) -> tuple[History, float]:
-        """Run of table B.1 (small mass on the body) with its wall time [s]."""
-        start = clock.perf_counter()
-        key = f"timed {rms} {steepness}"
-        history = self.road(rms, {"friction.steepness": steepness}, small_mass=True)
-        seconds = self._done.setdefault(key, clock.perf_counter() - start)
-        return history, float(seconds)
+    def with_small_mass(self, rms: float, steepness: float) -> History:
+        """Run of table B.1: small mass on the body."""
+        return self.road(rms, {"friction.steepness": steepness}, small_mass=True)
 
     def _once(self, key: str, solve: Any) -> History:
         if key not in self._done:

@@ -73,6 +73,8 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
                 f"{count}; {text} ({1e3 * top.delay:.0f} ms after)" if top else f"{count}; {text}",
                 (count > 0) == (published == "present"),
                 f"{rule}; largest jump {max((phase.jump for phase in phases[name]), default=0.0):.2f} m/s2",
+                status="predicted",
+                source="text",
             )
         )
     errors = {name: force_error(run) for name, run in runs.items()}
@@ -83,6 +85,8 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
             ", ".join(f"{name}: {100 * error:.2f} % of the largest force" for name, error in errors.items()),
             max(errors.values()) <= FORCE_TOLERANCE,
             f"largest difference above 1 mm/s; {100 * FORCE_TOLERANCE:g} %: line for arctangent, limit one step behind",
+            status="own check",
+            source="inferred",
         )
     )
     return claims
@@ -91,9 +95,10 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
 def peak_table(phases: Mapping[str, list[SlipPhase]], start: float) -> str:
     """Every slip with its break-away jump and its most prominent later peak."""
     lines = [
-        "Slips of the right damper (bump begins at 5 s):",
+        f"Slides of the right damper from the end of stick, above {1e3 * SATURATED_VELOCITY:g} mm/s, where friction "
+        "is saturated (bump begins at 5 s):",
         "",
-        "| law | stick ends [s] | slip lasts [ms] | largest velocity [mm/s] | break-away jump [m/s2] "
+        "| law | stick ends [s] | sliding lasts [ms] | largest velocity [mm/s] | break-away jump [m/s2] "
         "| most prominent later extremum: delay [ms], height, prominence [m/s2] |",
         "|---|---|---|---|---|---|",
     ]

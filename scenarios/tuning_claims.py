@@ -36,6 +36,8 @@ def own_claims(result: TuningResult, final: FullSteps | None) -> list[Claim]:
             result.message if not result.at_bound else f"at a bound: {', '.join(result.at_bound)}",
             result.converged and not result.at_bound,
             "a value at a bound means wrong bounds, or a model that cannot follow the data",
+            status="own check",
+            source="inferred",
         )
     ]
     return claims if final is None else [*claims, _checked("the fit", final)]
@@ -46,7 +48,13 @@ def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim
     held = next((one for one in result.unidentified if one.path == path), None)
     if held is not None:
         return statement_claim(
-            name, f"hidden {true:g}", f"not told by the data, held at {held.held_at:g}", True, held.sentence()
+            name,
+            f"hidden {true:g}",
+            f"not told by the data, held at {held.held_at:g}",
+            True,
+            held.sentence(),
+            status="own check",
+            source="inferred",
         )
     away = result.deviation(path, true)
     start = next(one.start for one in result.parameters if one.path == path)
@@ -58,6 +66,8 @@ def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim
         within=bool(abs(away) <= WITHIN),
         why=f"hidden value, not printed: {away:+.2f} standard errors of {result.standard_errors[path]:.3g} away, "
         f"allowed {WITHIN:g}; started at {start:g}",
+        status="own check",
+        source="inferred",
     )
 
 
@@ -71,6 +81,8 @@ def _checked(name: str, final: FullSteps) -> Claim:
         f"largest steps {steps} standard errors; {path} moved most, by {largest:+.1f} standard errors",
         final.settled,
         f"Gauss-Newton steps with the Jacobian of the fast models; the last must be below {SMALL:g} standard errors",
+        status="own check",
+        source="inferred",
     )
 
 

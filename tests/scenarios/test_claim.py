@@ -2,30 +2,79 @@
 
 import argparse
 import json
+from dataclasses import asdict
 
 import pytest
 
-from scenarios.claim import number_claim, statement_claim, write_claims
+from scenarios.claim import (
+    STATUSES,
+    Claim,
+    Status,
+    headline,
+    interval_claim,
+    number_claim,
+    spread_claim,
+    statement_claim,
+    write_claims,
+)
 from scenarios.output_folder import prepare_folder, write_text
 from scenarios.study_command import run_study, study_parser
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
 
 
 def test_number_row():
-    row = number_claim("peak [Hz]", 2.0, 2.5, 0.4, "because")
+    row = number_claim("peak [Hz]", 2.0, 2.5, 0.4, "because", status="predicted", source="text")
     assert (row.deviation, row.within) == (0.25, False)
-    assert number_claim("peak [Hz]", 2.0, 2.5, 0.5, "because").within is True
+    assert number_claim("peak [Hz]", 2.0, 2.5, 0.5, "because", status="fitted", source="text").within is True
+
+
+def test_an_extreme_agrees_inside_its_interval():
+    inside, below, above = (interval_claim("a", (-0.8, -0.6), ours, "w") for ours in (-0.6, -1.0, -0.3))
+    assert (inside.within, inside.deviation, inside.published) == (True, 0.0, "-0.8 to -0.6")
+    assert not below.within and below.deviation == pytest.approx(-0.25)
+    assert not above.within and above.deviation == pytest.approx(0.5)
+    assert interval_claim("a", (0.0, 0.5), -0.1, "w").deviation is None  # no share of 0
+    open_end = interval_claim("a", (0.5, float("inf")), 70.0, "w")
+    assert open_end.within and open_end.published == "0.5 or more" and open_end.source == "axis interval"
+
+
+def test_a_distribution_agrees_when_the_interval_lies_between_its_percentiles():
+    ours = [0.01 * number for number in range(101)]  # 5th percentile 0.05, 95th 0.95
+    assert spread_claim("a", (0.06, 0.94), ours, "w").within
+    assert not spread_claim("a", (0.04, 0.94), ours, "w").within
+    assert not spread_claim("a", (0.06, 0.96), ours, "w").within
+
+
+def made(status: Status, within: bool) -> Claim:
+    return statement_claim("a", "b", "c", within, "w", status=status, source="text")
+
+
+def test_the_headline_counts_predicted_rows_only():
+    claims = [made(status, within) for status in STATUSES for within in (True, False, False)]
+    assert headline([asdict(claim) for claim in [*claims, made("predicted", True)]]) == (
+        "2 of 4 predicted rows agree; beside them 3 fitted (1 agree), 3 chosen (1 agree), 3 own check (1 agree), "
+        "3 duplicate (1 agree)"
+    )
 
 
 def test_files_hold_rows_notes_and_data(tmp_path):
-    rows = [number_claim("a | b", 2.0, 2.1, 0.2, "w"), statement_claim("c", "rises", "falls", False, "v")]
+    rows = [
+        number_claim("a | b", 2.0, 2.1, 0.2, "w", status="predicted", source="table"),
+        made("fitted", False),
+        interval_claim("c", (95.0, float("inf")), 90.0, "v"),
+    ]
     write_claims(tmp_path, "Title", rows, ["A note."], {"extra": [1.0, float("inf")]})
     text = (tmp_path / "results.md").read_text(encoding="utf-8")
-    assert "1 of 2 statements, printed or our own check, agree." in text
-    assert "| a \\| b | 2 | 2.1 | +5.0 % | yes | w |" in text
-    assert "| c | rises | falls |  | NO | v |" in text
+    assert "\n1 of 2 predicted rows agree; beside them 1 fitted (0 agree)," in text
+    assert "| a \\| b | 2 | 2.1 | +5.0 % | yes | predicted | table |  | w |" in text
+    assert "| a | b | c |  | NO | fitted | text |  | w |" in text
+    assert "| c | 95 or more | 90 | -5.3 % | NO | predicted | axis interval | [95, ] | v |" in text
     assert text.endswith("A note.\n")
     content = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    assert set(content["rows"][0]) == {
+        "name", "published", "ours", "deviation", "within", "why", "status", "source", "interval"
+    }  # fmt: skip
+    assert [row["interval"] for row in content["rows"]] == [None, None, [95.0, None]]
     assert content["rows"][0]["deviation"] == pytest.approx(0.05)
     assert content["extra"] == [1.0, None]
     assert {path.name for path in tmp_path.iterdir()} == {"results.md", "results.json"}

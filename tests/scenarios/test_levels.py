@@ -1,6 +1,7 @@
 """`python -m scenarios.levels` as a user runs it, and how its numbers are read off."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,12 +10,13 @@ from scenarios.levels import main
 from scenarios.levels_claims import (
     PUBLISHED_SLIP,
     LevelNumbers,
+    axis_claims,
     frequency_claims,
     order_claims,
     quarter_turn,
     slip_claims,
 )
-from scenarios.levels_figures import DAMPER, OUTPUTS
+from scenarios.levels_figures import CHANNELS, DAMPER, OUTPUTS
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +65,20 @@ def test_the_resonance_is_where_the_phase_passes_ninety_degrees():
     assert quarter_turn(frequency, response, magnitude) == pytest.approx(natural, abs=0.005)
     assert frequency[np.argmax(magnitude)] > natural + 0.3
     assert np.isnan(quarter_turn(frequency[:20], response[:20], magnitude[:20]))
+
+
+def response_of(largest, smallest):
+    values = np.full((len(CHANNELS), 3), 1e3, dtype=complex)
+    values[0, 0], values[1, 1], values[2, 2] = largest, smallest, np.nan
+    return SimpleNamespace(frequency=np.array([1.0, 7.0, 50.0]), response=values)
+
+
+def test_the_frfs_lie_within_the_axes_or_are_named():
+    good = axis_claims({"low": response_of(9e4, 11.0)})
+    assert [claim.within for claim in good] == [True, True]
+    bad = axis_claims({"low": response_of(1.0, 1.0), "high": response_of(-1.1e5j, 9.0)})
+    assert [claim.within for claim in bad] == [False, False]
+    assert bad[0].why.startswith(f"{CHANNELS[0]}, high, 1 Hz;") and bad[1].why.startswith(f"{CHANNELS[0]}, low, 1 Hz;")
 
 
 def level(slip, wheel_hz, peak, ratio):

@@ -14,13 +14,18 @@ from scenarios import published
 
 def row(name, within=True, **changes):
     return {
-        "name": name, "published": 1.0, "ours": 1.02, "deviation": 0.02, "within": within, "why": "5 %", **changes
+        "name": name, "published": 1.0, "ours": 1.02, "deviation": 0.02, "within": within, "why": "5 %",
+        "status": "predicted", "source": "text", "interval": None, **changes,
     }  # fmt: skip
 
 
+KEYS = set(row(""))
+
 CONTENT = {
     "levels": [row("slip share of the right damper, high [%]"), row("vertical wheel mode, low [Hz]", within=False)],
-    "quarter_car": [row("stick modes [Hz]", published="4.8 | 25", ours="4.8, 25.1", deviation=None)],
+    "quarter_car": [
+        row("stick modes [Hz]", published="4.8 | 25", ours="4.8, 25.1", deviation=None, status="own check")
+    ],
 }
 
 
@@ -47,7 +52,7 @@ def scenarios(monkeypatch, tmp_path):
             folder.mkdir(parents=True, exist_ok=True)
             content: dict[str, Any] = {"title": f"title of {name}", "rows": CONTENT[name], "notes": [f"made by {name}"]}
             if name == "levels":
-                content["not_judged"] = {"slip share, mid": "too short"}
+                content["not_judged"] = {"line of the FRFs, mid": "too short"}
             (folder / "results.json").write_text(json.dumps(content), encoding="utf-8")
             return 0
 
@@ -69,15 +74,14 @@ def test_every_row_of_every_scenario_is_in_the_table(scenarios, tmp_path, capsys
     assert [row["name"] for row in rows] == [
         "levels: slip share of the right damper, high [%]",
         "levels: vertical wheel mode, low [Hz]",
-        "levels: slip share, mid",
         "quarter_car: stick modes [Hz]",
     ]
-    assert all(set(row) == {"name", "published", "ours", "deviation", "within", "why"} for row in rows)
+    assert all(set(row) == KEYS for row in rows)
     text = (tmp_path / "table" / "results.md").read_text(encoding="utf-8")
-    assert "2 of 4 rows agree" in text and "2 of 4 rows agree" in capsys.readouterr().out
-    assert "| vertical wheel mode, low [Hz] | 1 | 1.02 | +2.0 % | NO | 5 % |" in text
-    assert "| slip share, mid | see the scenario | not judged in this run |  | NO | too short |" in text
-    assert "| stick modes [Hz] | 4.8 \\| 25 | 4.8, 25.1 |  | yes | 5 % |" in text
+    counts = "1 of 2 predicted rows agree; beside them 0 fitted (0 agree), 0 chosen (0 agree), 1 own check (1 agree),"
+    assert counts in text and counts in capsys.readouterr().out
+    assert "| vertical wheel mode, low [Hz] | 1 | 1.02 | +2.0 % | NO | predicted | text |  | 5 % |" in text
+    assert "| stick modes [Hz] | 4.8 \\| 25 | 4.8, 25.1 |  | yes | own check | text |  | 5 % |" in text
     assert "made by quarter_car" in text and "Made with `--quick`" in text
 
 
