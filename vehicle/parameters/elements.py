@@ -89,8 +89,10 @@ class Stabilizer:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Damper:
-    """F = D v + limit(v) (2/pi) atan(eps v), plus (Ddeg - D) v up to Vdeg and (Ddeg - D) Vdeg above, if degressive.
+    """F = D v + clamp(c v, limit(v)), plus (Ddeg - D) v up to Vdeg and (Ddeg - D) Vdeg above, if degressive.
 
+    Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
+    the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
     """
 
@@ -104,7 +106,7 @@ class Damper:
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(
         "s/m",
-        "eps, slope of the smooth friction law",
+        "eps: friction has the slope (2/pi) Fd eps at rest",
         above=0.0,
         at_least=10.0,
         at_most=1e8,
