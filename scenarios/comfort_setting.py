@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from scenarios.comfort_sensitivity_runs import ComfortRuns
 from scenarios.road_signals import ROAD_EDGE_HZ, ROAD_RMS, velocity_density
+from vehicle.excitation.slip_set import sets_text
 
 
 def setting(comfort: ComfortRuns) -> list[str]:
@@ -28,5 +29,6 @@ def setting(comfort: ComfortRuns) -> list[str]:
         "records; that of a ratio is over the ratios of the single records.",
         f"Slip shares: time with the right damper above {1e3 * runs.car().vehicle.damper.slip_velocity:g} mm/s, above "
         "1 mm/s, and the left one. Lowest load: of the tyre on the shaker.",
+        sets_text(),
         "The tyre is a linear spring, as in the source: where its load is negative it pulls.",
     ]

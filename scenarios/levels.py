@@ -27,6 +27,7 @@ from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.slip_set import sets_text
 
 QUICK_DURATION = 5.0
 """Length of the signals with --quick [s]."""
@@ -66,7 +67,7 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
         title="Low, mid and high level (source 1, sections 3.2.1 and 3.3)",
         claims=judged,
         unjudged={claim.name: TOO_SHORT for claim in claims if claim.name not in names},
-        notes=[slip_table(values, slip_velocity), *setting(runs, found[0], quick)],
+        notes=[slip_table(values, slip_velocity), sets_text(), *setting(runs, found[0], quick)],
         data={"levels": {level: asdict(value) for level, value in values.items()}, "slip_velocity": slip_velocity},
     )
 

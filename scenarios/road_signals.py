@@ -13,6 +13,7 @@ import numpy as np
 from vehicle.excitation.band import UPPER_BAND_EDGE_HZ, positive, samples_of
 from vehicle.excitation.rest import half_cosine
 from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.excitation.slip_set import CHOSEN
 
 ROAD_RMS = {"smooth": 0.0075, "rough": 0.043}
 """RMS of the displacement [m] (source 1, chapter 4)."""
@@ -20,11 +21,10 @@ ROAD_RMS = {"smooth": 0.0075, "rough": 0.043}
 PUBLISHED_SLIP = {"smooth": 0.313, "rough": 0.794}
 """Share of the time in slip of the right damper (source 1, chapter 4)."""
 
-ROAD_EDGE_HZ = 0.029
-"""Lower band edge f1 of both roads [Hz]. The source gives none; fitted to its two slip shares at the slip velocity that
-the shaker inputs fixed before: least squares, in points, over 8 records of 60 s. One number for two shares: 30.2 % and
-81.6 % remain against 31.3 % and 79.4 %; 0.0306 Hz would meet the smooth road and 0.022 Hz the rough one. A record of
-30 s, which the source shows with a swing of 0.1 m, has its lowest line at 0.033 Hz."""
+ROAD_EDGE_HZ = CHOSEN.road_edge_hz
+"""Lower band edge f1 of both roads [Hz]. One number for two shares: 30.0 % and 81.4 % remain against 31.3 % and 79.4 %;
+0.031 Hz would meet the smooth road and 0.021 Hz the rough one. A record of 30 s, which the source shows with a swing of
+0.1 m, has its lowest line at 0.033 Hz."""
 
 LEAD_S = 10.0
 """Time before the evaluated record [s]: several decay times of the slowest mode with both dampers stuck."""

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError
+from vehicle.excitation.slip_set import CHOSEN
 
 LOWER_BAND_EDGE_HZ = 2.0
 """Lower edge of generated roads [Hz] where none is given."""
 
-SHAKER_EDGE_HZ = 6.0
-"""Lower edge of the shipped shaker inputs [Hz], half power. The source gives no band; fitted to its six slip shares
-together with `damper.slip_velocity`: with an edge at 2 Hz the left damper slips 4 % of the time in the high level."""
+SHAKER_EDGE_HZ = CHOSEN.shaker_edge_hz
+"""Lower edge of the shipped shaker inputs [Hz], half power."""
 
 SHAKER_ROLL_OFF_ORDER = 2
 """Order of the Butterworth edge of the shipped inputs. Assumed: an electrodynamic shaker with limited stroke follows a

@@ -1,0 +1,16 @@
+from itertools import pairwise
+
+from vehicle.excitation.slip_set import CHOSEN, OTHERS, sets_text
+from vehicle.parameters.vehicle import load_vehicle
+
+
+def test_the_car_and_the_declared_set_agree():
+    assert load_vehicle().damper.slip_velocity == CHOSEN.slip_velocity
+
+
+def test_a_faster_slip_velocity_needs_higher_edges_and_the_text_names_every_set():
+    sets = sorted((CHOSEN, *OTHERS), key=lambda one: one.slip_velocity)
+    for slow, fast in pairwise(sets):
+        assert fast.shaker_edge_hz >= slow.shaker_edge_hz
+        assert fast.road_edge_hz > slow.road_edge_hz
+    assert all(one.text() in sets_text() for one in sets)
