@@ -12,10 +12,7 @@ from vehicle.parameters.quantity import quantity, validate
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
 MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on a shaker move by 1e-6 to a few m/s"}
-RUBBED: dict[str, Any] = {
-    "at_most": 1e4,
-    "why": "a seal rubs with 50 to 500 N; the weight on a wheel is a few thousand",
-}
+RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "a seal rubs with 50 to 500 N, and 1e5 N lock a damper for good"}
 TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
 
