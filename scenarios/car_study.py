@@ -15,7 +15,7 @@ from scenarios.output_folder import prepare_folder
 from scenarios.study_command import scenario_parser
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import ENGINES, Run
-from vehicle.command_line import parse_and_run
+from vehicle.command_line import SET_HELP, parse_and_run
 from vehicle.errors import ConfigurationError
 
 QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
@@ -68,7 +68,7 @@ def car_parser(name: str, description: str) -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="PATH=VALUE",
-        help="override one parameter, as damper.viscous=2000; may be repeated",
+        help=SET_HELP,
     )
     parser.add_argument(
         "--engine", choices=ENGINES, default="mujoco", help="what computes the runs; %(default)s by default"

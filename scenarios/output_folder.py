@@ -7,6 +7,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
 from vehicle.output_folder import write_whole
+from vehicle.written_files import MARKER, mark, refuse_foreign
 
 
 def prepare_folder(folder: Path, *, force: bool) -> Path:
@@ -14,24 +15,26 @@ def prepare_folder(folder: Path, *, force: bool) -> Path:
 
     Args:
         folder: where to.
-        force: write into a folder that already holds files.
+        force: write into a folder that holds results already.
 
     Returns:
         The folder.
 
     Raises:
-        ConfigurationError: it exists and is not empty, and force is off.
+        ConfigurationError: it is not empty and force is off, or it holds files that no study wrote.
         OutputError: it cannot be made or is not a folder.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        occupied = any(folder.iterdir())
+        occupied = any(path.name != MARKER for path in folder.iterdir())
     except OSError as error:
         raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None
     if occupied and not force:
         raise ConfigurationError(
             f"--output {folder}: holds files already; give another folder, or --force to overwrite"
         )
+    refuse_foreign(folder)
+    mark(folder)
     return folder
 
 

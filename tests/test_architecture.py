@@ -31,12 +31,13 @@ ROOMS = {
 }
 
 # The facade and the thin command lines above the rooms.
-OUTPUT = {"output_folder"}
+OUTPUT = {"output_folder", "written_files"}
 COMMAND = {"command_line"}
 TOP = {
     "errors": set(),
     "names": set(),
-    "output_folder": set(),
+    "output_folder": {"written_files"},
+    "written_files": set(),
     "command_line": set(),
     "threads": set(),
     "compiler_cache": set(),

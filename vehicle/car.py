@@ -130,6 +130,11 @@ class Car:
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str = "fr"
     ) -> npt.NDArray[np.complex128]:
         """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies)."""
+        _check_wheel(wheel)
+        known = acceleration_channels()
+        for name in channels:
+            if name not in known:
+                raise ConfigurationError(f"no acceleration channel {name!r}; there are {', '.join(known)}")
         return matrix_response(self.matrices, frequency, channels, wheel=wheel, stuck=_is_stuck(damper))
 
     def run(
@@ -150,7 +155,7 @@ class Car:
             channels: names of the recorded channels; all by default.
 
         Returns:
-            The run; `run.recording.statistics` says which engine made it.
+            The run; `run.recording.statistics.engine` says which engine made it, `run.engine_reason` why.
 
         Raises:
             ConfigurationError: the engine or a channel does not exist, a motion of the car grows by itself, or the
@@ -163,7 +168,10 @@ class Car:
         for name in channels or ():
             if name not in channel_units():
                 raise ConfigurationError(f"no channel {name!r}; there are {', '.join(channel_units())}")
-        if engine == "reduced" or (engine == "auto" and has_compiler()):
+        reason = "asked for"
+        if engine == "auto" and not has_compiler():
+            reason = "numba, which the reduced engine needs, is not installed"
+        elif engine != "mujoco":
             self.check("reduced")
             recording = simulate_reduced(
                 self.poles,
@@ -175,13 +183,16 @@ class Car:
             )
             require_finite(recording)
             if engine == "reduced" or recording.statistics.within_validity:
-                return Run(car=self, signal=signal, recording=recording)
+                if engine == "auto":
+                    reason = "the motion stayed within the validity of the reduced engine"
+                return Run(car=self, signal=signal, recording=recording, engine_reason=reason)
+            reason = "; ".join(recording.statistics.warnings)
         self.check("mujoco")
         recording = simulate(self.model, signal, progress=progress)
         require_finite(recording)
         if channels is not None:
             recording = recording.only(channels)
-        return Run(car=self, signal=signal, recording=recording)
+        return Run(car=self, signal=signal, recording=recording, engine_reason=reason)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -191,6 +202,7 @@ class Run:
     car: Car
     signal: Signal
     recording: Recording
+    engine_reason: str = "asked for"
 
     def __getitem__(self, channel: str) -> npt.NDArray[np.float64]:
         """Time history of a channel; names are those of `interface.md`, units in `recording.units`."""

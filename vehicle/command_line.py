@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import signal
 import sys
@@ -15,6 +16,16 @@ from types import FrameType
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
 
 INTERRUPTED = 130
+
+SET_HELP = (
+    "override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], one component of it has its axis "
+    "behind the path: bushings.tyre.stiffness.z=2e5; may be repeated"
+)
+"""Help of --set, which most commands have."""
+
+OPENGL = ("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0", "glfw", "glx", "egl",
+          "osmesa")  # fmt: skip
+"""What MuJoCo takes as MUJOCO_GL on Linux; with anything else its import fails."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -38,15 +49,20 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     # A terminated run cleans up as an interrupted one does.
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     _asked_to_end.clear()
+    lost = _stand_in_for_closed_streams()
     try:
+        backend = os.environ.get("MUJOCO_GL", "").strip().lower()
+        if backend not in OPENGL:
+            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; allowed: osmesa, egl; or unset it")
         job()
-        sys.stdout.flush()
+        _flush()
+        if lost is not None and lost.getvalue():
+            raise OutputError("standard output is closed: what was to be printed is lost")
     except KeyboardInterrupt:
         _say("interrupted; nothing half-written is left behind")
         return INTERRUPTED
     except BrokenPipeError:
-        # The reader of our output has gone (| head); what follows goes nowhere.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _print_nowhere()
         return OutputError.exit_code
     except VehicleError as error:
         if debug:
@@ -61,10 +77,42 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     except MemoryError:
         _say("out of memory; give a shorter input or a lower solver.record_rate")
         return VehicleError.exit_code
+    except Exception as error:
+        if debug:
+            traceback.print_exc()
+        _say(f"{FAULT} ({type(error).__name__}: {error}); please report it with what --debug shows")
+        return VehicleError.exit_code
     finally:
         for number, handler in previous.items():
             signal.signal(number, handler)
     return 0
+
+
+def _stand_in_for_closed_streams() -> io.StringIO | None:
+    """Give the process the standard streams that it was started without (>&-); returns that of the output, if so."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass  # so that no file of a run gets the number of a standard stream
+    os.close(descriptor)
+    if sys.stderr is None:
+        sys.stderr = io.StringIO()
+    if sys.stdout is None:
+        sys.stdout = io.StringIO()
+        return sys.stdout
+    return None
+
+
+def _flush() -> None:
+    """Hand over what was printed; a full disk behind it shows here."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        _print_nowhere()
+        raise
+
+
+def _print_nowhere() -> None:
+    """Discard what is still to be printed: its reader has gone (| head), or its disk is full."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def parse_and_run(
@@ -81,9 +129,19 @@ def parse_and_run(
         Exit code, as of `run_command`.
     """
     given = sys.argv[1:] if arguments is None else list(arguments)
-    # Looked for by hand: a failure to parse must show its traceback too.
-    return run_command(lambda: job(parser.parse_args(given)), debug="--debug" in given)
 
+    def checked(text: list[str]) -> argparse.Namespace:
+        for word in text:
+            if "\0" in word:
+                raise ConfigurationError(f"argument {word!r}: holds a NUL byte; no path or value may")
+        return parser.parse_args(text)
+
+    # Looked for by hand: a failure to parse must show its traceback too.
+    return run_command(lambda: job(checked(given)), debug="--debug" in given)
+
+
+FAULT = "a fault of the program"
+"""What every error begins with that no one has foreseen."""
 
 _asked_to_end = threading.Event()
 """Set by a signal. The exception alone can be lost: a compiler that is called back from C swallows it."""
@@ -99,7 +157,7 @@ def _say(message: str) -> None:
 
 
 class ProgressLine:
-    """A line on the terminal that tells how far a long piece of work is; silent where nobody watches.
+    """Tells how far a long piece of work is: a line that moves on a terminal, else a new line every half minute.
 
     Args:
         what: name of the work.
@@ -108,20 +166,29 @@ class ProgressLine:
 
     def __init__(self, what: str, *, enabled: bool = True) -> None:
         self.what = what
-        self.enabled = enabled and sys.stderr.isatty()
+        self.enabled = enabled
+        self.moving = sys.stderr.isatty()
         self.started = time.monotonic()
-        self.last = 0.0
+        self.last = self.started - (MOVING_EVERY if self.moving else 0.0)
 
     def __call__(self, fraction: float) -> None:
-        """Show a fraction [-]; at most five times a second. The place where a lost interruption is noticed."""
+        """Show a fraction [-]. The place where a lost interruption is noticed."""
         if _asked_to_end.is_set():
             raise KeyboardInterrupt
         now = time.monotonic()
-        if not self.enabled or (now - self.last < 0.2 and fraction < 1.0):
+        due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
+        if not (self.enabled and due):
             return
         self.last = now
         left = (now - self.started) * (1.0 / max(fraction, 1e-6) - 1.0)
-        bar = "#" * round(30 * fraction)
-        end = "\n" if fraction >= 1.0 else ""
-        sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * fraction:3.0f} %  {left:4.0f} s left {end}")
+        if self.moving:
+            bar = "#" * round(30 * fraction)
+            end = "\n" if fraction >= 1.0 else ""
+            sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * fraction:3.0f} %  {left:4.0f} s left {end}")
+        else:
+            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %, {left:.0f} s left\n")
         sys.stderr.flush()
+
+
+MOVING_EVERY, LINE_EVERY = 0.2, 30.0
+"""Time between two signs of progress on a terminal and elsewhere [s]."""

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from vehicle.command_line import Parser, parse_and_run
+from vehicle.command_line import SET_HELP, Parser, parse_and_run
 
 FOLDER = Path(__file__).resolve().parents[1] / "mjcf"
 """Folder of the files in the repository."""
@@ -16,9 +16,7 @@ def parser() -> Parser:
     """The options of the command."""
     found = Parser(prog="python -m vehicle.mjcf", description="Write car.xml, scene.xml and meshes of a vehicle.")
     found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
-    found.add_argument(
-        "--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help="override a parameter"
-    )
+    found.add_argument("--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help=SET_HELP)
     found.add_argument("--output", type=Path, default=FOLDER, metavar="DIR", help="folder; mjcf/ by default")
     found.add_argument("--debug", action="store_true", help="show the traceback of an error")
     return found

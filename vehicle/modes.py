@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from vehicle.command_line import Parser, parse_and_run
+from vehicle.command_line import SET_HELP, Parser, parse_and_run
 
 
 def parser() -> Parser:
@@ -17,9 +17,7 @@ def parser() -> Parser:
         prog="python -m vehicle.modes", description="Modes up to 60 Hz of the assembled car, from its matrices."
     )
     found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
-    found.add_argument(
-        "--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help="override a parameter"
-    )
+    found.add_argument("--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help=SET_HELP)
     found.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers")
     found.add_argument("--json", action="store_true", help="print JSON")
     found.add_argument("--debug", action="store_true", help="show the traceback of an error")

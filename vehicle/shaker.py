@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import Any
 
-from vehicle.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.command_line import SET_HELP, Parser, ProgressLine, parse_and_run
+from vehicle.errors import ConfigurationError
 from vehicle.names import WHEEL_OF_OPTION
 
 
@@ -27,7 +29,7 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PATH=VALUE",
-        help="override one parameter, as damper.coulomb_friction=93.75; may be repeated",
+        help=SET_HELP,
     )
     found.add_argument(
         "--wheel",
@@ -37,8 +39,9 @@ def parser() -> Parser:
     found.add_argument(
         "--engine",
         choices=("mujoco", "reduced", "auto"),
-        default="auto",
-        help="mujoco (auto, for a single run); reduced: hundreds of times faster, linear but for the dampers, no film",
+        default="mujoco",
+        help="mujoco, the model of record; reduced: hundreds of times faster, linear but for the dampers, no film; "
+        "auto: reduced where its validity holds, else mujoco; mujoco by default",
     )
     found.add_argument("--timestep", type=float, metavar="S", help="step of the integration [s]")
     found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
@@ -70,32 +73,21 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
-    from vehicle.errors import ConfigurationError
     from vehicle.excitation.csv_file import read_signal
     from vehicle.excitation.input_files import find_input
     from vehicle.output_folder import check_output
 
     source = find_input(options.input)
     output = options.output or Path("runs") / source.stem
-    check_output(output, force=options.force, protect=source)
-    engine = "mujoco" if options.engine == "auto" else options.engine
+    inputs = (source,) if options.vehicle is None else (source, options.vehicle)
+    check_output(output, force=options.force, protect=inputs)
+    _check_numbers(options)
+    engine, reason = _engine(options)
     video_name = None
-    if options.video is not None and engine == "reduced":
-        raise ConfigurationError(
-            "--video: the reduced engine keeps no poses to film; leave --engine reduced out, or --video"
-        )
-    if options.timestep is not None and engine == "reduced":
-        raise ConfigurationError(
-            "--timestep: the reduced engine has its own step; leave --engine reduced out, or --timestep"
-        )
     if options.video is not None:
         from vehicle.rendering.backend import require_film
 
-        video_name = Path(options.video) if options.video else Path(f"{source.stem}.mp4")
-        if video_name.suffix != ".mp4":
-            raise ConfigurationError(f"--video {video_name}: a film is written as .mp4; give FILE.mp4")
-        if options.slow_motion < 1.0 or options.video_duration <= 0.0:
-            raise ConfigurationError("--slow-motion must be at least 1 and --video-duration greater than 0 s")
+        video_name = _film_path(options, source, output)
         require_film()
     overrides = list(options.overrides)
     if options.timestep is not None:
@@ -118,7 +110,7 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError(
             f"--wheel {options.wheel}: {source} names the wheels of its columns; leave --wheel out"
         )
-    if video_name is not None and options.video_start is not None:
+    if options.video_start is not None:
         latest = signal.duration - options.video_duration / options.slow_motion
         if not 0.0 <= options.video_start <= latest:
             raise ConfigurationError(
@@ -147,13 +139,56 @@ def _job(options: argparse.Namespace) -> None:
             time_format=options.time_format,
             video=None if video_name is None else make_film,
             video_name=video_name,
-            input_file=source,
+            inputs=inputs,
             engine=engine,
+            engine_reason=reason,
         ),
         ProgressLine("simulation", enabled=not options.quiet),
     )
     if not options.quiet:
         print(report(summary, output))
+
+
+def _check_numbers(options: argparse.Namespace) -> None:
+    """Refuse numbers of the film and the step that nobody can mean, before anything is simulated."""
+    wanted = (
+        ("--slow-motion", options.slow_motion, 1.0, "at least 1"),
+        ("--video-duration", options.video_duration, 0.1, "at least 0.1 s"),
+        ("--exaggeration", options.exaggeration, 1e-3, "at least 0.001"),
+        ("--video-start", options.video_start, 0.0, "at least 0 s"),
+    )
+    for name, value, lowest, allowed in wanted:
+        if value is not None and not lowest <= value < math.inf:
+            raise ConfigurationError(f"{name} {value:g}: must be a finite number, {allowed}")
+
+
+def _engine(options: argparse.Namespace) -> tuple[str, str]:
+    """The engine that is asked for, and why it is not the one that was named."""
+    needs = "--video" if options.video is not None else "--timestep" if options.timestep is not None else None
+    if needs is None or options.engine == "mujoco":
+        return options.engine, ""
+    why = f"{needs}: the reduced engine " + ("keeps no poses to film" if needs == "--video" else "has its own step")
+    if options.engine == "reduced":
+        raise ConfigurationError(f"{why}; leave --engine reduced out, or {needs}")
+    return "mujoco", why
+
+
+def _film_path(options: argparse.Namespace, source: Path, output: Path) -> Path:
+    """Where the film goes: a plain name lies in the folder of the run."""
+    from vehicle.output_folder import check_film
+
+    name = Path(options.video) if options.video else Path(f"{source.stem}.mp4")
+    if name.suffix != ".mp4":
+        raise ConfigurationError(f"--video {name}: a film is written as .mp4; give FILE.mp4")
+    if name.parent == Path():
+        return name
+    folder = output.resolve()
+    if name.resolve().parent == folder:
+        return Path(name.name)
+    if folder in name.resolve().parents:
+        raise ConfigurationError(f"--video {name}: lies below the folder of the run; give a plain name: {name.name}")
+    check_film(name, force=options.force)
+    return name
 
 
 def report(summary: dict[str, Any], output: Path) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import csv
+import math
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.command_line import SET_HELP, Parser, ProgressLine, parse_and_run
 from vehicle.names import WHEEL_OF_OPTION
 
 
@@ -17,8 +19,8 @@ def parser() -> Parser:
     found = Parser(
         prog="python -m vehicle.sweep",
         description="Run the car with varied parameters on one or several inputs.",
-        epilog="Exit codes: 0 done (failed runs are rows with their reason), 2 usage, 3 bad data, 5 library missing, "
-        "6 cannot write.",
+        epilog="Exit codes: 0 done, 2 usage, 3 bad data, 4 done but runs failed (rows with their reason; 0 with "
+        "--allow-failed), 5 library missing, 6 cannot write.",
     )
     found.add_argument(
         "--input", action="append", required=True, metavar="FILE", help="CSV file or a shipped one; may be repeated"
@@ -28,15 +30,14 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="PATH=V1,V2,...",
-        help="values of a parameter, as damper.coulomb_friction=62.5,125; repeated: every combination",
+        help="values of a parameter, as damper.coulomb_friction=62.5,125, or of a component of a vector, as "
+        "bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: every combination",
     )
     found.add_argument(
         "--table", type=Path, metavar="FILE.csv", help="columns are parameter paths, rows are variations"
     )
     found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
-    found.add_argument(
-        "--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help="override one parameter"
-    )
+    found.add_argument("--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help=SET_HELP)
     found.add_argument(
         "--wheel", choices=sorted(WHEEL_OF_OPTION), default="front_right", help="wheel of a plain displacement column"
     )
@@ -45,7 +46,7 @@ def parser() -> Parser:
         "--engine",
         choices=("auto", "reduced", "mujoco"),
         default="auto",
-        help="auto: the reduced engine, MuJoCo where the motion leaves its validity",
+        help="auto (default): the reduced engine where its validity holds, else MuJoCo",
     )
     found.add_argument(
         "--skip", type=float, default=2.0, metavar="S", help="seconds left out at the start; 2 by default"
@@ -57,6 +58,7 @@ def parser() -> Parser:
     found.add_argument("--output", type=Path, default=Path("runs/sweep"), metavar="DIR", help="folder of the table")
     found.add_argument("--resume", action="store_true", help="go on in that folder; finished rows are kept")
     found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")
+    found.add_argument("--allow-failed", action="store_true", help="exit with 0 although runs failed")
     found.add_argument("--force", action="store_true", help="replace the rows in that folder")
     found.add_argument("--quiet", action="store_true", help="print nothing but errors")
     found.add_argument("--debug", action="store_true", help="show the traceback of an error")
@@ -70,7 +72,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
-    from vehicle.errors import ConfigurationError
+    from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.excitation.input_files import find_input
     from vehicle.parameters.vehicle import load_vehicle
     from vehicle.sweeps.case import SignalFile, signal_of, table_cases
@@ -81,6 +83,8 @@ def _job(options: argparse.Namespace) -> None:
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
+    if not 0.0 <= options.skip < math.inf:
+        raise ConfigurationError(f"--skip {options.skip:g}: must be a finite number of seconds, at least 0")
     paths, rows = read_table(options.table) if options.table else every_combination(options.vary)
     load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
@@ -115,6 +119,11 @@ def _job(options: argparse.Namespace) -> None:
         print(f"{folder}: {len(cases)} runs, {len(table.failed)} failed; table.csv, sweep.json, rows.jsonl, timing.csv")
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
+    if table.failed and not options.allow_failed:
+        raise SimulationError(
+            f"{len(table.failed)} of {len(cases)} runs failed; the table is written, with the reason in their rows; "
+            "--allow-failed takes that as success"
+        )
 
 
 def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[str], row: Sequence[str]) -> None:
@@ -149,7 +158,8 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
     paths, values = [], []
     for text in texts:
         path, separator, listed = text.partition("=")
-        items = [item.strip() for item in listed.split(",")]
+        # A comma within brackets belongs to a vector.
+        items = [item.strip() for item in re.split(r",(?![^\[]*\])", listed)]
         if not separator or not path.strip() or not all(items):
             raise ConfigurationError(
                 f"--vary {text}: needed is PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; one component of a "
@@ -166,18 +176,23 @@ def read_table(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     """Paths and rows of a CSV file of variations.
 
     Raises:
-        DataError: it cannot be read, has no rows, or a row has another number of cells than the header.
+        DataError: it cannot be read, has no rows, a column twice, or a row has another number of cells than the header.
     """
     from vehicle.errors import DataError
 
+    if not path.is_file():
+        raise DataError(f"--table {path}: cannot be read: no such file, or not a file")
     try:
         with path.open(encoding="utf-8", newline="") as file:
             lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise DataError(f"--table {path}: cannot be read ({error})") from None
     if len(lines) < 2:
         raise DataError(f"--table {path}: needed are a header of parameter paths and at least one row of values")
     header = [cell.strip() for cell in lines[0]]
+    twice = sorted({cell for cell in header if header.count(cell) > 1})
+    if twice:
+        raise DataError(f"--table {path}: column {', '.join(twice)} stands there more than once; keep one of them")
     for number, line in enumerate(lines[1:], start=1):
         if len(line) != len(header) or not all(cell.strip() for cell in line):
             raise DataError(

@@ -196,9 +196,8 @@ def test_7_units_are_required_and_known(tmp_path, header, message):
 
 def test_7_displacement_in_millimetres_under_metres(tmp_path):
     assert refused_lines(tmp_path, [HEADER, *rows(amplitude=0.5)]) == (
-        ": plate fr is displaced by 0.5 m at sample 50 (t = 0.05 s); allowed 0.15 m; looks like mm? Write the unit "
-        "[mm] into "
-        "the header, or remove a constant offset (--remove-mean)"
+        ": plate fr is displaced by 0.5 m at sample 50 (t = 0.05 s); allowed 0.15 m; looks like mm? The column "
+        "is declared in [m]; write its unit into the header ([m] or [mm]), or remove a constant offset (--remove-mean)"
     )
 
 
@@ -213,8 +212,18 @@ def test_7_acceleration_beyond_a_shaker(tmp_path):
 def test_7_too_small_to_be_true(tmp_path):
     message = refused_lines(tmp_path, [HEADER, *rows(amplitude=1e-7)])
     assert message.startswith(": RMS of plate fr is 3.5")
-    assert "allowed from 1e-07 m; looks like mm? Check whether the column holds metres under the unit [mm]" in message
-    assert ": RMS of plate fr is 0 m;" in refused_lines(tmp_path, [HEADER, *(f"{i / 1000},0" for i in range(400))])
+    assert "allowed from 1e-07 m; does the column hold metres?" in message
+    still = refused_lines(tmp_path, [HEADER, *(f"{i / 1000},0" for i in range(400))])
+    assert still.startswith(": no plate moves: every column holds one value only")
+
+
+def test_64_a_column_in_millimetres_is_judged_in_millimetres(tmp_path):
+    header = "time [s],displacement [mm]"
+    message = refused_lines(tmp_path, [header, *rows(amplitude=500.0)])
+    assert message.startswith(": plate fr is displaced by 500 mm at sample 50 (t = 0.05 s); allowed 150 mm; ")
+    assert "looks like mm" not in message and "declared in [mm]" in message
+    message = refused_lines(tmp_path, [header, *rows(amplitude=1e-4)])
+    assert "allowed from 0.0001 mm; does the column, declared in [mm], hold metres?" in message
 
 
 def test_7_quantisation_of_a_measured_signal_is_no_acceleration(tmp_path):

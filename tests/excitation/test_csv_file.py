@@ -11,6 +11,7 @@ from tests.excitation.csv_samples import HEADER, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.csv_output import write_signal
+from vehicle.excitation.input_files import find_input, shipped_inputs
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.rest import half_cosine
 from vehicle.excitation.signal import Signal, uniform_time
@@ -228,10 +229,9 @@ def test_resampling_limits(tmp_path):
     path = write(tmp_path, [HEADER, *rows()])
     with pytest.raises(DataError, match="makes 399000001 samples; allowed 20000000; choose a lower rate"):
         read_signal(path, resample_hz=1e9)
-    with pytest.raises(DataError, match="sampling rate 50 Hz; allowed from 125 Hz"):
-        read_signal(path, resample_hz=50.0)
-    with pytest.raises(ConfigurationError, match="resampling rate -1 Hz; allowed: a positive number"):
-        read_signal(path, resample_hz=-1)
+    for rate in (50.0, 0.5, -1.0, np.inf, np.nan):  # 0.5 looked like a time in ms
+        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: allowed from 125 Hz on"):
+            read_signal(path, resample_hz=rate)
 
 
 def test_roads_beyond_a_shaker_are_accepted_on_request(tmp_path):
@@ -274,3 +274,46 @@ def test_nothing_half_written_stays(tmp_path):
     with pytest.raises(OutputError, match="a comment holds a line break"):
         write_signal(tmp_path / "x.csv", signal, ["a\nb"])
     assert [path.name for path in tmp_path.iterdir()] == ["taken.csv"]
+
+
+@pytest.mark.parametrize(("rate", "decimals"), [(2048.0, 6), (2048.0, 5), (666.6, 4), (1024.0, 4)])
+@pytest.mark.parametrize("cut", [np.round, lambda t, d: np.floor(t * 10.0**d) / 10.0**d], ids=["rounded", "cut"])
+def test_64_a_rounded_clock_is_recognised(rate, decimals, cut, tmp_path):
+    t = np.arange(6000) / rate
+    z = 5e-4 * (1.0 - np.cos(2.0 * np.pi * 10.0 * t))
+    lines = [f"{a:.{decimals}f},{b:.9e}" for a, b in zip(cut(t, decimals), z, strict=True)]
+    signal = read_signal(write(tmp_path, [HEADER, *lines]))
+    assert signal.notices[0].startswith(f"time stamps are rounded to {decimals} decimals: taken as a clock of ")
+    # A whole number of Hz is exact; any other is known to a last digit over the record.
+    assert 1.0 / signal.timestep == pytest.approx(rate, rel=1e-12 if rate.is_integer() else 10.0**-decimals / t[-1])
+
+
+def test_64_a_jittering_clock_is_none(tmp_path):
+    """The same number of decimals, but the stamps leave the clock by two of the last."""
+    t = np.arange(6000) / 2048.0 + 2e-6 * np.random.default_rng(1).uniform(-1.0, 1.0, 6000)
+    lines = [f"{a:.6f},{1e-3 * np.sin(60.0 * a):.9e}" for a in t]
+    with pytest.raises(DataError, match="time is not uniform"):
+        read_signal(write(tmp_path, [HEADER, *lines]))
+
+
+def test_64_pauses_and_drift_are_mentioned(tmp_path):
+    t = np.arange(10_000) / 1000.0
+    z = 5e-4 * np.sin(2.0 * np.pi * 5.0 * t) * (t < 4.0) + 5e-4 * np.sin(2.0 * np.pi * 5.0 * t) * (t > 6.0)
+    shaking = [f"{a:.3f},{b:.9e}" for a, b in zip(t, z, strict=True)]
+    assert any("stands still for 2" in text and "from t = 4 s on" in text for text in _notices(tmp_path, shaking))
+    with pytest.raises(
+        DataError, match=r":4002: the record pauses for 2\.001 s, from 3\.999 to 6 s; nothing is filled"
+    ):
+        read_signal(write(tmp_path, [HEADER, *shaking[:4000], *shaking[6000:]]))
+    drifting = [f"{a:.3f},{1e-3 * np.sin(30.0 * a) + 3e-4 * a:.9e}" for a in t]
+    (said,) = (text for text in _notices(tmp_path, drifting) if "drifts" in text)
+    assert said.startswith("plate fr drifts by ") and float(said.split()[4]) == pytest.approx(3.0, rel=0.05)
+
+
+def _notices(folder, lines):
+    return read_signal(write(folder, [HEADER, *lines])).notices
+
+
+@pytest.mark.parametrize("name", shipped_inputs())
+def test_64_shipped_inputs_neither_drift_nor_pause(name):
+    assert not any("drifts" in text or "stands still" in text for text in read_signal(find_input(name)).notices)

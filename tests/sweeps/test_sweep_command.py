@@ -50,6 +50,8 @@ def test_a_table_of_variations(tmp_path):
     file.write_text("damper.viscous, damper.coulomb_friction\n# a remark\n1500,75\n2250,125\n", encoding="utf-8")
     assert read_table(file) == (["damper.viscous", "damper.coulomb_friction"], [("1500", "75"), ("2250", "125")])
     assert every_combination(["a=1,2", "b=x"]) == (["a", "b"], [("1", "x"), ("2", "x")])
+    vectors = every_combination(["a=[1, 2, 3],[4,5,6]", "b=7,8"])[1]
+    assert vectors == [("[1, 2, 3]", "7"), ("[1, 2, 3]", "8"), ("[4,5,6]", "7"), ("[4,5,6]", "8")]
 
 
 @pytest.mark.parametrize(
@@ -68,6 +70,11 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous=1000", "--resume", "--force"], "give one of them", 2),
         (["--vary", "damper.viscous=1000", "--executor", "here"], "allowed are dask://host:port", 2),
         (["--table", "missing.csv"], "cannot be read", 3),
+        (["--vary", "damper.viscous=1000", "--skip", "-1"], "--skip -1: must be a finite number", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan: must be a finite number", 2),
+        (["--vary", "damper.viscous=1000", "--executor", "..:x"], "--executor ..:x: TypeError", 2),
+        (["--vary", "damper.viscous=1000", "--executor", "json:nothing"], "has no attribute 'nothing'", 2),
+        (["--vary", "bushings.tyre.stiffness=1e5"], "is a vector; give all as [x, y, z]", 2),
     ],
 )
 def test_bad_usage(arguments, message, code, signal, tmp_path, capsys):
@@ -78,7 +85,12 @@ def test_bad_usage(arguments, message, code, signal, tmp_path, capsys):
 
 def test_bad_tables(tmp_path, signal, capsys):
     file = tmp_path / "variations.csv"
-    for text, message in (("a\n", "at least one row"), ("a,b\n1\n", "row 1: 1 cells, the header has 2")):
+    for text, message in (
+        ("a\n", "at least one row"),
+        ("a,b\n1\n", "row 1: 1 cells, the header has 2"),
+        ("a,b,a\n1,2,3\n", "column a stands there more than once"),
+        ("a\n" + "1" * 200_000 + "\n", "cannot be read (field larger than field limit"),
+    ):
         file.write_text(text, encoding="utf-8")
         assert main(["--input", str(signal), "--output", str(tmp_path / "out"), "--table", str(file)]) == 3
         assert message in capsys.readouterr().err
@@ -89,4 +101,34 @@ def test_a_folder_with_other_files_is_refused(signal, tmp_path, capsys):
     output.mkdir()
     (output / "thesis.txt").write_text("mine", encoding="utf-8")
     assert main(["--input", str(signal), "--output", str(output), "--vary", "damper.viscous=1", "--force"]) == 2
-    assert "holds other files" in capsys.readouterr().err
+    assert "holds files that no run wrote: thesis.txt" in capsys.readouterr().err
+
+
+def test_failed_rows_are_no_success(signal, tmp_path, capsys):
+    arguments = ["--input", str(signal), "--vary", "damper.viscous=-1,2000", "--skip", "0.5", "--engine", "reduced"]
+    assert main([*arguments, "--output", str(tmp_path / "out")]) == 4
+    printed = capsys.readouterr()
+    assert "1 of 2 runs failed; the table is written" in printed.err and "2 runs, 1 failed" in printed.out
+    assert [row["failed because"] != "" for row in table_of(tmp_path / "out")] == [True, False]
+    assert main([*arguments, "--output", str(tmp_path / "out"), "--resume", "--allow-failed"]) == 0
+
+
+def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):
+    from vehicle.output_folder import folder_lock
+
+    arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
+    (tmp_path / ".out.lock").write_text("999999\n", encoding="utf-8")  # of a killed process: nobody holds it
+    assert main([*arguments, "--skip", "0.5", "--engine", "reduced"]) == 0
+    assert not (tmp_path / ".out.lock").exists()
+    rows = (tmp_path / "out" / "rows.jsonl").read_bytes()
+    for option in ("--force", "--resume"):
+        with folder_lock(tmp_path / "out"):
+            assert main([*arguments, option]) == 2
+        assert "is writing there; wait for it" in capsys.readouterr().err
+        assert (tmp_path / "out" / "rows.jsonl").read_bytes() == rows
+
+
+def test_an_executor_that_cannot_be_made(signal, tmp_path, capsys):
+    arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
+    assert main([*arguments, "--executor", "json:loads"]) == 2
+    assert "--executor json:loads: TypeError" in capsys.readouterr().err

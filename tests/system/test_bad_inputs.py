@@ -68,7 +68,7 @@ SETTINGS = [
     ("56 body of 16 kg", "body.mass=16", "body.mass: found 16.0 kg, must be at least 100.0 (without engine"),
     ("24 zero mass", "parts.knuckle.mass=0", "parts.knuckle.mass: found 0.0 kg, must be greater than 0.0"),
     ("24 triangle inequality", "parts.engine.inertia=[1, 1, 3]", "parts.engine.inertia: found [1.0, 1.0, 3.0] kg m2"),
-    ("25 zero step", "solver.timestep=0", "solver.timestep: found 0.0 s, must be greater than 0.0"),
+    ("25 zero step", "solver.timestep=0", "solver.timestep: found 0.0 s, must be at least 1e-06"),
     ("26 strut below ball", "hardpoints.strut_top=[0.877, 0.548, 0.5]", "hardpoints.strut_top: found z = 0.5 m"),
     ("26 collinear arm", "hardpoints.arm_rear=[0.842, 0.2, 0.612]", "lie on one line"),
     ("27 no such body", "body.superelement=nothing.toml", "body.superelement: no file 'nothing.toml'"),

@@ -14,6 +14,7 @@ from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.names import acceleration_channels, channel_units
 from vehicle.parameters.vehicle import load_vehicle
+from vehicle.written_files import MARKER, written
 
 FILES = {"summary.json", "vehicle.toml", "time.npz", "frf.csv", "frf.png", "time.png"}
 
@@ -22,7 +23,8 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
     outcome = shaker("--input", "short.csv", "--set", "damper.coulomb_friction=100")
     assert outcome.code == 0, outcome.err
     folder = tmp_path / "runs" / "short"
-    assert {path.name for path in folder.iterdir()} == FILES
+    assert {path.name for path in folder.iterdir()} == FILES | {MARKER}
+    assert written(folder) == FILES | {MARKER}
     assert not list((tmp_path / "runs").glob(".*")), "temporary files must be gone"
     assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
 

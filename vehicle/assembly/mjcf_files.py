@@ -10,6 +10,7 @@ import numpy as np
 
 from vehicle.assembly.spec import assemble
 from vehicle.assembly.visuals import BORNE_BY, add_shapes
+from vehicle.errors import ConfigurationError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.shapes.scene import car_shapes
@@ -93,7 +94,14 @@ def write_mjcf(folder: Path, files: dict[str, bytes]) -> None:
     Args:
         folder: target.
         files: as of `mjcf_files`.
+
+    Raises:
+        ConfigurationError: it holds files of those names, and no model that was generated here.
     """
+    car, meshes = folder / "car.xml", (folder / "meshes").glob("*.stl")
+    there = sorted({*(f"meshes/{mesh.name}" for mesh in meshes), *(name for name in files if (folder / name).exists())})
+    if there and not (car.is_file() and GENERATED.encode() in car.read_bytes()[:1000]):
+        raise ConfigurationError(f"--output {folder}: holds {there[0]}, which was not generated; give another folder")
     (folder / "meshes").mkdir(parents=True, exist_ok=True)
     for old in (folder / "meshes").glob("*.stl"):
         if f"meshes/{old.name}" not in files:

@@ -15,7 +15,17 @@ from vehicle.excitation.csv_text import read_text
 from vehicle.excitation.plausibility import aliasing_notices, check_level
 from vehicle.excitation.rest import start_from_rest
 from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
-from vehicle.excitation.time_grid import check_increasing, check_rate, check_uniform, decimate, is_uniform, refine
+from vehicle.excitation.steadiness import drifts, pauses
+from vehicle.excitation.time_grid import (
+    LOWEST_RATE,
+    check_increasing,
+    check_rate,
+    check_uniform,
+    clock_of_rounded,
+    decimate,
+    is_uniform,
+    refine,
+)
 from vehicle.names import WHEELS
 
 
@@ -49,8 +59,10 @@ def read_signal(
     path = Path(path)
     if wheel not in WHEELS:
         raise ConfigurationError(f"wheel {wheel!r} is unknown; allowed: {', '.join(WHEELS)}")
-    if resample_hz is not None and not 0.0 < resample_hz < np.inf:
-        raise ConfigurationError(f"resampling rate {resample_hz!r} Hz; allowed: a positive number")
+    if resample_hz is not None and not LOWEST_RATE <= resample_hz < np.inf:
+        raise ConfigurationError(
+            f"--resample {resample_hz:g} Hz: allowed from {LOWEST_RATE:g} Hz on (samples a second)"
+        )
     text = read_text(path)
     header_line = next((n for n, line in enumerate(text.lines, 1) if not is_comment(line)), None)
     if header_line is None:
@@ -72,7 +84,7 @@ def read_signal(
     for driven, column in header.wheel_columns.items():
         place = f"column {header.cells[column]!r}"
         values, filled = fill_missing(path, time, cells, column, place)
-        notices.extend(filled)
+        notices.extend([*filled, *pauses(driven, time, values)])
         columns[driven] = values * header.factors[driven]
 
     timestep, columns, resampled = _uniform_columns(path, time, columns, cells, resample_hz)
@@ -83,8 +95,11 @@ def read_signal(
         for driven, z in columns.items():
             notices.append(f"mean {np.mean(z):.6g} m of plate {driven} removed on request")
             columns[driven] = z - np.mean(z)
+    if not any(np.ptp(z) > 0.0 for z in columns.values()):
+        raise DataError(f"{path}: no plate moves: every column holds one value only; give a record with motion")
+    notices.extend(drifts(columns))
     try:
-        check_level(path, columns, timestep)
+        check_level(path, columns, timestep, header.units)
     except DataError as error:
         if not accept_implausible:
             raise
@@ -108,13 +123,18 @@ def _uniform_columns(
     resample_hz: float | None,
 ) -> tuple[float, dict[str, NDArray[np.float64]], list[str]]:
     """Check the time grid, or make a new one on request: step [s], columns and notices."""
+    notices = []
+    clock = None if is_uniform(time) else clock_of_rounded(time)
+    if clock is not None:
+        time = time[0] + np.arange(time.size) / clock[0]
+        notices.append(f"time stamps are rounded to {clock[1]} decimals: taken as a clock of {clock[0]:.9g} Hz")
     rate = 1.0 / float(np.median(np.diff(time)))
     if resample_hz is None:
         check_uniform(path, time, cells.line_numbers)
     uniform = is_uniform(time)
     if uniform:
         rate = (time.size - 1) / float(time[-1] - time[0])
-    notices = list(check_rate(path, rate))
+    notices.extend(check_rate(path, rate))
     if resample_hz is None or (uniform and abs(rate / resample_hz - 1.0) < 1e-9):
         return 1.0 / rate, columns, [*notices, *aliasing_notices(columns, 1.0 / rate)]
     notices.extend(check_rate(path, resample_hz))

@@ -31,6 +31,8 @@ class CsvHeader:
     """Wheel -> index of its displacement column."""
     factors: dict[str, float]
     """Wheel -> factor from the unit of its column to metres."""
+    units: dict[str, str]
+    """Wheel -> unit of its column as declared, 'm' or 'mm'."""
     notices: tuple[str, ...]
     """What was accepted although it is unusual."""
 
@@ -94,6 +96,7 @@ def parse_header(path: Path, line: int, text: str, *, wheel: str) -> CsvHeader:
         time_column=columns["time"],
         wheel_columns={known: columns[f"displacement_{known}"] for known in driven},
         factors={known: factors[f"displacement_{known}"] for known in driven},
+        units={known: "m" if factors[f"displacement_{known}"] == 1.0 else "mm" for known in driven},
         notices=tuple(notices),
     )
 

@@ -29,42 +29,48 @@ ALIAS_SHARE = 0.05
 """Share of the velocity variance above 0.8 of the Nyquist frequency that raises a notice [-]."""
 
 
-def check_level(path: Path, displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> None:
+def check_level(
+    path: Path, displacement: Mapping[str, NDArray[np.float64]], timestep: float, units: Mapping[str, str] | None = None
+) -> None:
     """Stop at magnitudes that speak of another unit or quantity.
 
     Args:
         path: file, for messages.
         displacement: wheel -> plate displacement [m], shape (n,).
         timestep: distance of the samples [s].
+        units: wheel -> unit that its column is declared in, "m" (by default) or "mm": messages speak in it.
 
     Raises:
         DataError: |z| > 0.15 m, |z''| > 50 m/s2, or RMS < 1e-7 m (a plate at rest beside a moving one is accepted).
     """
     moving = any(np.std(z) >= SMALLEST_RMS for z in displacement.values())
     for wheel, z in displacement.items():
+        unit = (units or {}).get(wheel, "m")
+        per_metre, other = (1.0, "mm") if unit == "m" else (1e3, "um")
+        doubt = f"looks like {other}? The column is declared in [{unit}]"
         at = int(np.argmax(np.abs(z)))
         if abs(z[at]) > LARGEST_DISPLACEMENT:
             raise DataError(
-                f"{path}: plate {wheel} is displaced by {z[at]:.6g} m at sample {at} (t = {at * timestep:.6g} s); "
-                "allowed "
-                f"{LARGEST_DISPLACEMENT:g} m; looks like mm? Write the unit [mm] into the header, or remove a "
-                "constant offset (--remove-mean)"
+                f"{path}: plate {wheel} is displaced by {per_metre * z[at]:.6g} {unit} at sample {at} "
+                f"(t = {at * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}; {doubt}; write its "
+                "unit into the header ([m] or [mm]), or remove a constant offset (--remove-mean)"
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
+            doubt = (
+                "does the column, declared in [mm], hold metres?" if unit == "mm" else "does the column hold metres?"
+            )
             raise DataError(
-                f"{path}: RMS of plate {wheel} is {rms:.3g} m; allowed from {SMALLEST_RMS:g} m; looks like mm? "
-                "Check whether the column holds "
-                "metres under the unit [mm], or another quantity"
+                f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}; allowed from "
+                f"{per_metre * SMALLEST_RMS:g} {unit}; {doubt} Otherwise it is another quantity, or a dead sensor"
             )
         acceleration = band_limited_acceleration(z, timestep)
         at = int(np.argmax(np.abs(acceleration)))
         if abs(acceleration[at]) > LARGEST_ACCELERATION:
             raise DataError(
                 f"{path}: plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s "
-                f"(below {ACCELERATION_BAND:g} Hz); "
-                f"allowed {LARGEST_ACCELERATION:g} m/s2; looks like mm? Otherwise look there for a jump or a spike "
-                "in the record, or give --road if it is a road and no shaker signal"
+                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {doubt}. Otherwise look "
+                "there for a jump or a spike in the record, or give --road if it is a road and no shaker signal"
             )
 
 

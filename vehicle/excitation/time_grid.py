@@ -8,9 +8,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
+from scipy.optimize import minimize_scalar
 from scipy.signal import firwin, resample_poly
 
 from vehicle.errors import DataError
+
+PAUSE = 0.5
+"""A step of the time, or a stretch without motion, from this length on is a pause of the record [s]."""
 
 UNIFORM_TOLERANCE = 1e-3
 """Largest |dt - median dt| / median dt of a uniform record [-]."""
@@ -23,6 +27,9 @@ FULL_RATE = 250.0
 
 SAMPLES_PER_PERIOD = 2.5
 """Samples needed for each period of the highest frequency that is used [-]."""
+
+LARGEST_QUANTUM = 0.25
+"""Largest last digit of rounded time stamps that still tells a clock, as a share of its step [-]."""
 
 LONGEST_GAP = 0.010
 """Longest gap [s] that is interpolated over: half a period of 50 Hz."""
@@ -49,6 +56,12 @@ def check_uniform(path: Path, time: NDArray[np.float64], line_numbers: NDArray[n
     """Refuse steps that deviate from the median step by more than `UNIFORM_TOLERANCE`, naming the worst line."""
     worst, row = _worst_step(time)
     if worst > UNIFORM_TOLERANCE:
+        step = time[row] - time[row - 1]
+        if step >= PAUSE:
+            raise DataError(
+                f"{path}:{line_numbers[row]}: the record pauses for {step:.6g} s, from {time[row - 1]:.9g} to "
+                f"{time[row]:.9g} s; nothing is filled in; use the part before or after it"
+            )
         raise DataError(
             f"{path}:{line_numbers[row]}: time is not uniform: the step of {time[row] - time[row - 1]:.9g} s "
             f"deviates by {worst:.3g} of "
@@ -56,6 +69,40 @@ def check_uniform(path: Path, time: NDArray[np.float64], line_numbers: NDArray[n
             "time with more digits, "
             "or resample it (--resample HZ)"
         )
+
+
+def clock_of_rounded(time: NDArray[np.float64]) -> tuple[float, int] | None:
+    """The clock behind time stamps that were rounded, or cut, to a fixed number of decimals.
+
+    t_k = t_0 + k / f + e_k with e_k within one unit q of the last decimal, for all k: 2048 Hz written with six decimals
+    has steps of 488 and 489 us. A whole number f that fits is taken, else the clock with the least spread.
+
+    Args:
+        time: increasing times [s], shape (n,).
+
+    Returns:
+        Rate f [Hz] and number of decimals; None where no clock fits, or q is more than `LARGEST_QUANTUM` steps.
+    """
+    count = np.arange(time.size)
+    step = float(time[-1] - time[0]) / (time.size - 1)
+    for decimals in range(2, 10):
+        digits = (time - time[0]) * 10.0**decimals
+        if np.max(np.abs(digits - np.rint(digits))) < 0.01:  # what binary numbers leave of decimal ones
+            break
+    else:
+        return None
+    quantum = 10.0**-decimals
+    if quantum > LARGEST_QUANTUM * step:
+        return None
+    # The spread about a clock is convex in its step; the step that is sought lies within q / T of the mean one.
+    reach = quantum / (time.size - 1)
+    best = minimize_scalar(
+        lambda one: np.ptp(time - count * one), bounds=(step - reach, step + reach), options={"xatol": 1e-6 * reach}
+    )
+    for rate in (float(round(1.0 / step)), 1.0 / float(best.x)):
+        if rate > 0.0 and np.ptp(time - count / rate) <= (1.0 + 1e-3) * quantum:
+            return rate, decimals
+    return None
 
 
 def is_uniform(time: NDArray[np.float64]) -> bool:

@@ -44,7 +44,7 @@ def read_superelement(path: Path) -> Superelement:
         raise DataError(f"{path}: no such file. Give the path of a body model.") from error
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"{path}: cannot be read as UTF-8 text ({error}). Give a body model in TOML.") from error
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise DataError(f"{path}: no valid TOML, perhaps cut off: {error}. Write the file again.") from error
     try:
         return _superelement(content)

@@ -18,6 +18,9 @@ from vehicle.names import AXES
 
 T = TypeVar("T")
 
+LARGEST_FILE = 10_000_000
+"""Largest parameter file [byte], far above that of any body."""
+
 
 def read_table(path: Path) -> dict[str, Any]:
     """Read a TOML file into nested dictionaries.
@@ -29,12 +32,16 @@ def read_table(path: Path) -> dict[str, Any]:
         The tables of the file.
 
     Raises:
-        ConfigurationError: the file is missing, not UTF-8 or not TOML.
+        ConfigurationError: the file is missing, not a file, too large, not UTF-8 or not TOML.
     """
+    if not path.is_file():
+        raise ConfigurationError(f"{path}: no such file; give the path of a parameter file (TOML)")
     try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise ConfigurationError(f"{path}: larger than {LARGEST_FILE / 1e6:g} MB; this is no parameter file")
         return _copy(_parsed(path.read_text(encoding="utf-8")))
-    except FileNotFoundError:
-        raise ConfigurationError(f"{path}: no such file; give the path of a parameter file (TOML)") from None
+    except RecursionError:
+        raise ConfigurationError(f"{path}: tables or lists are nested too deep; this is no parameter file") from None
     except UnicodeDecodeError as error:
         raise ConfigurationError(f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
@@ -124,7 +131,13 @@ def override(table: dict[str, Any], assignments: Iterable[str]) -> dict[str, Any
             inside = ", ".join(_join(path.strip(), key) for key in list(inner)[:6])
             raise ConfigurationError(f"--set {assignment}: {path.strip()} is a group; set one of {inside}")
         if axis is None:
-            outer[keys[-1]] = _value(assignment, text.strip(), inner)
+            value = _value(assignment, text.strip(), inner)
+            if isinstance(inner, list) and len(inner) == len(AXES) and isinstance(value, int | float):
+                raise ConfigurationError(
+                    f"--set {assignment}: {path.strip()} is a vector; give all as [x, y, z], or one component with its "
+                    f"axis behind the path: {path.strip()}.z={text.strip()}"
+                )
+            outer[keys[-1]] = value
         else:
             value = _value(assignment, text.strip(), inner[axis])
             outer[keys[-2]] = [value if index == axis else member for index, member in enumerate(inner)]
@@ -241,6 +254,8 @@ def _value(assignment: str, text: str, old: Any) -> Any:
     """Parse the value of an override; a bare word stands for a text where a text is wanted."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
+    except RecursionError:
+        raise ConfigurationError(f"--set {assignment[:60]}...: brackets are nested too deep") from None
     except tomllib.TOMLDecodeError:
         if isinstance(old, str) and re.fullmatch(r"[A-Za-z0-9_.-]+", text):
             return text

@@ -24,8 +24,8 @@ FOCUS_FILE = Path(str(resources.files("vehicle.parameters") / "focus.toml"))
 class Solver:
     """Numerics of the time simulation."""
 
-    timestep: float = quantity("s", "step of the integration", above=0.0, at_most=0.005)
-    record_rate: float = quantity("Hz", "sampling rate of the recorded channels", above=0.0)
+    timestep: float = quantity("s", "step of the integration", at_least=1e-6, at_most=0.005)
+    record_rate: float = quantity("Hz", "sampling rate of the recorded channels", at_least=125.0, at_most=1e5)
 
     def __post_init__(self) -> None:
         validate(self)

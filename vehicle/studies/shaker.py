@@ -38,8 +38,9 @@ class ShakerOptions:
         time_format: "npz" or "csv".
         video: writes the film of a run to a path; None without a film.
         video_name: file name of the film, or a path of its own.
-        input_file: file that the signal was read from.
+        inputs: files that were read; a folder that holds one is never replaced.
         engine: as of `Car.run`.
+        engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
     """
 
     output: Path
@@ -47,8 +48,9 @@ class ShakerOptions:
     time_format: str = "npz"
     video: Callable[[Run, Path], None] | None = None
     video_name: Path | None = None
-    input_file: Path | None = None
+    inputs: tuple[Path, ...] = ()
     engine: str = "mujoco"
+    engine_reason: str = ""
 
 
 def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[[float], None]) -> dict[str, Any]:
@@ -68,7 +70,7 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
     """
     # A car that cannot be run is refused before anything is written.
     car.check(options.engine)
-    with output_folder(options.output, force=options.force, protect=options.input_file) as folder:
+    with output_folder(options.output, force=options.force, protect=options.inputs) as folder:
         try:
             run = car.run(signal, progress, engine=options.engine)
         except SimulationError as error:
@@ -92,12 +94,12 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
         write_whole(folder / "time.png", lambda path: plot_time(path, run))
         if options.video is not None:
             name = options.video_name or Path(f"{options.output.name}.mp4")
-            inside = name.parent == Path()
-            target = folder / name if inside else name
+            target = folder / name if name.parent == Path() else name
             make = options.video
             write_whole(target, lambda path: make(run, path))
-            files["video"] = name.name if inside else str(name)
+            files["video"] = str(name)
         summary = summarise(run, response, files)
+        summary["solver"]["engine_reason"] = options.engine_reason or run.engine_reason
         write_json(folder / "summary.json", summary)
     return summary
 

@@ -107,13 +107,19 @@ def _dask(address: str) -> Callable[[], Executor]:
 
 def _own(module: str, name: str) -> Callable[[], Executor]:
     """Executor of a function of the user's."""
+    # Code of the user's, in which anything may go wrong.
     try:
         factory = getattr(importlib.import_module(module), name)
-    except (ImportError, AttributeError) as error:
-        raise ConfigurationError(f"--executor {module}:{name}: {error}") from None
+    except Exception as error:
+        raise ConfigurationError(f"--executor {module}:{name}: {type(error).__name__}: {error}") from None
 
     def make() -> Executor:
-        executor = factory()
+        try:
+            executor = factory()
+        except Exception as error:
+            raise ConfigurationError(
+                f"--executor {module}:{name}: {type(error).__name__}: {error}; needed is a function without arguments"
+            ) from None
         if not isinstance(executor, Executor):
             raise ConfigurationError(
                 f"--executor {module}:{name}: returned {type(executor).__name__}, needed is a "

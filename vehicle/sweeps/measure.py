@@ -46,6 +46,8 @@ class ComfortMeasure:
     rms_of: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.skip < math.inf:
+            raise ConfigurationError(f"measure: skip {self.skip:g} s, must be a finite number of seconds, at least 0")
         for name in self._needed():
             if name not in channel_units():
                 raise ConfigurationError(f"measure: no channel {name!r}; there are {', '.join(channel_units())}")

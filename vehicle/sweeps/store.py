@@ -8,7 +8,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
+from vehicle.output_folder import folder_lock
 from vehicle.sweeps.worker import Result
+from vehicle.written_files import mark, note, refuse_foreign
 
 ROWS = "rows.jsonl"
 
@@ -22,7 +24,8 @@ def sweep_folder(folder: Path, *, resume: bool, force: bool) -> Path:
         force: throw them away.
 
     Raises:
-        ConfigurationError: it holds rows, and neither or both is asked for; or it holds files but no sweep.
+        ConfigurationError: it holds rows, and neither or both is asked for; or files that no sweep wrote; or another
+            process writes there.
         OutputError: it cannot be made.
     """
     if resume and force:
@@ -32,10 +35,12 @@ def sweep_folder(folder: Path, *, resume: bool, force: bool) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         if rows.exists() and not (resume or force):
             raise ConfigurationError(f"--output {folder}: holds a sweep; --resume goes on, --force starts anew")
-        if not rows.exists() and any(folder.iterdir()):
-            raise ConfigurationError(f"--output {folder}: holds other files; give another folder")
-        if force:
-            rows.unlink(missing_ok=True)
+        with folder_lock(folder.resolve()):
+            if not resume or not rows.exists():
+                refuse_foreign(folder)
+            mark(folder)
+            if force:
+                rows.unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None
     return folder
@@ -56,6 +61,7 @@ class Store:
         self.path = path
         self.finished = _read(path)
         try:
+            note(path)
             self._file = path.open("a", encoding="utf-8")
         except OSError as error:
             raise OutputError(f"{path}: cannot be written: {error.strerror}; give another folder") from None

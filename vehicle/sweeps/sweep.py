@@ -7,12 +7,14 @@ import time as clock
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.flexbody.library import PACKAGE_FOLDER
+from vehicle.output_folder import folder_lock
 from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
 from vehicle.sweeps.case import Case, digest
 from vehicle.sweeps.executors import process_pool, workers_of
@@ -64,46 +66,49 @@ def sweep(
         The table, in the order of the cases.
 
     Raises:
-        ConfigurationError, DataError: an input or a vehicle file cannot be read.
+        ConfigurationError, DataError: an input or a vehicle file cannot be read, or another process writes there.
         OutputError: a row cannot be written.
         SimulationError: the executor is lost and cannot be made again; finished rows are kept.
     """
     chosen = ComfortMeasure() if measure is None else measure
     keys = case_keys(cases, chosen)
-    store = Store(folder / ROWS) if folder is not None else None
-    finished: dict[str, Result] = {} if store is None else dict(store.finished)
-    todo = {
-        key: case
-        for key, case in zip(keys, cases, strict=True)
-        if key not in finished or (retry_failed and finished[key].reason)
-    }
-    began = clock.perf_counter()
+    with ExitStack() as held:
+        if folder is not None:
+            held.enter_context(folder_lock(folder.resolve()))
+        store = Store(folder / ROWS) if folder is not None else None
+        finished: dict[str, Result] = {} if store is None else dict(store.finished)
+        todo = {
+            key: case
+            for key, case in zip(keys, cases, strict=True)
+            if key not in finished or (retry_failed and finished[key].reason)
+        }
+        began = clock.perf_counter()
 
-    def keep(key: str, result: Result) -> None:
-        finished[key] = result
-        if store is not None:
-            store.add(key, todo[key].label, result)
-        done.add(key)
-        if progress is not None:
-            progress(len(done) / len(todo))
+        def keep(key: str, result: Result) -> None:
+            finished[key] = result
+            if store is not None:
+                store.add(key, todo[key].label, result)
+            done.add(key)
+            if progress is not None:
+                progress(len(done) / len(todo))
 
-    done: set[str] = set()
-    try:
-        if todo:
-            _Crew(executor or partial(process_pool, jobs), chosen).work(todo, keep)
-    finally:
-        if store is not None:
-            store.close()
-    table = SweepTable(
-        cases=list(cases),
-        results=[finished[key] for key in keys],
-        units=chosen.units,
-        made=_made(cases, chosen),
-    )
-    if folder is not None:
-        table.write(folder)
-        _say_how_long(folder, clock.perf_counter() - began, len(todo))
-    return table
+        done: set[str] = set()
+        try:
+            if todo:
+                _Crew(executor or partial(process_pool, jobs), chosen).work(todo, keep)
+        finally:
+            if store is not None:
+                store.close()
+        table = SweepTable(
+            cases=list(cases),
+            results=[finished[key] for key in keys],
+            units=chosen.units,
+            made=_made(cases, chosen),
+        )
+        if folder is not None:
+            table.write(folder)
+            _say_how_long(folder, clock.perf_counter() - began, len(todo))
+        return table
 
 
 def case_keys(cases: Sequence[Case], measure: Measure) -> list[str]:

@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from vehicle.car import Car
-from vehicle.errors import VehicleError
+from vehicle.errors import SimulationError, VehicleError
 from vehicle.sweeps.case import Case, signal_of
 from vehicle.sweeps.measure import Measure
 from vehicle.sweeps.program import require_same_program
@@ -66,6 +66,9 @@ def carry_out(case: Case, measure: Measure, program: str) -> Result:
                 signal_of(case.source), engine=case.engine, channels=measure.channels
             )
         values = {name: float(value) for name, value in measure(run).items()}
+        endless = [name for name, value in values.items() if math.isinf(value)]
+        if endless:
+            raise SimulationError(f"{', '.join(endless)}: infinite; the run left the range of numbers")
     except (VehicleError, ArithmeticError, ValueError, MemoryError) as error:
         return Result(reason=f"{type(error).__name__}: {error}", seconds=clock.perf_counter() - started)
     # NaN is a number that does not exist, as the first slip of a damper that never slips.

@@ -90,7 +90,7 @@ def full_steps(
         if not steps:
             first = float(np.sqrt(np.mean((joined * result.weights) ** 2)))
         shift = result.shift(joined)
-        steps.append(max(abs(shift[path] / relative[path]) for path in result.free))
+        steps.append(max((abs(shift[path] / relative[path]) for path in result.free), default=0.0))
         settled = steps[-1] <= SMALL
         if settled or len(steps) == most_rounds:
             break
