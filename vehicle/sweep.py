@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import math
 import re
 import sys
 from collections.abc import Sequence
@@ -83,8 +82,6 @@ def _job(options: argparse.Namespace) -> None:
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
-    if not 0.0 <= options.skip < math.inf:
-        raise ConfigurationError(f"--skip {options.skip:g}: must be a finite number of seconds, at least 0")
     paths, rows = read_table(options.table) if options.table else every_combination(options.vary)
     load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])

@@ -1,0 +1,27 @@
+"""A few of the mutations of `python -m tests.fuzz`, and the judge that must see what is wrong."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.fuzz import judge, run_case
+
+
+@pytest.mark.parametrize("index", range(15))
+def test_mutations(index):
+    outcome = run_case(index)
+    assert not outcome.wrong, f"{outcome.wrong} | {outcome.said}"
+
+
+def test_the_judge_sees_what_is_wrong(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert judge(0, "", "") == "" and judge(2, "", "error: no") == ""
+    assert judge(1, "", "error: no") == "exit code 1"
+    assert judge(2, "", "Traceback (most recent call last):").startswith("traceback")
+    assert judge(4, "", "error: a fault of the program (X)").startswith("traceback")
+    assert judge(3, "", "") == "no message"
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "summary.json").write_text(json.dumps({"a": float("inf")}))
+    assert judge(0, "", "").startswith("a number that is none")
