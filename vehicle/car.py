@@ -285,10 +285,14 @@ class Run:
 
     def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
         """Velocity of a damper, and the one that counts as slip [m/s]."""
-        if wheel not in WHEELS:
-            raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(WHEELS)}")
+        _check_wheel(wheel)
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
         return self.recording[f"damper_{wheel}_velocity"], limit
+
+
+def _check_wheel(wheel: str) -> None:
+    if wheel not in WHEELS:
+        raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(WHEELS)}")
 
 
 def _is_stuck(damper: str) -> bool:

@@ -247,7 +247,10 @@ def _convert(hint: Any, value: Any, path: str) -> Any:
 def _number(value: Any, path: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ConfigurationError(f"{path}: found {value!r}, needed is a number")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, needed is a finite number") from None
 
 
 def _value(assignment: str, text: str, old: Any) -> Any:
