@@ -137,8 +137,8 @@ def test_published_modes(capsys):
         assert len(rigid) == 6 and rigid[-1]["frequency_hz"] < 10.0
         engine = [mode["frequency_hz"] for mode in modes if mode["description"].startswith("engine")]
         assert len(engine) >= 5 and min(engine) > 9.0 and max(engine) < 20.0
-        # Lightly damped, so not the longitudinal ones. The body shares its energy with two of them, 1.1 Hz apart.
-        wheel = [m for m in modes if m["energy"].get("wheel_fr", 0.0) > 0.2 and m["damping_ratio"] < 0.2]
+        # Lightly damped, so not the longitudinal ones. Neighbours of the body share its energy.
+        wheel = [m for m in modes if m["energy"].get("wheel_fr", 0.0) > 0.15 and m["damping_ratio"] < 0.2]
         assert any(abs(mode["frequency_hz"] - 28.0) < 0.5 for mode in wheel)
     assert rolls["published"] == pytest.approx(6.5, abs=0.3)
     assert rolls["improved"] < 0.9 * rolls["published"]
