@@ -21,6 +21,7 @@ from vehicle.parameters.quarter_car import load_quarter_car
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.reduced.pole_model import pole_model
 from vehicle.reduced.run import simulate_reduced
+from vehicle.simulation.acceleration import acceleration
 
 CAR = load_quarter_car()
 ROAD = random_road(rms=2e-3, seed=2006, duration=8.0, lower_band_edge=0.5, upper_band_edge=50.0)
@@ -106,7 +107,8 @@ def test_friction_against_the_stiff_solver(solved):
     expected = {
         "suspension_mount_fr_acc_z": solved.acceleration("body"),
         "knuckle_fr_acc_z": solved.acceleration("wheel"),
-        "damper_top_fr_acc_z": solved.acceleration("damper"),
+        # It jumps between two samples, so that it is compared as it is recorded: from its positions.
+        "damper_top_fr_acc_z": acceleration(solved.displacement("damper"), 1e-3),
         "damper_fr_velocity": solved.sliding_velocity(),
     }
     share = slip_share(expected["damper_fr_velocity"], 1e-3)
@@ -122,7 +124,8 @@ def test_friction_against_the_stiff_solver(solved):
             "damper_top_fr_acc_z": 5e-2,
         },
     )
-    ratio = np.std(run["damper_top_fr_acc_z"]) / np.std(expected["damper_top_fr_acc_z"])
+    size = expected["damper_top_fr_acc_z"].size
+    ratio = np.std(run["damper_top_fr_acc_z"][:size]) / np.std(expected["damper_top_fr_acc_z"])
     assert ratio == pytest.approx(1.0, abs=5e-3)
     assert slip_share(run["damper_fr_velocity"], 1e-3) == pytest.approx(share, abs=2e-3)
     # The left car stands still; equal poles of two equal cars mix them in the last digits.

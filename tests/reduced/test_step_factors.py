@@ -23,7 +23,6 @@ def test_phi_functions_are_the_moments_of_the_exponential(x):
 
 def one_pole(pole, height, velocity):
     """A model of a single pole; what only the outputs need is left out."""
-    none = np.zeros((1, 2))
     return PoleModel(
         poles=np.array([pole], dtype=complex),
         pairs=int(np.imag(pole) > 0.0),
@@ -33,10 +32,6 @@ def one_pole(pole, height, velocity):
         slip=np.zeros((2, 1), dtype=complex),
         modal=np.zeros((1, 1), dtype=complex),
         matrices=None,  # type: ignore[arg-type]
-        _rates=np.zeros((1, 1), dtype=complex),
-        _push=none,
-        _drag=none,
-        _grip=none,
     )
 
 

@@ -8,26 +8,28 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal
-from vehicle.names import WHEELS
+from vehicle.simulation.acceleration import continued
 
 Vector = npt.NDArray[np.float64]
 
 
 # A sweep runs hundreds of cars over the same few signals.
 @lru_cache(maxsize=4)
-def plate_samples(signal: Signal, step: float, steps: int) -> Vector:
-    """(z, z') of each driven plate [m, m/s], from the spline of the signal; (steps + 1, 2 per driven plate).
+def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vector:
+    """(z, z') of each driven plate [m, m/s], from the spline of the signal; (steps + 1 + beyond, 2 per driven plate).
 
     Args:
         signal: displacement of the plates.
         step: time step [s].
         steps: number of steps.
+        beyond: further steps with the last acceleration.
     """
     motion = signal.plate_motion(step * np.arange(steps + 1))
-    columns = []
-    for wheel in WHEELS:
-        if wheel in signal.wheels:
-            columns += [motion.displacement[wheel], motion.velocity[wheel]]
+    after, columns = step * np.arange(1.0, beyond + 1.0), []
+    for wheel in signal.wheels:
+        z, velocity, last = (values[wheel] for values in (motion.displacement, motion.velocity, motion.acceleration))
+        columns.append(np.append(z, continued(z[-1], velocity[-1], last[-1], after)))
+        columns.append(np.append(velocity, velocity[-1] + last[-1] * after))
     table = np.stack(columns, axis=1)
     table.setflags(write=False)
     return table

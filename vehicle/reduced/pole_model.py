@@ -28,17 +28,16 @@ Complex = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Outputs:
-    """Linear outputs w = Re(poles xi) + height z + velocity z' + force f.
+    """Linear outputs w = Re(poles xi) + height z + velocity z'.
 
     Attributes:
         poles: (outputs, p), twice the row for a pole that stands for a pair.
-        height, velocity, force: (outputs, 2) each, in the order of WHEELS.
+        height, velocity: (outputs, 2) each, in the order of WHEELS.
     """
 
     poles: Complex
     height: Vector
     velocity: Vector
-    force: Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -62,38 +61,33 @@ class PoleModel:
     slip: Complex
     modal: Complex
     matrices: CarMatrices
-    _rates: Complex
-    _push: Vector
-    _drag: Vector
-    _grip: Vector
 
     def outputs(self, channels: Sequence[str]) -> Outputs:
-        """Rows of acceleration and tyre force channels (without the static tyre load).
+        """Rows of acceleration channels, as positions, and of tyre force channels (without the static tyre load).
 
         Args:
             channels: names of `vehicle.names`.
         """
-        found = [self._tyre(name) if name.startswith("tyre_") else self._acceleration(name) for name in channels]
+        found = [self._tyre(name) if name.startswith("tyre_") else self._position(name) for name in channels]
         count = len(self.poles)
         return Outputs(
             poles=np.array([row[0] for row in found]).reshape(-1, count),
             height=np.array([row[1] for row in found]).reshape(-1, 2),
             velocity=np.array([row[2] for row in found]).reshape(-1, 2),
-            force=np.array([row[3] for row in found]).reshape(-1, 2),
         )
 
-    def _acceleration(self, channel: str) -> tuple[Complex, Vector, Vector, Vector]:
-        row = self.matrices.outputs[channel]
-        return row @ self._rates, row @ self._push, row @ self._drag, row @ self._grip
+    def _position(self, channel: str) -> tuple[Complex, Vector, Vector]:
+        """Displacement of the place, of which `vehicle.simulation.acceleration` makes the channel."""
+        return self.matrices.outputs[channel] @ self.modal, np.zeros(2), np.zeros(2)
 
-    def _tyre(self, channel: str) -> tuple[Complex, Vector, Vector, Vector]:
+    def _tyre(self, channel: str) -> tuple[Complex, Vector, Vector]:
         """Tyre force on the wheel: k (z - J u) + c (z' - J u')."""
         m, index = self.matrices, WHEELS.index(channel.split("_")[1])
         spring = m.plate_stiffness[index] @ self.modal
         drag = m.plate_damping[index] @ (self.modal * self.poles)
         here = np.zeros(2)
         here[index] = 1.0
-        return -(spring + drag), m.tyre_stiffness[index] * here, m.tyre_damping[index] * here, np.zeros(2)
+        return -(spring + drag), m.tyre_stiffness[index] * here, m.tyre_damping[index] * here
 
 
 def pole_model(matrices: CarMatrices) -> PoleModel:
@@ -119,7 +113,6 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     residues = np.linalg.solve(vectors, inputs.astype(complex))[kept]
     # A kept pole of a pair stands for its conjugate too.
     weighted = vectors[:, kept] * np.where(np.arange(len(kept)) < pairs, 2.0, 1.0)
-    accelerations = state[size : 2 * size] @ weighted
     return PoleModel(
         poles=poles[kept].astype(complex),
         pairs=pairs,
@@ -129,8 +122,4 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         slip=basis[matrices.dampers] @ weighted[size : 2 * size],
         modal=basis @ weighted[:size],
         matrices=matrices,
-        _rates=basis @ accelerations,
-        _push=basis @ push,
-        _drag=basis @ drag,
-        _grip=basis @ grip,
     )

@@ -21,9 +21,6 @@ class Readout:
         factors: of the step.
         pairs: number of complex poles.
         columns: columns of (z_fr, z_fl, z'_fr, z'_fl) that the plate samples hold.
-
-    Attributes:
-        force: what the damper forces at a sample give directly; (outputs, 2).
     """
 
     def __init__(self, outputs: Outputs, factors: StepFactors, pairs: int, columns: Sequence[int]) -> None:
@@ -32,10 +29,9 @@ class Readout:
         direct = np.hstack([outputs.height, outputs.velocity])
         self.by_plate = ((rows @ factors.ahead).real + direct)[:, chosen]
         self.by_step = (rows @ factors.force).real
-        self.force = outputs.force
 
     def at(self, states: Vector, plates: Vector, before: Vector) -> Vector:
-        """Outputs at samples, without what the damper forces at the sample give directly.
+        """Outputs at samples.
 
         Args:
             states: eta without the forces of the last step; (samples, 2 p + q).

@@ -17,6 +17,7 @@ from vehicle.reduced.pole_model import PoleModel
 from vehicle.reduced.readout import Readout
 from vehicle.reduced.step_factors import StepFactors, step_factors
 from vehicle.reduced.validity import ValidityWatch
+from vehicle.simulation.acceleration import AHEAD, acceleration
 from vehicle.simulation.recording import Recording, Statistics
 
 Vector = npt.NDArray[np.float64]
@@ -62,7 +63,7 @@ def simulate_reduced(
     every = int(np.ceil(interval / LONGEST_STEP - 1e-9))
     samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
     step = interval / every
-    plates = plate_samples(signal, step, (samples - 1) * every)
+    plates = plate_samples(signal, step, (samples - 1) * every, AHEAD * every)
     run = _Run(model, step_factors(model, step), damper, signal.wheels)
     # No step at all: compiling is no part of the time of the run.
     run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
@@ -70,10 +71,15 @@ def simulate_reduced(
     linear = [name for name in names if not name.startswith(("damper_fr_", "damper_fl_", "plate_"))]
     readout = Readout(model.outputs(linear), run.factors, model.pairs, run.columns)
     watch = ValidityWatch(model, run.factors, run.columns, tyre_load)
-    table = np.empty((len(linear), samples))
+    table = np.empty((len(linear), samples + AHEAD))
     table[:, 0] = readout.at(run.state()[None], plates[:1], run.before[:1])[:, 0] if linear else 0.0
     run.fill(march, plates, every, readout, table, watch)
-    channel = dict(zip(linear, table, strict=True)) | run.wheel_channels(model, plates[::every])
+    channel = dict(zip(linear, table, strict=True)) | run.wheel_channels(model, plates[: samples * every : every])
+    for name in linear:
+        if "_acc_" in name:
+            channel[name] = acceleration(channel[name], interval)
+        else:
+            channel[name] = channel[name][:samples]
     for wheel in WHEELS:
         if f"tyre_{wheel}_force_z" in channel:
             channel[f"tyre_{wheel}_force_z"] = channel[f"tyre_{wheel}_force_z"] + tyre_load[wheel]
@@ -190,8 +196,6 @@ class _Run:
             watch.look(states[:size], ends, self.before[here])
             done += size
         self.after[-1] = self.before[-1]
-        # The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
-        table += readout.force @ (0.5 * (self.before + self.after)).T
 
     def wheel_channels(self, model: PoleModel, plates: Vector) -> dict[str, Vector]:
         """Plate displacements, damper velocities and damper forces at the samples."""
@@ -199,8 +203,9 @@ class _Run:
         for column, wheel in enumerate(WHEELS):
             driven = wheel in self.wheels
             height = plates[:, 2 * self.wheels.index(wheel)] if driven else np.zeros(len(plates))
-            velocity = self.velocities[:, column]
-            friction = 0.5 * (self.before[:, column] + self.after[:, column])
+            velocity = self.velocities[: len(plates), column]
+            # The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
+            friction = 0.5 * (self.before + self.after)[: len(plates), column]
             found[f"plate_{wheel}_displacement"] = height.copy()
             found[f"damper_{wheel}_velocity"] = velocity.copy()
             found[f"damper_{wheel}_force"] = model.matrices.viscous[column] * velocity - friction

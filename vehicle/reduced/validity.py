@@ -45,7 +45,7 @@ class ValidityWatch:
         self.bodies = tuple(rows)
         turns = np.vstack([rows[body][3:] for body in self.bodies]) @ model.modal
         none = np.zeros((len(turns), 2))
-        rotations = Outputs(poles=turns, height=none, velocity=none, force=none)
+        rotations = Outputs(poles=turns, height=none, velocity=none)
         self.rotations = Readout(rotations, factors, model.pairs, columns)
         self.tyres = Readout(
             model.outputs([f"tyre_{wheel}_force_z" for wheel in WHEELS]), factors, model.pairs, columns

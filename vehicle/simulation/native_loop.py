@@ -35,7 +35,7 @@ class Sources(NamedTuple):
     velocity: Vector
     acceleration: Vector
     orientation: Vector
-    sensors: Vector
+    sites: Vector
     actuator: Vector
     explicit: Vector
     rate: Vector
@@ -45,9 +45,9 @@ class Sources(NamedTuple):
 class Buffers(NamedTuple):
     """Where it goes: the buffers of the recorder with one row a sample, and poses."""
 
-    sensors: Vector
+    places: Vector
     turn: Vector
-    modal_acceleration: Vector
+    modal_position: Vector
     modal_velocity: Vector
     damper_velocity: Vector
     actuator: Vector
@@ -69,6 +69,7 @@ class Order(NamedTuple):
     pose_every: int
     body: int
     first_mode: int
+    first_position: int
     half: float
 
 
@@ -84,6 +85,7 @@ def compile_loop(mark: int) -> Any:
         plates: Plates,
         plate_ids: npt.NDArray[np.int64],
         dampers: npt.NDArray[np.int64],
+        sites: npt.NDArray[np.int64],
         s: Sources,
         b: Buffers,
     ) -> int:
@@ -101,15 +103,19 @@ def compile_loop(mark: int) -> Any:
             if recorded and (index // order.every) % order.pose_every == 0:
                 b.poses[posed] = s.position
                 posed += 1
+            if recorded:
+                for mode in range(modes):
+                    b.modal_position[row, mode] = s.position[order.first_position + mode]
             call_step(order.step, order.model, order.data)
             if not recorded:
                 continue
-            b.sensors[row] = s.sensors
+            for place in range(len(sites)):
+                for axis in range(3):
+                    b.places[row, 3 * place + axis] = s.sites[sites[place], axis]
             b.turn[row] = s.orientation[order.body]
             for mode in range(modes):
-                acceleration = s.acceleration[order.first_mode + mode]
-                b.modal_acceleration[row, mode] = acceleration
-                b.modal_velocity[row, mode] = s.velocity[order.first_mode + mode] + order.half * acceleration
+                dof = order.first_mode + mode
+                b.modal_velocity[row, mode] = s.velocity[dof] + order.half * s.acceleration[dof]
             for damper in range(len(dampers)):
                 dof = dampers[damper]
                 b.damper_velocity[row, damper] = s.velocity[dof] + order.half * s.acceleration[dof]
@@ -149,6 +155,7 @@ class NativeLoop:
         self.recorder = recorder
         self.plate_ids = np.array(plates, dtype=np.int64)
         self.dampers = np.array(recorder.dampers, dtype=np.int64)
+        self.sites = np.array(recorder.sites, dtype=np.int64)
         self.plates = Plates(
             height=np.ascontiguousarray(heights),
             velocity=np.ascontiguousarray(motion.velocity),
@@ -162,7 +169,7 @@ class NativeLoop:
             velocity=data.qvel,
             acceleration=data.qacc,
             orientation=data.xmat,
-            sensors=data.sensordata,
+            sites=data.site_xpos,
             actuator=data.actuator_force,
             explicit=state.explicit.reshape(-1),
             rate=state.rate.reshape(-1),
@@ -181,6 +188,7 @@ class NativeLoop:
             pose_every=recorder.pose_every,
             body=rows.elements.body,
             first_mode=recorder.modes.start,
+            first_position=rows.modal_positions.start,
             half=-0.5 * recorder.step,
         )
         self.run = compile_loop(stamp())
@@ -196,5 +204,5 @@ class NativeLoop:
 
     def _advance(self, first: int, last: int) -> int:
         row, ids = self.recorder.filled, self.plate_ids
-        arguments = (self.order, first, last, row, self.plates, ids, self.dampers, self.sources, self.buffers)
-        return int(self.run(*arguments))
+        places = (self.plates, ids, self.dampers, self.sites)
+        return int(self.run(self.order, first, last, row, *places, self.sources, self.buffers))

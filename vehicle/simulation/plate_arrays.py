@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS
+from vehicle.simulation.acceleration import continued
 
 Vector = npt.NDArray[np.float64]
 
@@ -22,8 +23,8 @@ class PlateArrays:
     acceleration: Vector
 
     @classmethod
-    def of(cls, signal: Signal, times: Vector) -> PlateArrays:
-        """Evaluate a signal at the times of the steps [s].
+    def of(cls, signal: Signal, times: Vector, beyond: int = 0) -> PlateArrays:
+        """Evaluate a signal at the times of the steps [s], and for some steps beyond them.
 
         Velocity and acceleration are the central differences that the step itself makes of every coordinate of the
         car: then the power that the plate puts in is exactly the power that the tyre takes up. (The derivatives of
@@ -38,4 +39,13 @@ class PlateArrays:
         for end in (0, -1):
             velocity[end] = [motion.velocity[wheel][end] for wheel in WHEELS]
             acceleration[end] = [motion.acceleration[wheel][end] for wheel in WHEELS]
+        if beyond:
+            after, ends = (
+                step * np.arange(1.0, beyond + 1.0),
+                zip(displacement[-1], velocity[-1], acceleration[-1], strict=True),
+            )
+            further = np.stack([continued(*end, after) for end in ends], axis=1)
+            displacement = np.vstack([displacement, further])
+            velocity = np.vstack([velocity, velocity[-1] + acceleration[-1] * after[:, None]])
+            acceleration = np.vstack([acceleration, np.tile(acceleration[-1], (beyond, 1))])
         return cls(displacement=displacement, velocity=velocity, acceleration=acceleration)

@@ -7,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal
-from vehicle.names import AXES, WHEELS, acceleration_places, channel_units
+from vehicle.names import AXES, WHEELS, acceleration_channels, acceleration_places, channel_units
+from vehicle.simulation.acceleration import AHEAD, acceleration
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.element_rows import ElementRows
 from vehicle.simulation.elements import numeric
@@ -50,21 +51,17 @@ class Recorder:
         self.dampers = e.damper_dofs
         self.actuators = [model.actuator(f"damper_{wheel}").id for wheel in WHEELS]
         self.modes = e.modal_columns
-        self.gravity = np.array(model.opt.gravity)
         self.shapes = {}
         for place in acceleration_places():
             shape = numeric(model, f"shape/place/{place}")
             if shape is not None:
                 self.shapes[place] = shape.reshape(3, -1)
-        self.sensor_columns = {
-            place: slice(int(model.sensor(f"{place}_acc").adr[0]), int(model.sensor(f"{place}_acc").adr[0]) + 3)
-            for place in acceleration_places()
-        }
+        self.sites = [model.site(f"place/{place}").id for place in acceleration_places()]
         count = e.row_count
         self.buffers = {
-            "sensors": np.zeros((CHUNK, model.nsensordata)),
+            "places": np.zeros((CHUNK, 3 * len(self.sites))),
             "turn": np.zeros((CHUNK, 9)),
-            "modal_acceleration": np.zeros((CHUNK, self.modes.stop - self.modes.start)),
+            "modal_position": np.zeros((CHUNK, self.modes.stop - self.modes.start)),
             "modal_velocity": np.zeros((CHUNK, self.modes.stop - self.modes.start)),
             "damper_velocity": np.zeros((CHUNK, len(self.dampers))),
             "actuator": np.zeros((CHUNK, len(self.actuators))),
@@ -74,6 +71,8 @@ class Recorder:
             "branch": np.zeros((CHUNK, *e.rows.shape)),
         }
         self.channels = {name: np.zeros(samples) for name in channel_units()}
+        # Positions until the end of the run, which makes accelerations of them.
+        self.channels |= {name: np.zeros(samples + AHEAD) for name in acceleration_channels()}
         self.poses: list[Vector] = []
         self.pose_index: list[int] = []
         self.filled = 0
@@ -86,24 +85,23 @@ class Recorder:
         self.energy_at_start: float | None = None
 
     def before_step(self) -> None:
-        """Keep what the step will overwrite: the present pose."""
+        """Keep what the step will overwrite: the present pose, and the modal coordinates."""
+        self.buffers["modal_position"][self.filled] = self.data.qpos[self.rows.modal_positions]
         if (self.done + self.filled) % self.pose_every == 0:
             self.poses.append(self.data.qpos.copy())
             self.pose_index.append(self.done + self.filled)
 
     def after_step(self, *, moved: bool) -> None:
-        """Copy the present time's forces, rates and accelerations.
+        """Copy the present time's forces, rates and positions.
 
         MuJoCo's velocity is that of the middle of a step: half a step of acceleration carries it to the present.
         """
         data, rows, buffers, row = self.data, self.rows, self.buffers, self.filled
         half = -0.5 * self.step if moved else 0.5 * self.step
-        acceleration = data.qacc
-        buffers["sensors"][row] = data.sensordata
+        buffers["places"][row] = data.site_xpos[self.sites].ravel()
         buffers["turn"][row] = data.xmat[rows.elements.body]
-        buffers["modal_acceleration"][row] = acceleration[self.modes]
-        buffers["modal_velocity"][row] = data.qvel[self.modes] + half * acceleration[self.modes]
-        buffers["damper_velocity"][row] = data.qvel[self.dampers] + half * acceleration[self.dampers]
+        buffers["modal_velocity"][row] = data.qvel[self.modes] + half * data.qacc[self.modes]
+        buffers["damper_velocity"][row] = data.qvel[self.dampers] + half * data.qacc[self.dampers]
         buffers["actuator"][row] = data.actuator_force
         buffers["solved"][row] = data.efc_force
         buffers["explicit"][row] = rows.explicit
@@ -124,7 +122,7 @@ class Recorder:
 
     def finite_samples(self) -> int:
         """Number of buffered samples before the first one that is not finite."""
-        finite = np.all(np.isfinite(self.buffers["sensors"][: self.filled]), axis=1)
+        finite = np.all(np.isfinite(self.buffers["solved"][: self.filled]), axis=1)
         return self.filled if finite.all() else int(np.argmin(finite))
 
     def last_pose(self, good: int) -> tuple[float, Vector]:
@@ -173,15 +171,7 @@ class Recorder:
         count, b = self.filled, {name: array[: self.filled] for name, array in self.buffers.items()}
         here = slice(self.done, self.done + count)
         steps = slice(index - (count - 1) * every, index + 1, every)
-        turn = b["turn"].reshape(count, 3, 3)
-        for place, columns in self.sensor_columns.items():
-            # MuJoCo counts gravity as an acceleration of the world.
-            value = b["sensors"][:, columns] + self.gravity
-            if place in self.shapes:
-                local = b["modal_acceleration"] @ self.shapes[place].T
-                value = value + np.einsum("nij,nj->ni", turn, local)
-            for axis, name in enumerate(AXES):
-                self.channels[f"{place}_acc_{name}"][here] = value[:, axis]
+        self._keep_positions(here, b["places"], b["turn"], b["modal_position"])
         e = self.rows.elements
         total = b["solved"] + b["explicit"]
         damper_force = -(b["actuator"] + total[:, e.dampers] + total[:, e.frictions])
@@ -214,6 +204,22 @@ class Recorder:
         self._add_work(power_in, loss, every)
         self.done += count
         self.filled = 0
+
+    def _keep_positions(self, here: slice, places: Vector, turn: Vector, modal: Vector) -> None:
+        """Positions of all places with their modal displacement; (chunk, 3 places), (chunk, 9), (chunk, modes)."""
+        for place, value in zip(acceleration_places(), np.split(places, len(self.sites), axis=1), strict=True):
+            if place in self.shapes:
+                value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[place].T)
+            for axis, name in enumerate(AXES):
+                self.channels[f"{place}_acc_{name}"][here] = value[:, axis]
+
+    def keep_ahead(self, sample: int) -> None:
+        """Keep the positions of a sample beyond the end of the record, the first of which is 0."""
+        data, rows = self.data, self.rows
+        mujoco.mj_kinematics(self.model, data)
+        here = slice(self.samples + sample, self.samples + sample + 1)
+        turn, modal = data.xmat[rows.elements.body][None], data.qpos[rows.modal_positions][None]
+        self._keep_positions(here, data.site_xpos[self.sites].reshape(1, -1), turn, modal)
 
     def _add_work(self, power_in: Vector, loss: Vector, every: int) -> None:
         """Trapezoidal rule across chunks."""
@@ -251,6 +257,8 @@ class Recorder:
         """The finished recording."""
         interval = 1.0 / self.car.vehicle.solver.record_rate
         time: Vector = interval * np.arange(self.samples, dtype=np.float64)
+        for name in acceleration_channels():
+            self.channels[name] = acceleration(self.channels[name], interval)
         return Recording(
             time=time,
             channels=self.channels,

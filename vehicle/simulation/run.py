@@ -13,6 +13,7 @@ import numpy.typing as npt
 from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS
+from vehicle.simulation.acceleration import AHEAD
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.element_rows import ElementRows, prepare_model
@@ -62,19 +63,27 @@ def simulate(
     model = car.spec.compile()
     model.qpos_spring[:] = car.model.qpos_spring
     prepare_model(model)
+    # The recorder takes accelerations from positions; the sensors are for those who load the model elsewhere.
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
     data = mujoco.MjData(model)
     rows = ElementRows(model, car.static.preload)
     step = model.opt.timestep
     count = int(np.floor(signal.duration / step + 1e-6))
     count -= count % every
     times = step * np.arange(count + 1)
-    motion = PlateArrays.of(signal, times)
+    motion = PlateArrays.of(signal, times, AHEAD * every)
     plates = [int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in WHEELS]
     heights = data.mocap_pos[plates, 2] + motion.displacement
     callback, notices = _compiled(rows, native)
     pose_every = _pose_every(car, every)
     recorder = Recorder(car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every)
     loop = None if callback is None else _native_loop(callback, recorder, motion, heights, plates)
+
+    def move(index: int) -> None:
+        data.mocap_pos[plates, 2] = heights[index]
+        rows.plate_velocity[:, 2] = motion.velocity[index]
+        rows.plate_acceleration[:, 2] = motion.acceleration[index]
+
     started = clock.perf_counter()
     with installed(rows, callback):
         index = 0
@@ -85,9 +94,7 @@ def simulate(
                 loop.advance(index, last)
                 index = last
             else:
-                data.mocap_pos[plates, 2] = heights[index]
-                rows.plate_velocity[:, 2] = motion.velocity[index]
-                rows.plate_acceleration[:, 2] = motion.acceleration[index]
+                move(index)
                 _step(model, data, recorder, recorded=index % every == 0, moved=index < count)
             if index == count or recorder.filled == CHUNK:
                 _check_state(model, data, recorder, every * step)
@@ -95,6 +102,11 @@ def simulate(
                 if progress is not None:
                     progress(index / count)
             index += 1
+        for index in range(count, count + AHEAD * every):
+            move(index)
+            mujoco.mj_step(model, data)
+            if (index + 1) % every == 0:
+                recorder.keep_ahead((index + 1 - count) // every - 1)
     wall = clock.perf_counter() - started
     warnings = _warnings(data)
     if warnings:
