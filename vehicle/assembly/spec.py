@@ -176,7 +176,7 @@ class _Builder:
             self._numeric(f"shape/{name}", self.superelement.shapes[:, index, :].T)
 
     def add_body(self) -> None:
-        """Trimmed body with the upper spring seats fixed to it."""
+        """Trimmed body with the upper spring seats fixed to it, their inertia that of the lower ones."""
         body = rigid_body(self.vehicle.body)
         self._add("body", "world", body.cog, body.mass, body.full_inertia)
         self.bodies["body"].add_freejoint(name="body")
@@ -330,7 +330,10 @@ class _Builder:
         actuator.biasprm = parameters
 
     def add_places(self) -> None:
-        """Sites and acceleration sensors of all recorded places."""
+        """Sites and acceleration sensors of all recorded places.
+
+        The channel of a knuckle is taken at the clamp of the damper on it, where its bottom is fixed.
+        """
         places = {
             **{f"knuckle_{wheel}": (f"knuckle_{wheel}", f"damper_bottom_{wheel}") for wheel in WHEELS},
             **{f"damper_top_{wheel}": (f"damper_top_{wheel}", f"strut_top_{wheel}") for wheel in WHEELS},

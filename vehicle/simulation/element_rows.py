@@ -9,9 +9,12 @@ r' being the rate at the middle of the past step: B (r' + h a/2) is the damping 
 order), and beta = 1/12 makes the step of a linear system fourth order in its frequencies (Fox and Goodwin, Numerov);
 stiff local springs take up to beta = 1/4, which is stable at any step (Newmark; see `step_weights`). The friction
 row of a damper is f = -clamp(c (v + h a)): D = c h, aref = -v/h, its limit the friction force: set-valued in effect,
-sticking is exact.
+sticking is exact. With c = (2/pi) Fd eps it is a line through zero, clamped at the limit Fd: the slope at rest of the
+published Fd (2/pi) atan(eps v), without its tail.
 The second row of a degressive damper, F = D v + clamp((Ddeg - D) v) with the limit (Ddeg - D) Vdeg, is a friction row
 too; its law is smooth, so that it is centred like the viscous one: D = (Ddeg - D) h/2, aref = -2 v/h, second order.
+The two forces of a bushing are opposite and act each at the point of its own part, in the axes of the carrier; the
+moment r x f of their distance r is left out, which changes no frequency by more than 0.05 %.
 Rotations need no rows: K_rot is soft against every inertia and undamped, so its torque is given explicitly,
 T = -K_rot sin(angle) n from the frames of both sites.
 

@@ -24,7 +24,10 @@ Vector = npt.NDArray[np.float64]
 
 
 GROUND_CONTACTS = ("bushing/tyre", "bushing/rear_support")
-"""Elements between car and ground."""
+"""Elements between car and ground: the front tyres on their plates and the rubber blocks under the rear.
+
+They hold in all three directions, and pull as well as push: there is no lift-off and no sliding in a run. A tyre that
+would pull is reported as a warning of the run."""
 
 SLIDING_SHARE = 1e-5
 """Share of the horizontal stiffness of the ground contacts left while the car settles; zero would let it drift."""
