@@ -9,8 +9,8 @@ Not published: shapes. A frame that is fitted to the frequencies alone has an an
 seat rail (0.042 to 0.052 kg^-1/2 along z; the mean of the body is 813^-1/2 = 0.035), and seat-rail levels of 2.3 to 3
 times those on the axes of figures 4.1 and 4.2. So the rail's amplitudes have limits here, and these levels count as
 fitted. The comfort figures 4.3 to 4.12 and the bump figures 3.13 to 3.18 were looked at when limits and torsion mode
-were chosen; none is in the residuals, and none of them counts as predicted. No part of a free body moves as a parabola
-(vertical bending) and keeps its middle still: with a quiet rail the first mode is a pitching of the front on the soft
+were chosen; none is in the residuals, and none of them counts as predicted. A free body that bends as a parabola has an
+antinode in its middle, where the seats are: with a quiet rail the first mode is a pitching of the front on the soft
 door frame, with a modal assurance of 0.13 with bending.
 
 Everything else only fills the gap, weighted low: modes spread over the range, a tenth mode above it, modes that are
