@@ -13,10 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.car import Run
 from vehicle.output_folder import write_whole
 from vehicle.rendering.figure import COLOURS, saved_figure
-from vehicle.rendering.frf_plot import BAND, TICKS, driven, wrapped_phase
+from vehicle.rendering.frf_plot import BAND, TICKS, wrapped_phase
 
 Vector = npt.NDArray[np.float64]
 
@@ -47,17 +46,13 @@ class FrfCurve:
     style: str = "-"
 
 
-def measured_curve(
-    run: Run, response: FrequencyResponse, row: int, label: str, colour: str, style: str = "-"
-) -> FrfCurve:
-    """Curve of one row of an estimated FRF, left out where the plate hardly moves."""
-    plate = run[f"plate_{run.wheel}_displacement"]
-    inside = driven(run.recording.timestep, plate, response.frequency)
+def measured_curve(response: FrequencyResponse, row: int, label: str, colour: str, style: str = "-") -> FrfCurve:
+    """Curve of one row of an estimated FRF."""
     return FrfCurve(
         label=label,
         frequency=response.frequency,
-        response=np.where(inside, response.response[row], np.nan),
-        coherence=np.where(inside, response.coherence[row], np.nan),
+        response=response.response[row],
+        coherence=response.coherence[row],
         colour=colour,
         style=style,
     )

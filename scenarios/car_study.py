@@ -9,6 +9,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from scenarios.car_runs import CarRuns
 from scenarios.claim import Claim, headline, write_claims
 from scenarios.output_folder import prepare_folder
@@ -118,8 +120,8 @@ def computed_by(run: Run) -> str:
 def estimator_text(response: FrequencyResponse) -> str:
     """Estimator, averages and resolution of FRFs from whole records, for captions."""
     return (
-        f"estimator: {response.estimator} on the whole record, {response.averages:g} averages (degrees of freedom), "
-        f"resolution {response.resolution_hz:.2g} Hz or 3 % of the frequency"
+        f"estimator: {response.estimator} on the whole record, {np.nanmedian(response.averages):.2g} averages (degrees "
+        f"of freedom, median), resolution {response.resolution_hz:.2g} Hz"
     )
 
 

@@ -31,8 +31,8 @@ def inertia_figure(
         (
             title,
             [
-                measured_curve(run, response, row, label, colour)
-                for (label, run), response, colour in zip(runs.items(), responses, colours, strict=True)
+                measured_curve(response, row, label, colour)
+                for label, response, colour in zip(runs, responses, colours, strict=True)
             ],
         )
         for row, title in enumerate(TITLES)

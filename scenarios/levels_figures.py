@@ -50,15 +50,15 @@ def level_figures(
     for row, channel in enumerate(outputs):
         name, title = OUTPUTS[channel]
         curves = [
-            measured_curve(run, responses[level], CHANNELS.index(channel), level, colour)
-            for (level, run), colour in zip(runs.items(), LEVEL_COLOURS, strict=True)
+            measured_curve(responses[level], CHANNELS.index(channel), level, colour)
+            for level, colour in zip(runs, LEVEL_COLOURS, strict=True)
         ]
         curves.append(FrfCurve(label=LINEAR_LABEL, frequency=lines, response=linear[row], colour="#222222", style=":"))
         draw_frf(folder / f"{name}.png", title, note, [("", curves)])
     columns = []
-    for level, run in runs.items():
+    for level in runs:
         pair = [
-            measured_curve(run, responses[level], CHANNELS.index(channel), label, colour, style)
+            measured_curve(responses[level], CHANNELS.index(channel), label, colour, style)
             for channel, label, colour, style in (
                 (DAMPER[0], "knuckle", LEVEL_COLOURS[0], "-"),
                 (DAMPER[1], "damper top", LEVEL_COLOURS[2], "--"),

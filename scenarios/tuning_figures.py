@@ -50,7 +50,7 @@ def level_figure(path: Path, target: FrfTarget, start: Car, fitted: Car, source:
         else "reduced engine on the same signal, FRF by the estimator of the data"
     )
     note = (
-        f"Data: {source}; {estimator}, {target.averages:g} averages (degrees of freedom); coherence of the data. "
+        f"Data: {source}; {estimator}, {target.averages:.3g} averages (degrees of freedom); coherence of the data. "
         f"Start and fitted: {model}. {frequency.size} frequencies from {frequency[0]:.1f} to {frequency[-1]:.1f} Hz."
     )
     draw_frf(path, f"FRFs before and after the fit: {target.name}", note, columns)

@@ -19,9 +19,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
+from vehicle.analysis.dependence import common_motion
 from vehicle.analysis.frf import FrequencyResponse, frequency_response
 from vehicle.analysis.frf_mimo import frequency_response_mimo
-from vehicle.analysis.local_rational import local_rational_response
+from vehicle.analysis.input_floor import rounding_step
+from vehicle.analysis.local_rational import local_rational_responses
 from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
@@ -43,6 +45,9 @@ from vehicle.simulation.recording import Recording
 from vehicle.simulation.run import Progress, simulate
 
 ENGINES = ("mujoco", "reduced", "auto")
+
+FRF_BAND = (1.0, 50.0)
+"""Frequencies of an FRF [Hz]."""
 
 SATURATED_VELOCITY = 1e-3
 """Damper velocity [m/s] above which the smooth friction law is within 0.6 % of its limit: stick has ended. No slip yet:
@@ -215,11 +220,14 @@ class Run:
 
     @property
     def wheel(self) -> str:
-        """The excited wheel; the right one where both are."""
-        return self.recording.excited[0]
+        """The excited wheel; the right one where both are, the first of the signal where its plates stand still."""
+        return (*self.recording.excited, *self.signal.wheels)[0]
 
     def frf(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> FrequencyResponse:
-        """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence.
+        """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
+
+        Where both plates move independently, the FRF is that to the plate of `wheel` alone, the coherence that with
+        both; where they are copies without a delay, it is that to their common motion.
 
         Args:
             channels: names; all acceleration channels by default.
@@ -227,48 +235,45 @@ class Run:
                 of averaged Hann windows.
 
         Returns:
-            The estimate; rows in the order of `channels`.
+            The estimate; rows in the order of `channels`; NaN where the plate drives nothing.
 
         Raises:
-            DataError: the record is too short.
+            DataError: the record is too short, or no plate moves.
+            DependentInputsError: one plate moves as the other some time before.
         """
         names = acceleration_channels() if channels is None else tuple(channels)
         responses = np.array([self.recording[name] for name in names])
-        plate = self.recording[f"plate_{self.wheel}_displacement"]
         step = self.recording.timestep
-        if len(self.recording.excited) > 1:
-            return self._two_plate_frf(names, responses, 4.0 if window is None else window)
-        if window is None:
-            return local_rational_response(step, plate, responses, names=names)
-        return frequency_response(step, plate, responses, window_s=window, names=names)
-
-    def _two_plate_frf(
-        self, names: Sequence[str], responses: npt.NDArray[np.float64], window: float
-    ) -> FrequencyResponse:
-        """FRFs to the plate of `wheel` while both plates move: their parts are separated (H1 of two inputs)."""
-        step = self.recording.timestep
-        plates = [f"plate_{wheel}_displacement" for wheel in self.recording.excited]
+        moving = self.recording.excited
+        if not moving:
+            raise DataError(
+                f"{self.signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that "
+                "moves one"
+            )
+        plates = tuple(f"plate_{wheel}_displacement" for wheel in moving)
         inputs = np.array([self.recording[plate] for plate in plates])
-        try:
-            both = frequency_response_mimo(step, inputs, responses, window_s=window, input_names=plates, names=names)
-        except DataError as error:
-            if "fully correlated" not in str(error):
-                raise
-            common = local_rational_response(step, inputs[0], responses, names=names)
-            note = "both plates move alike: the FRFs are those to their common motion"
-            return dataclasses.replace(common, reasons=(note, *common.reasons))
-        note = f"both plates move: the FRFs are those to {plates[0]} alone, the coherence is that with both"
-        return FrequencyResponse(
-            frequency=both.frequency,
-            response=both.response[:, 0],
-            coherence=both.multiple_coherence,
-            averages=both.averages,
-            segments=0,
-            window=both.window,
-            estimator=f"{both.estimator}, two inputs",
-            resolution_hz=both.resolution_hz,
-            reasons=(note, *both.reasons),
-        )
+        notes = []
+        if len(plates) > 1:
+            together = common_motion(step, inputs, plates, FRF_BAND)
+            if together is None:
+                note = f"both plates move: the FRFs are those to {plates[0]} alone, the coherence is that with both"
+            else:
+                whose = "their common motion" if together == "alike" else f"{plates[0]} while both do"
+                note = f"both plates move {together}: the FRFs are those to {whose}"
+                inputs, plates, moving = inputs[:1], plates[:1], moving[:1]
+            notes.append(note)
+        if window is not None and len(plates) > 1:
+            found = frequency_response_mimo(
+                step, inputs, responses, window_s=window, band=FRF_BAND, input_names=plates, names=names
+            )[0]
+        elif window is not None:
+            found = frequency_response(step, inputs[0], responses, window_s=window, band=FRF_BAND, names=names)
+        else:
+            rounding = [rounding_step(self.signal.displacement[wheel]) for wheel in moving]
+            found = local_rational_responses(
+                step, inputs, responses, band=FRF_BAND, names=names, input_names=plates, rounding=rounding
+            )[0]
+        return dataclasses.replace(found, reasons=(*notes, *found.reasons))
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
         """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""

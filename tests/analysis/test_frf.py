@@ -72,7 +72,7 @@ def test_leakage_lowers_a_sharp_peak_as_predicted_and_a_longer_window_mends_it()
         found = frequency_response(STEP, excitation, response, window_s=window_s)
         at = int(np.argmin(np.abs(found.frequency - 20.0)))
         gamma = found.coherence[0, at]
-        scatter = np.sqrt((1 - gamma) / (2 * found.averages * gamma))  # Bendat and Piersol, chapter 9
+        scatter = np.sqrt((1 - gamma) / (2 * found.averages[0, 0] * gamma))  # Bendat and Piersol, chapter 9
         exact = abs(transmissibility(20.0, 20.0, 0.01))
         predicted = abs(leaking_transmissibility(window_s, 20.0, 0.01))
         assert predicted / exact == pytest.approx(stated, abs=0.01)
@@ -89,13 +89,14 @@ def test_leakage_lowers_a_sharp_peak_as_predicted_and_a_longer_window_mends_it()
 def test_coherence_shows_the_known_share_of_noise(ratio):
     excitation = noise(400_000, 2)
     found = frequency_response(STEP, excitation, excitation + ratio * noise(400_000, 3))
+    averages = found.averages[0, 0]
     expected = 1.0 / (1.0 + ratio**2)
-    bias = (1.0 - expected) ** 2 / found.averages  # Bendat and Piersol, chapter 9
+    bias = (1.0 - expected) ** 2 / averages  # Bendat and Piersol, chapter 9
     # standard error of one line sqrt(2) (1 - g) sqrt(g / nd), over 190 lines of which every other is independent
-    scatter = np.sqrt(2.0) * (1 - expected) * np.sqrt(expected / found.averages / 95)
+    scatter = np.sqrt(2.0) * (1 - expected) * np.sqrt(expected / averages / 95)
     assert found.coherence.mean() == pytest.approx(expected + bias, abs=4 * scatter)
     # noise on the response does not bias H1
-    assert np.abs(found.response.mean() - 1.0) < 4 * ratio / np.sqrt(2 * found.averages * 95)
+    assert np.abs(found.response.mean() - 1.0) < 4 * ratio / np.sqrt(2 * averages * 95)
 
 
 def test_doubling_the_input_doubles_the_response_and_keeps_the_frf():

@@ -48,6 +48,20 @@ def test_prominence_is_the_height_above_the_higher_foot():
     assert [p.prominence_db for p in resonance_peaks(lines, magnitude, prominence_db=2.5)] == pytest.approx([6.0])
 
 
+def test_a_peak_rises_above_its_random_error():
+    magnitude = receptance(LINES, 28.1, 0.05)
+    (peak,) = resonance_peaks(LINES, magnitude, None, 0.05 * magnitude)
+    assert peak.random_error == pytest.approx(0.05 * receptance(28.0, 28.1, 0.05))
+    # A top of 10 above a foot of 0.5 and less, against 3.5 errors of 9.
+    assert resonance_peaks(LINES, magnitude, None, 0.9 * magnitude) == ()
+
+
+def test_a_maximum_without_coherence_is_no_resonance():
+    magnitude = receptance(LINES, 28.1, 0.05)
+    assert resonance_peaks(LINES, magnitude, np.full(LINES.size, 0.25)) == ()
+    assert len(resonance_peaks(LINES, magnitude, np.full(LINES.size, 0.35))) == 1
+
+
 def test_undefined_lines_split_the_search():
     magnitude = receptance(LINES, 10.0, 0.05)
     magnitude[LINES > 9.9] = np.nan

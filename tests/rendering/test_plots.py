@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 
 import matplotlib
@@ -13,7 +14,7 @@ from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.names import acceleration_channels
 from vehicle.rendering.excerpt import excerpt_start, liveliest
-from vehicle.rendering.frf_plot import driven, plot_frf, wrapped_phase
+from vehicle.rendering.frf_plot import plot_frf, wrapped_phase
 from vehicle.rendering.time_plot import plot_time
 
 
@@ -35,7 +36,8 @@ def response():
         frequency=frequency,
         response=np.outer(np.arange(1, rows + 1), single).astype(np.complex128),
         coherence=np.full((rows, frequency.size), 0.9),
-        averages=7.0,
+        random_error=0.05 * np.outer(np.arange(1, rows + 1), np.abs(single)),
+        averages=np.full((rows, frequency.size), 7.0),
         segments=1,
         window="none",
         estimator="local rational model",
@@ -139,13 +141,22 @@ def test_phase_breaks_where_it_wraps():
     assert np.isnan(phase[2])
 
 
-def test_frequencies_that_the_plate_does_not_drive():
-    time = np.arange(20000) / 1000.0
-    lines = np.arange(5.0, 20.0, 0.05)  # a whole number of periods in 20 s: nothing leaks
-    phases = np.random.default_rng(2).uniform(0, 2 * np.pi, lines.size)
-    plate = sum(np.sin(2 * np.pi * f * time + p) / f for f, p in zip(lines, phases, strict=True))
-    inside = driven(1e-3, plate, np.array([2.0, 4.9, 6.0, 12.0, 19.0, 20.1, 40.0]))
-    np.testing.assert_array_equal(inside, [False, False, True, True, True, False, False])
+def test_frf_plot_is_grey_where_the_input_tells_nothing_and_shows_the_random_error(
+    long_run, response, tmp_path, figures
+):
+    blank = response.response.copy()
+    blank[:, (response.frequency > 20.0) & (response.frequency < 30.0)] = np.nan
+    plot_frf(tmp_path / "frf.png", long_run, dataclasses.replace(response, response=blank), "")
+    magnitude = every_axis(figures[0])[0]
+    grey = next(part for part in magnitude.collections if part.get_label() == "no FRF: no input")
+    edges = np.concatenate([path.vertices[:, 0] for path in grey.get_paths()])
+    assert (edges.min(), edges.max()) == pytest.approx((20.0, 30.0), abs=0.2)
+    bands = [part for part in magnitude.collections if part is not grey]
+    assert len(bands) == 4
+    top = max(path.vertices[:, 1].max() for path in bands[0].get_paths())
+    row = acceleration_channels().index("knuckle_fr_acc_z")
+    shown = np.abs(response.response[row][(response.frequency < 20.0) | (response.frequency > 30.0)])
+    assert top == pytest.approx((1.0 + 1.96 * 0.05) * shown.max(), rel=1e-6)
 
 
 def test_liveliest_stretch():

@@ -30,7 +30,8 @@ def test_what_the_shaker_command_writes_comes_back(tmp_path):
         frequency=frequency,
         response=response,
         coherence=coherence,
-        averages=8.0,
+        random_error=0.1 * np.abs(response),
+        averages=np.full(coherence.shape, 8.0),
         segments=1,
         window="none",
         estimator="any",
@@ -45,6 +46,7 @@ def test_what_the_shaker_command_writes_comes_back(tmp_path):
     np.testing.assert_allclose(data.frequency, frequency, rtol=1e-8)
     np.testing.assert_allclose(data.response, response, rtol=1e-7)
     np.testing.assert_allclose(data.coherence, coherence, rtol=1e-8)
+    np.testing.assert_allclose(data.random_error, 0.1 * np.abs(response), rtol=1e-8)
 
 
 def test_selection_by_channel_band_and_spacing(tmp_path):
@@ -52,6 +54,7 @@ def test_selection_by_channel_band_and_spacing(tmp_path):
     lines += [f"{n / 4},0.5,0,{n},{2 * n},90,0.9" for n in range(1, 100)]
     data = read_frf(written(tmp_path, lines))
     assert data.channels == ("b", "a")
+    assert np.isnan(data.random_error).all()
     part = data.select(("a",), band=(2.0, 12.0), spacing=1.0)
     np.testing.assert_allclose(part.frequency, np.arange(2.0, 12.5))
     np.testing.assert_allclose(part.response[0], 8.0j * part.frequency, atol=1e-12)

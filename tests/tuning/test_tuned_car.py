@@ -32,7 +32,13 @@ def frf_data(response, seed):
     real, imaginary = np.random.default_rng(seed).standard_normal((2, *response.shape))
     noisy = response * np.exp(NOISE * (real + 1j * imaginary))
     coherence = np.full(response.shape, 1.0 / (1.0 + 16.0 * NOISE**2))
-    return FrfData(frequency=FREQUENCY, channels=CHANNELS, response=noisy, coherence=coherence)
+    return FrfData(
+        frequency=FREQUENCY,
+        channels=CHANNELS,
+        response=noisy,
+        coherence=coherence,
+        random_error=np.full(noisy.shape, np.nan),
+    )
 
 
 def target_of(car, signal, seed=1):

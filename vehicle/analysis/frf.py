@@ -36,8 +36,11 @@ class FrequencyResponse:
     """H(f) [unit of response / unit of excitation], shape (k, m); NaN where undefined"""
     coherence: NDArray[np.float64]
     """gamma^2 [-], shape (k, m); NaN where undefined"""
-    averages: float
-    """effective independent averages [-]"""
+    random_error: NDArray[np.float64]
+    """standard error of |H| [unit of H], shape (k, m): 95 % of all estimates lie within 1.96 of it in magnitude, within
+    2.45 in the complex plane; NaN where undefined"""
+    averages: NDArray[np.float64]
+    """averages of independent spectra that give this error by H1, shape (k, m): its true degrees of freedom [-]"""
     segments: int
     """overlapping segments averaged [-]"""
     window: str
@@ -45,9 +48,19 @@ class FrequencyResponse:
     estimator: str
     """name of the estimator"""
     resolution_hz: float
-    """distance of the lines [Hz]"""
+    """least half-power width of a resonance whose height can be told; of H1 the distance of the lines [Hz]"""
     reasons: tuple[str, ...]
     """one sentence for each cause of NaN; empty when all is defined"""
+
+
+def relative_error(coherence: ArrayLike, averages: float) -> NDArray[np.float64]:
+    """Standard error of |H| over |H| of an H1 estimate, sqrt((1 - gamma^2) / (2 n gamma^2)); NaN where gamma is 0.
+
+    Source: Bendat and Piersol, Random Data, 4th ed., section 9.2.
+    """
+    gamma2 = np.asarray(coherence, dtype=np.float64)
+    gamma2 = np.where(gamma2 > 0.0, np.minimum(gamma2, 1.0), np.nan)
+    return np.asarray(np.sqrt((1.0 - gamma2) / (2.0 * averages * gamma2)))
 
 
 def frequency_response(
@@ -135,7 +148,8 @@ def frequency_response(
         frequency=lines[inside],
         response=response[:, inside],
         coherence=coherence[:, inside],
-        averages=cut.averages,
+        random_error=(np.abs(response) * relative_error(coherence, cut.averages))[:, inside],
+        averages=np.full((y.shape[0], int(inside.sum())), cut.averages),
         segments=cut.count,
         window="hann",
         estimator="H1",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import csd, welch
 
+from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.samples import (
     checked_band,
     checked_names,
@@ -24,30 +24,6 @@ from vehicle.errors import DataError
 INDEPENDENCE = 1e-2
 """Least eigenvalue of the excitation matrix scaled to unit diagonal [-]: for two inputs 1 minus the modulus of their
 coherence. Below it the error of the separated responses is more than seven times that of a single input."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class MimoFrequencyResponse:
-    """Responses to each of several excitations."""
-
-    frequency: NDArray[np.float64]
-    """lines [Hz], shape (m,)"""
-    response: NDArray[np.complex128]
-    """H(f) [unit of response / unit of excitation], shape (k, p, m); NaN where undefined"""
-    multiple_coherence: NDArray[np.float64]
-    """share of each response explained by all excitations together [-], shape (k, m); NaN where undefined"""
-    independence: NDArray[np.float64]
-    """least eigenvalue of the scaled excitation matrix [-], shape (m,): 1 unrelated, 0 one follows from the others"""
-    averages: float
-    """effective independent averages [-]"""
-    window: str
-    """name of the window"""
-    estimator: str
-    """name of the estimator"""
-    resolution_hz: float
-    """distance of the lines [Hz]"""
-    reasons: tuple[str, ...]
-    """one sentence for each cause of NaN; empty when all is defined"""
 
 
 def _refuse_dependent(
@@ -84,7 +60,7 @@ def frequency_response_mimo(
     input_names: Sequence[str] | None = None,
     names: Sequence[str] | None = None,
     minimum_averages: float = MINIMUM_AVERAGES,
-) -> MimoFrequencyResponse:
+) -> tuple[FrequencyResponse, ...]:
     """Estimate H1 = Gxx^-1 Gxy for p simultaneous excitations, and the multiple coherence.
 
     gamma^2 = Gxy^H Gxx^-1 Gxy / Gyy
@@ -99,6 +75,9 @@ def frequency_response_mimo(
         input_names: of the excitations, for messages.
         names: of the responses, for `reasons`.
         minimum_averages: effective averages asked for; at least p + 1 are always needed.
+
+    Returns:
+        One FRF for each excitation; their coherence is that with all excitations together.
 
     Raises:
         DataError: an excitation is constant; the excitations are fully correlated (equal, scaled or delayed copies:
@@ -160,14 +139,24 @@ def frequency_response_mimo(
             f"{bad.size} lines between {bad[0]:g} and {bad[-1]:g} Hz: the inputs are fully correlated there, so their "
             "responses cannot be separated; use the single-input frequency_response"
         )
-    return MimoFrequencyResponse(
-        frequency=lines[inside],
-        response=response,
-        multiple_coherence=multiple,
-        independence=independence,
-        averages=cut.averages,
-        window="hann",
-        estimator="H1",
-        resolution_hz=float(lines[1]),
-        reasons=tuple(reasons),
+    # The error of a separated response grows with what the inputs have in common, (Sxx^-1)_ii Sxx_ii.
+    inflation = np.full((inputs, good.size), np.nan)
+    inflation[:, good] = np.real(np.einsum("mii->im", np.linalg.inv(scaled[good])))
+    power = np.moveaxis(np.real(np.einsum("mii->mi", gxx)), 0, 1)  # (p, m)
+    noise = np.sqrt((1.0 - np.minimum(multiple, 1.0)) * syy / (2.0 * (cut.averages - inputs + 1.0)))
+    error = noise * np.sqrt(inflation / np.where(power > 0.0, power, np.nan))[:, None]  # (p, k, m)
+    return tuple(
+        FrequencyResponse(
+            frequency=lines[inside],
+            response=response[:, number],
+            coherence=multiple,
+            random_error=error[number],
+            averages=np.broadcast_to((cut.averages - inputs + 1.0) / inflation[number], multiple.shape),
+            segments=cut.count,
+            window="hann",
+            estimator=f"H1, {inputs} inputs",
+            resolution_hz=float(lines[1]),
+            reasons=tuple(reasons),
+        )
+        for number in range(inputs)
     )

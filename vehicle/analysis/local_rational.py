@@ -1,13 +1,12 @@
-"""FRF of a random record without leakage: the local rational model.
+"""FRF of a whole random record without leakage, and without the bias that noise gives to peaks: local rational models.
 
 A lightly damped car leaks in every windowed average: a body mode at 3.6 Hz with 3 % damping rings for longer than the
 usual window of 4 s, and the coherence falls although nothing is nonlinear. On the spectrum of the whole record the
-leakage is a smooth function of frequency and can be estimated beside the FRF. Over the lines k + r, |r| <= n,
+leakage is a smooth function of frequency and is estimated beside the FRF, in a stretch of lines around every frequency
+of the result; `output_error` says how, `input_floor` where the input tells nothing.
 
-    (1 + a r) Y(k + r) = (b0 + b1 r) U(k + r) + (t0 + t1 r) + noise,
-
-one pole (which follows a resonance however sharp), a line for what lies behind it, and the transient. Least squares
-give the FRF b0 and, from the residual, the noise power: the coherence is the share of the power that b explains.
+What a resonance needs is lines within its half-power width, B = 2 zeta f T. At a coherence of 0.9 its peak is low by
+less than 4 % from B = 16 on, and by 15 % at B = 4, below which it is not resolved (`tests.benchmarks.frf_accuracy`).
 
 Source: McKelvey and Guerin, Non-parametric frequency response estimation using a local rational model, IFAC SYSID 2012;
 Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, section 7.2.
@@ -20,30 +19,41 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.analysis.dependence import refuse_copies
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.analysis.samples import checked_signals, checked_time_step
+from vehicle.analysis.input_floor import CAUSES, sentences, silent_lines
+from vehicle.analysis.output_error import StretchFit, fit_stretch
+from vehicle.analysis.samples import (
+    checked_names,
+    checked_same_length,
+    checked_signals,
+    checked_time_step,
+    is_constant,
+)
 from vehicle.errors import DataError
 
-UNKNOWNS = 5
-"""b0, b1, t0, t1 and a."""
+LEAST_HALF_WIDTH, LINES_OF_AN_INPUT = 8, 5
+"""Lines n on each side at least: 17 lines, 6 unknowns; and as many more for every further input."""
 
-LEAST_HALF_WIDTH = 6
-"""Lines n on each side at least: 13 lines, 5 unknowns, 8 complex degrees of freedom for the noise."""
+RELATIVE_WIDTH = 0.02
+"""Lines on each side over the number of the line: modes as close as those of a body are one pole each."""
 
-RELATIVE_WIDTH = 0.03
-"""Width of the stretch over its frequency: half the bandwidth of a mode with 3 % damping."""
-
-WORST_CONDITION = 1e-3
-"""Smallest over largest singular value of a stretch; below it too few of its lines are excited to tell the FRF."""
-
-MOST_HALF_WIDTH = 60
+MOST_HALF_WIDTH = 300
 """Lines n on each side at most, which bounds the work on long records."""
 
-COARSE_HZ = 0.5
-"""Widest stretch [Hz] that still separates the body modes of a car, which lie half a hertz apart."""
+RESOLVED = 4.0
+"""Lines within the half-power width of a resonance from which its height can be told."""
 
-SMALLEST_SHARE = 1e-8
-"""Excitation power of a stretch of lines over that of the strongest line, below which nothing drives the car there."""
+BODY_MODES = 5.0
+"""Frequency [Hz] below which modes are so narrow that the result has two values for every `resolution`."""
+
+COARSE_HZ = 0.06
+"""Half-power width [Hz] of a lightly damped body mode: 1 % at 3 Hz. A record that does not resolve it says so."""
+
+INDEPENDENT = 1e-2
+"""Least eigenvalue of the matrix of the inputs, scaled to unit diagonal, over a stretch."""
+
+SAME = "the inputs are fully correlated there, so that their responses cannot be separated"
 
 
 def local_rational_response(
@@ -54,122 +64,155 @@ def local_rational_response(
     band: tuple[float, float] = (1.0, 50.0),
     resolution: float = 0.1,
     names: Sequence[str] | None = None,
+    rounding: float = 0.0,
 ) -> FrequencyResponse:
-    """Estimate the FRF of a whole random record.
+    """Estimate the FRF of a whole random record to one input; the arguments are those of `local_rational_responses`."""
+    found = local_rational_responses(
+        time_step,
+        checked_signals("excitation", excitation)[:1],
+        responses,
+        band=band,
+        resolution=resolution,
+        names=names,
+        input_names=("excitation",),
+        rounding=(rounding,),
+    )
+    return found[0]
+
+
+def local_rational_responses(
+    time_step: float,
+    excitations: ArrayLike,
+    responses: ArrayLike,
+    *,
+    band: tuple[float, float] = (1.0, 50.0),
+    resolution: float = 0.1,
+    names: Sequence[str] | None = None,
+    input_names: Sequence[str] | None = None,
+    rounding: Sequence[float] | None = None,
+) -> tuple[FrequencyResponse, ...]:
+    """Estimate the FRFs of a whole random record to each of p inputs that act at once.
 
     Args:
         time_step: sampling interval [s].
-        excitation: input, shape (n,); begins and ends at rest or not, both are allowed.
+        excitations: inputs, shape (p, n); they begin and end at rest or not, both are allowed.
         responses: outputs, shape (n,) or (k, n).
         band: lowest and highest frequency [Hz].
-        resolution: distance of the frequencies of the result [Hz].
+        resolution: distance of the frequencies of the result [Hz]; half of it below `BODY_MODES`.
         names: names of the responses for the reasons.
+        input_names: names of the inputs for messages.
+        rounding: step to which each input was rounded; found from the samples where 0 or not given.
 
     Returns:
-        The FRF on the record's own lines nearest to the wanted frequencies; NaN where nothing is excited.
+        One FRF for each input, on the record's own lines nearest to the wanted frequencies; NaN where an input says
+        nothing or a response does not move. The coherence is that with all inputs together.
 
     Raises:
-        DataError: the record holds too few lines below the upper frequency, or the input is zero.
+        DataError: the record holds too few lines below the upper frequency, an input does not move.
+        DependentInputsError: an input is a copy of another.
     """
     step = checked_time_step(time_step)
-    inputs = checked_signals("excitation", excitation)[0]
+    inputs = checked_signals("excitations", excitations)
     outputs = checked_signals("responses", responses)
-    samples = inputs.size
+    checked_same_length("responses", outputs, "the excitations", inputs.shape[1])
+    labels = checked_names("input", input_names, len(inputs))
+    answering = checked_names("response", names, len(outputs))
+    samples = inputs.shape[1]
     line = 1.0 / (samples * step)
-    if band[1] < 8 * LEAST_HALF_WIDTH * line:
-        raise DataError(f"record: {samples * step:g} s is too short for an FRF up to {band[1]:g} Hz; record longer")
-    spectrum = np.fft.rfft(inputs - inputs.mean())
-    answers = np.fft.rfft(outputs - outputs.mean(axis=1, keepdims=True), axis=1)
+    least = LEAST_HALF_WIDTH + LINES_OF_AN_INPUT * (len(inputs) - 1)
+    if band[1] < 8 * least * line:
+        raise DataError(
+            f"record: {samples * step:g} s is too short for an FRF up to {band[1]:g} Hz; record at least "
+            f"{8 * least / band[1]:.3g} s"
+        )
+    for number in np.flatnonzero(is_constant(inputs)):
+        raise DataError(
+            f"{labels[number]}: is constant, at {inputs[number, 0]:g}; an FRF needs an input that moves; drive it, or "
+            "ask for the FRF to one that moves"
+        )
+    if len(inputs) > 1:
+        refuse_copies(step, inputs, labels, band)
+    spectra = np.fft.rfft(inputs - inputs.mean(axis=1, keepdims=True))
+    answers = np.fft.rfft(outputs - outputs.mean(axis=1, keepdims=True))
+    last = spectra.shape[1] - 1
+
+    def half_width(centre: int) -> int:
+        wanted = int(np.clip(round(RELATIVE_WIDTH * centre), least, MOST_HALF_WIDTH))
+        return min(wanted, centre - 1, int(last) - centre)
+
     wanted = np.arange(band[0], band[1] + resolution / 2, max(resolution, line))
-    lowest, highest = LEAST_HALF_WIDTH + 1, spectrum.size - LEAST_HALF_WIDTH - 1
-    centres = np.unique(np.clip(np.round(wanted / line).astype(int), lowest, highest))
-    strongest = float(np.max(np.abs(spectrum)) ** 2)
-    if strongest == 0.0:
-        raise DataError("excitation: is zero throughout; an FRF needs an input that moves")
-    response = np.full((outputs.shape[0], centres.size), np.nan, dtype=complex)
-    coherence = np.full(response.shape, np.nan)
-    for index, centre in enumerate(centres):
-        half = int(np.clip(round(0.5 * RELATIVE_WIDTH * centre), LEAST_HALF_WIDTH, MOST_HALF_WIDTH))
-        half = min(half, int(centre) - 1, spectrum.size - int(centre) - 1)
-        offsets = np.arange(-half, half + 1)
-        lines = centre + offsets
-        drive = spectrum[lines]
-        power = float(np.mean(np.abs(drive) ** 2))
-        if power < SMALLEST_SHARE * strongest:
+    low = np.arange(band[0], min(band[1], BODY_MODES), max(resolution / 2, line))
+    wanted = np.union1d(wanted, low)
+    centres = np.unique(np.round(wanted / line).astype(int))
+    centres = centres[(centres > least) & (centres < last - least)]
+    silent = silent_lines(inputs, spectra, centres, half_width, rounding or (0.0,) * len(inputs))
+    moving = ~is_constant(outputs)
+    shape = (len(inputs), len(outputs), centres.size)
+    response, coherence = np.full(shape, complex(np.nan, np.nan)), np.full(shape[1:], np.nan)
+    deviation, averages = np.full((2, *shape), np.nan)
+    for index in np.flatnonzero(silent == 0):
+        centre = int(centres[index])
+        half = half_width(centre)
+        lines = slice(centre - half, centre + half + 1)
+        drives, drive_level = _scaled(spectra[:, lines])
+        gram = drives @ drives.conj().T / drives.shape[1]
+        if np.linalg.eigvalsh(gram)[0] < INDEPENDENT:
+            silent[index] = len(CAUSES) + 1
             continue
-        response[:, index], coherence[:, index] = _fit(offsets / half, drive / np.sqrt(power), answers[:, lines])
-        response[:, index] /= np.sqrt(power)
-    return FrequencyResponse(
-        frequency=centres * line,
-        response=response,
-        coherence=coherence,
-        averages=float(2 * LEAST_HALF_WIDTH + 1 - UNKNOWNS),
-        segments=1,
-        window="none (whole record)",
-        estimator="local rational model",
-        resolution_hz=line * (2 * LEAST_HALF_WIDTH + 1),
-        reasons=(*_coarse(line), *_reasons(centres * line, response, names)),
+        scaled, level = _scaled(answers[moving, lines])
+        fit = fit_stretch(drives, scaled, wide=half > least)
+        variance = np.real(np.einsum("kii->ik", fit.covariance))
+        ratio = level / drive_level[:, None]  # (p, k)
+        response[:, moving, index] = fit.response.T * ratio
+        deviation[:, moving, index] = np.sqrt(variance / 2.0) * ratio
+        averages[:, moving, index] = fit.noise / variance
+        coherence[moving, index] = _coherence(fit, gram)
+    frequency = centres * line
+    reasons = (
+        *_coarse(line),
+        *sentences(frequency, silent, (*CAUSES, SAME)),
+        *(f"{answering[row]}: constant, so its FRF and its coherence are undefined" for row in np.flatnonzero(~moving)),
+    )
+    return tuple(
+        FrequencyResponse(
+            frequency=frequency,
+            response=response[number],
+            coherence=coherence,
+            random_error=deviation[number],
+            averages=averages[number],
+            segments=1,
+            window="none (whole record)",
+            estimator="local rational model, output error" + (f", {len(inputs)} inputs" if len(inputs) > 1 else ""),
+            resolution_hz=RESOLVED * line,
+            reasons=reasons,
+        )
+        for number in range(len(inputs))
     )
 
 
-def _fit(
-    offset: NDArray[np.float64], drive: NDArray[np.complex128], answers: NDArray[np.complex128]
-) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """FRF and coherence of every response over one stretch of lines.
+def _scaled(spectra: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """Rows scaled to unit mean power, and their levels; a row of zeros stays one."""
+    level = np.sqrt(np.mean(np.abs(spectra) ** 2, axis=1))
+    return spectra / np.where(level > 0.0, level, 1.0)[:, None], level
 
-    Args:
-        offset: r / n, shape (lines,).
-        drive: scaled input, shape (lines,).
-        answers: responses, shape (k, lines).
 
-    Returns:
-        b0 and the coherence, shape (k,); NaN where too few lines are excited, and a NaN coherence for a zero response.
+def _coherence(fit: StretchFit, gram: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Share of a response that the inputs explain, shape (k,).
+
+    The power H' S H of the estimate is too large by what its own noise adds, trace(S C), on average.
     """
-    response = np.full(len(answers), np.nan, dtype=complex)
-    coherence = np.full(len(answers), np.nan)
-    smooth = np.stack([drive, offset * drive, np.ones_like(drive), offset.astype(complex)], axis=1)
-    singular = np.linalg.svd(smooth, compute_uv=False)
-    if singular[-1] < WORST_CONDITION * singular[0]:
-        return response, coherence
-    for row, answer in enumerate(answers):
-        level = float(np.sqrt(np.mean(np.abs(answer) ** 2)))
-        if level == 0.0:
-            response[row] = 0.0
-            continue
-        scaled = answer / level
-        regressors = np.column_stack([smooth, -offset * scaled])
-        solution = np.linalg.lstsq(regressors, scaled, rcond=None)[0]
-        pole = 1.0 + solution[4] * offset
-        noise = np.sum(np.abs((scaled - regressors @ solution) / pole) ** 2) / (offset.size - UNKNOWNS)
-        explained = np.mean(np.abs(smooth[:, :2] @ solution[:2] / pole) ** 2)
-        response[row] = solution[0] * level
-        coherence[row] = explained / (explained + noise)
-    return response, coherence
+    power = np.einsum("ki,kj,ij->k", fit.response, fit.response.conj(), gram).real
+    power = np.maximum(power - np.einsum("kij,ij->k", fit.covariance, gram).real, 0.0)
+    return np.asarray(power / (power + fit.noise))
 
 
 def _coarse(line: float) -> tuple[str, ...]:
-    """A sentence where the record is too short to separate the modes of a car."""
-    resolution = line * (2 * LEAST_HALF_WIDTH + 1)
+    """A sentence where the record is too short for lightly damped modes of a body."""
+    resolution = RESOLVED * line
     if resolution <= COARSE_HZ:
         return ()
     return (
-        f"the FRF resolves {resolution:.2g} Hz only, since the record lasts {1.0 / line:.3g} s; "
-        f"resonances below 10 Hz need {(2 * LEAST_HALF_WIDTH + 1) / COARSE_HZ:.0f} s",
+        f"resonances narrower than {resolution:.2g} Hz between the half-power points (damping ratio below "
+        f"{100 * resolution / 6.0:.2g} % at 3 Hz, {100 * resolution / 60.0:.2g} % at 30 Hz) are not resolved by a "
+        f"record of {1.0 / line:.3g} s: their peaks come out too low; record longer",
     )
-
-
-def _reasons(
-    frequency: NDArray[np.float64], response: NDArray[np.complex128], names: Sequence[str] | None
-) -> tuple[str, ...]:
-    """A sentence for frequencies without excitation and one for each response that does not move."""
-    found = []
-    silent = np.all(np.isnan(response), axis=0)
-    if silent.any():
-        found.append(
-            f"nothing is excited at {int(silent.sum())} frequencies from {frequency[silent][0]:.2f} to "
-            f"{frequency[silent][-1]:.2f} Hz: no FRF there"
-        )
-    for row, values in enumerate(response):
-        if not silent.all() and np.all(values[~silent] == 0.0):
-            found.append(f"{names[row] if names else f'response {row}'} does not move: its coherence is undefined")
-    return tuple(found)

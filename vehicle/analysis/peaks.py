@@ -8,11 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import find_peaks
 
+from vehicle.analysis.frf import FrequencyResponse
 from vehicle.errors import ConfigurationError, DataError
 
 PROMINENCE_DB = 1.0
-"""A peak must rise 1 dB (a factor 1.12) above the higher of its two feet. That is more than three standard errors of
-an FRF with coherence 0.95 and 27 averages (0.27 dB), so random ripple is not taken for a resonance."""
+"""A peak must rise 1 dB (a factor 1.12) above the higher of its two feet."""
+
+STANDARD_ERRORS = 3.5
+"""And by 3.5 standard errors of the difference of top and foot. Both are extremes: the range of a hundred independent
+estimates, as many as a list has, is 5 standard errors of one on average, which is 3.5 of a difference."""
+
+LEAST_COHERENCE = 0.3
+"""Coherence below which a maximum is no resonance: two thirds of the motion there have another cause."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -27,6 +34,8 @@ class Peak:
     """coherence of the nearest line [-]; None where none was given"""
     prominence_db: float
     """height above the higher foot [dB]"""
+    random_error: float | None = None
+    """standard error of the nearest line [unit of the FRF]; None where none was given"""
 
 
 def _vertex(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
@@ -45,19 +54,22 @@ def resonance_peaks(
     frequency: ArrayLike,
     magnitude: ArrayLike,
     coherence: ArrayLike | None = None,
+    random_error: ArrayLike | None = None,
     *,
     prominence_db: float = PROMINENCE_DB,
 ) -> tuple[Peak, ...]:
     """Find the resonance peaks of one FRF magnitude, sorted by frequency.
 
-    A peak is a line above both neighbours whose prominence in dB reaches the limit; its frequency and height come from
-    the parabola through log(magnitude) at the line and its two neighbours. Lines with a NaN magnitude separate the
-    stretches that are searched. A maximum at the edge of a stretch is no peak.
+    A peak is a line above both neighbours whose prominence reaches the limit in dB and `STANDARD_ERRORS`, and whose
+    coherence reaches `LEAST_COHERENCE`; its frequency and height come from the parabola through log(magnitude) at the
+    line and its two neighbours. Lines with a NaN magnitude separate the stretches that are searched. A maximum at the
+    edge of a stretch is no peak.
 
     Args:
         frequency: increasing lines [Hz], shape (m,).
         magnitude: |H| > 0 [unit of the FRF], shape (m,), NaN where undefined.
         coherence: [-], shape (m,).
+        random_error: standard error of the magnitude [unit of the FRF], shape (m,); taken as 0 where not given.
         prominence_db: limit [dB].
 
     Raises:
@@ -66,10 +78,12 @@ def resonance_peaks(
     lines = np.asarray(frequency, dtype=np.float64)
     values = np.asarray(magnitude, dtype=np.float64)
     quality = None if coherence is None else np.asarray(coherence, dtype=np.float64)
-    if lines.ndim != 1 or values.shape != lines.shape or (quality is not None and quality.shape != lines.shape):
+    error = None if random_error is None else np.asarray(random_error, dtype=np.float64)
+    others = [array.shape for array in (quality, error) if array is not None]
+    if lines.ndim != 1 or any(shape != lines.shape for shape in (values.shape, *others)):
         raise DataError(
             f"peaks: found shapes {lines.shape} for frequency, {values.shape} for magnitude and "
-            f"{None if quality is None else quality.shape} for coherence; all must be (m,)"
+            f"{others} for coherence and random error; all must be (m,)"
         )
     if not np.isfinite(lines).all() or np.any(np.diff(lines) <= 0.0):
         raise DataError("peaks: frequency must be finite and increase from line to line")
@@ -84,16 +98,31 @@ def resonance_peaks(
         if stretch.size < 3 or not known[stretch[0]]:
             continue
         decibel = 20.0 * np.log10(values[stretch])
-        tops, properties = find_peaks(decibel, prominence=prominence_db)
-        for top, prominence in zip(tops, properties["prominences"], strict=True):
+        height, ripple = values[stretch], np.zeros(stretch.size) if error is None else error[stretch]
+        tops, found_at = find_peaks(decibel, prominence=prominence_db)
+        for top, rise, *bases in zip(
+            tops, found_at["prominences"], found_at["left_bases"], found_at["right_bases"], strict=True
+        ):
+            foot = max(bases, key=lambda base: float(decibel[base]))
+            noisy = quality is not None and quality[stretch[top]] < LEAST_COHERENCE
+            if noisy or height[top] - height[foot] < STANDARD_ERRORS * np.hypot(ripple[top], ripple[foot]):
+                continue
             around = slice(top - 1, top + 2)
-            position, height = _vertex(lines[stretch][around], decibel[around])
+            position, level = _vertex(lines[stretch][around], decibel[around])
             found.append(
                 Peak(
                     frequency_hz=position,
-                    magnitude=float(10.0 ** (height / 20.0)),
+                    magnitude=float(10.0 ** (level / 20.0)),
                     coherence=None if quality is None else float(quality[stretch[top]]),
-                    prominence_db=float(prominence),
+                    prominence_db=float(rise),
+                    random_error=None if error is None else float(error[stretch[top]]),
                 )
             )
     return tuple(found)
+
+
+def resonances(response: FrequencyResponse, row: int) -> tuple[Peak, ...]:
+    """Resonance peaks of one row of an FRF, where the input excites, by its own random error."""
+    return resonance_peaks(
+        response.frequency, np.abs(response.response[row]), response.coherence[row], response.random_error[row]
+    )

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.analysis.spectra import periodogram
 from vehicle.names import SIDE_OF_WHEEL, acceleration_channels
 from vehicle.rendering.figure import COLOURS, saved_figure
 from vehicle.rendering.recorded_run import RecordedRun
@@ -19,12 +18,11 @@ Vector = npt.NDArray[np.float64]
 BAND = (1.0, 50.0)
 TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
 
-DRIVEN = 2e-4
-"""Share of the largest velocity power density of the plate below which a frequency counts as not driven;
-the leakage of the ends of a record lies below it."""
+REGION = 1.96
+"""Half width of the band around a magnitude, in standard errors: 95 % of all records lie within it."""
 
-SIDE_LINES = 7
-"""Lines of the whole record's spectrum averaged on each side: those that the FRF estimate itself uses at least."""
+NO_LEVELS = (1.0, 1e5)
+"""Range of the magnitude [m/s2 per m] of a picture without any."""
 
 UNDRIVEN_COLOUR = "#ececec"
 
@@ -63,27 +61,6 @@ def wrapped_phase(response: npt.NDArray[np.complex128]) -> Vector:
     return np.asarray(phase)
 
 
-def driven(time_step: float, displacement: Vector, frequency: Vector) -> npt.NDArray[np.bool_]:
-    """Tell which frequencies the plate drives: (2 pi f)^2 S(f) above a share of its largest value on both sides.
-
-    A division by next to nothing gives an FRF of next to nothing, and the picture should say so.
-
-    Args:
-        time_step: [s].
-        displacement: of the plate [m], (n,).
-        frequency: [Hz], (m,).
-
-    Returns:
-        True where driven, (m,).
-    """
-    spectrum = periodogram(time_step, displacement)
-    velocity = spectrum.frequency**2 * spectrum.density[0]
-    below = np.convolve(velocity, np.full(SIDE_LINES, 1.0 / SIDE_LINES))[: velocity.size]
-    above = np.convolve(velocity[::-1], np.full(SIDE_LINES, 1.0 / SIDE_LINES))[: velocity.size][::-1]
-    density = np.interp(frequency, spectrum.frequency, np.minimum(below, above))
-    return np.asarray(density > DRIVEN * float(np.max(density)))
-
-
 def plot_frf(
     path: Path,
     run: RecordedRun,
@@ -91,7 +68,7 @@ def plot_frf(
     caption: str,
     channels: Sequence[str] | None = None,
 ) -> None:
-    """Write the FRF picture.
+    """Write the FRF picture: magnitudes with the 95 % band of their random error, grey where the input tells nothing.
 
     Args:
         path: PNG file.
@@ -102,9 +79,7 @@ def plot_frf(
     """
     rows = {name: row for row, name in enumerate(acceleration_channels() if channels is None else channels)}
     groups = columns(run.wheel)
-    recording = run.recording
-    plate = recording[f"plate_{run.wheel}_displacement"]
-    inside = driven(recording.timestep, plate, response.frequency)
+    inside = np.isfinite(response.response).any(axis=0)
     shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels if name in rows]])
     with saved_figure(path, (13.0, 8.6)) as figure:
         axes = figure.subplots(3, 2, sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9))
@@ -115,10 +90,12 @@ def plot_frf(
                     continue
                 # The mount stands in both columns and looks the same in both.
                 style = {"color": COLOURS[4] if name.startswith("suspension_mount") else COLOURS[number]}
-                values = np.where(inside, response.response[rows[name]], np.nan)
-                magnitude.plot(response.frequency, np.abs(values), label=label, **style)
-                phase.plot(response.frequency, wrapped_phase(values), **style)
-                coherence.plot(response.frequency, np.where(inside, response.coherence[rows[name]], np.nan), **style)
+                values, error = np.abs(response.response[rows[name]]), REGION * response.random_error[rows[name]]
+                low = np.maximum(values - error, 0.01 * values)
+                magnitude.fill_between(response.frequency, low, values + error, alpha=0.25, linewidth=0.0, **style)
+                magnitude.plot(response.frequency, values, label=label, **style)
+                phase.plot(response.frequency, wrapped_phase(response.response[rows[name]]), **style)
+                coherence.plot(response.frequency, response.coherence[rows[name]], **style)
             magnitude.set_title(title)
             coherence.set_xlabel("frequency [Hz]")
             for axis in axes[:, column]:
@@ -130,7 +107,7 @@ def plot_frf(
                     transform=axis.get_xaxis_transform(),
                     color=UNDRIVEN_COLOUR,
                     zorder=0,
-                    label="no FRF: plate hardly moves",
+                    label="no FRF: no input",
                 )
             magnitude.legend(loc="upper left")
         upper, middle, lower = axes[:, 0]
@@ -139,8 +116,7 @@ def plot_frf(
         lower.set(ylim=(0.0, 1.05), yticks=(0, 0.25, 0.5, 0.75, 1), ylabel="coherence [-]")
         levels = shown[:, inside]
         levels = levels[np.isfinite(levels) & (levels > 0.0)]
-        if levels.size:
-            upper.set_ylim(0.5 * levels.min(), 2.0 * levels.max())
+        upper.set_ylim(*(0.5 * levels.min(), 2.0 * levels.max()) if levels.size else NO_LEVELS)
         for axis in axes[2]:
             axis.set_xticks(TICKS, [str(tick) for tick in TICKS])
             axis.set_xticks([], minor=True)

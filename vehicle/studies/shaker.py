@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from vehicle.analysis.comfort import settling
+from vehicle.analysis.dependence import common_motion
 from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.analysis.peaks import resonance_peaks
+from vehicle.analysis.peaks import resonances
 from vehicle.assembly.body_inertia import rigid_body
-from vehicle.car import SATURATED_VELOCITY, Car, Run
+from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Car, Run
 from vehicle.errors import SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES, WHEELS, acceleration_channels
@@ -68,8 +69,11 @@ def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[
     Raises:
         VehicleError: whatever goes wrong; nothing half-written is left behind.
     """
-    # A car that cannot be run is refused before anything is written.
+    # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
     car.check(options.engine)
+    if len(signal.wheels) > 1 and all(signal.rms(wheel) > 0.0 for wheel in signal.wheels):
+        plates = np.array([signal.displacement[wheel] for wheel in signal.wheels])
+        common_motion(signal.timestep, plates, [f"plate {wheel}" for wheel in signal.wheels], FRF_BAND)
     with output_folder(options.output, force=options.force, protect=options.inputs) as folder:
         try:
             run = car.run(signal, progress, engine=options.engine)
@@ -188,7 +192,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
             "estimator": response.estimator,
             "window": response.window,
             "resolution_hz": response.resolution_hz,
-            "degrees_of_freedom": response.averages,
+            **_degrees_of_freedom(response),
         },
         "notices": notices,
         "files": files,
@@ -197,14 +201,29 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
 
 def _peaks(response: FrequencyResponse) -> dict[str, list[dict[str, float | None]]]:
     """Resonance peaks of every acceleration channel."""
-    found = {}
-    for row, channel in enumerate(acceleration_channels()):
-        peaks = resonance_peaks(response.frequency, np.abs(response.response[row]), response.coherence[row])
-        found[channel] = [
-            {"frequency_hz": peak.frequency_hz, "magnitude": peak.magnitude, "coherence": peak.coherence}
-            for peak in peaks
+    return {
+        channel: [
+            {
+                "frequency_hz": peak.frequency_hz,
+                "magnitude": peak.magnitude,
+                "coherence": peak.coherence,
+                "random_error": peak.random_error,
+            }
+            for peak in resonances(response, row)
         ]
-    return found
+        for row, channel in enumerate(acceleration_channels())
+    }
+
+
+def _degrees_of_freedom(response: FrequencyResponse) -> dict[str, Any]:
+    """Averages that would give the random errors by H1: median and range over all lines and channels."""
+    known = response.averages[np.isfinite(response.averages)]
+    if not known.size:
+        return {"degrees_of_freedom": None, "degrees_of_freedom_range": None}
+    return {
+        "degrees_of_freedom": float(np.median(known)),
+        "degrees_of_freedom_range": [float(known.min()), float(known.max())],
+    }
 
 
 def _comfort(run: Run, place: str) -> dict[str, Any]:
@@ -230,12 +249,10 @@ def _unsettled(run: Run) -> list[str]:
 
 def _caption(run: Run, response: FrequencyResponse) -> str:
     """One line under the FRF plot: input, level, estimator."""
-    # One piece is the whole record, whose stretches widen with the frequency; windows have one resolution.
-    widening = " or 3 % of the frequency" if response.segments == 1 else ""
     return (
         f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}, "
         f"{run.signal.duration:g} s; estimator: {response.estimator}, "
-        f"resolution {response.resolution_hz:.2g} Hz{widening}; engine: {run.recording.statistics.engine}"
+        f"resolution {response.resolution_hz:.2g} Hz; engine: {run.recording.statistics.engine}"
     )
 
 

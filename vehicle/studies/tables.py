@@ -34,15 +34,18 @@ def write_time_csv(path: Path, recording: Recording, frame: str) -> None:
 
 
 def write_frf(path: Path, response: FrequencyResponse, channels: Sequence[str], frame: str) -> None:
-    """Write magnitude [m/s2 per m], phase [deg] and coherence of every channel; empty cells where undefined."""
+    """Write magnitude [m/s2 per m], phase [deg], coherence and random error of every channel; empty where undefined."""
     head = ["frequency [Hz]"]
     columns = [response.frequency]
     for row, channel in enumerate(channels):
         head += [f"{channel}_magnitude", f"{channel}_phase [deg]", f"{channel}_coherence"]
+        head.append(f"{channel}_random_error")
         values = response.response[row]
         columns += [np.abs(values), np.degrees(np.angle(values)), response.coherence[row]]
+        columns.append(response.random_error[row])
     lines = [
-        f"# acceleration over plate displacement, magnitude in m/s2 per m, coherence without unit; "
+        f"# acceleration over plate displacement, magnitude and its random error (one standard error) in m/s2 per m, "
+        f"coherence without unit; "
         f"{response.estimator}; frame: {frame}",
         ",".join(head),
     ]

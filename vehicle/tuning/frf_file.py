@@ -15,6 +15,7 @@ from vehicle.errors import ConfigurationError, DataError
 Vector = npt.NDArray[np.float64]
 
 SUFFIXES = ("_magnitude", "_phase [deg]", "_coherence")
+RANDOM_ERROR = "_random_error"
 FREQUENCY = "frequency [Hz]"
 LEAST_LINES = 8
 """Frequencies that a file must hold: a resonance that is fitted needs about as many."""
@@ -29,12 +30,14 @@ class FrfData:
         channels: names, k of them.
         response: acceleration over plate displacement [m/s2 per m], shape (k, m); NaN where undefined.
         coherence: gamma^2 [-], shape (k, m); NaN where undefined.
+        random_error: standard error of |H| [m/s2 per m], shape (k, m); NaN where the file does not tell it.
     """
 
     frequency: Vector
     channels: tuple[str, ...]
     response: npt.NDArray[np.complex128]
     coherence: Vector
+    random_error: Vector
 
     def select(self, channels: Sequence[str], *, band: tuple[float, float], spacing: float = 0.0) -> FrfData:
         """Some channels over a band, with frequencies at least a distance apart.
@@ -69,6 +72,7 @@ class FrfData:
             channels=tuple(channels),
             response=self.response[np.ix_(rows, kept)],
             coherence=self.coherence[np.ix_(rows, kept)],
+            random_error=self.random_error[np.ix_(rows, kept)],
         )
 
 
@@ -76,7 +80,8 @@ def read_frf(path: Path) -> FrfData:
     """Read a file with the columns of `frf.csv`.
 
     `#` comments, one header line `frequency [Hz]`, then `<channel>_magnitude` [m/s2 per m], `<channel>_phase [deg]`
-    and `<channel>_coherence` of each channel; an empty cell where a value is undefined.
+    and `<channel>_coherence` of each channel, `<channel>_random_error` [m/s2 per m] where it is known; an empty cell
+    where a value is undefined.
 
     Args:
         path: the file.
@@ -111,13 +116,18 @@ def read_frf(path: Path) -> FrfData:
         for suffix in SUFFIXES
     ]
     magnitude, phase, coherence = parts
+    unknown = np.full(len(table), np.nan)
+    errors = [channel + RANDOM_ERROR for channel in channels]
+    random_error = np.array([table[:, names.index(name)] if name in names else unknown for name in errors])
     _check_range(path, rows[1:], channels, SUFFIXES[0], magnitude, 0.0, math.inf)
     _check_range(path, rows[1:], channels, SUFFIXES[2], coherence, 0.0, 1.0)
+    _check_range(path, rows[1:], channels, RANDOM_ERROR, random_error, 0.0, math.inf)
     return FrfData(
         frequency=frequency,
         channels=channels,
         response=magnitude * np.exp(1j * np.radians(phase)),
         coherence=coherence,
+        random_error=random_error,
     )
 
 
@@ -130,11 +140,11 @@ def _channels(where: str, names: Sequence[str]) -> tuple[str, ...]:
         raise DataError(f"{where}: no column {FREQUENCY!r}; found {', '.join(map(repr, names[:6]))}")
     channels: list[str] = []
     for name in names:
-        suffix = next((end for end in SUFFIXES if name.endswith(end)), None)
+        suffix = next((end for end in (*SUFFIXES, RANDOM_ERROR) if name.endswith(end)), None)
         if suffix is None and name != FREQUENCY:
             raise DataError(
                 f"{where}: unknown column {name!r}; allowed are {FREQUENCY!r} and, for each channel, "
-                f"{', '.join(f'<channel>{end}' for end in SUFFIXES)}"
+                f"{', '.join(f'<channel>{end}' for end in (*SUFFIXES, RANDOM_ERROR))}"
             )
         if suffix is not None and (channel := name.removesuffix(suffix)) not in channels:
             channels.append(channel)

@@ -14,7 +14,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS
 from vehicle.tuning.frf_file import FrfData
-from vehicle.tuning.log_response import log_deviation, log_ratio
+from vehicle.tuning.log_response import FLOOR, log_deviation, log_ratio
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -31,7 +31,7 @@ class FrfTarget:
         data: measured FRFs.
         signal: plate displacement that they were measured with; None takes the linear car with stuck dampers, straight
             from its matrices.
-        averages: independent averages behind the data [-]; 1 where unknown.
+        averages: independent averages behind data without a random error [-]; 1 where unknown.
         window: of the estimator [s]: Hann windows (H1); None for the local rational model on the whole record. The
             FRFs of the model are estimated in the same way, so that what the estimator does to a nonlinear car it does
             to both.
@@ -62,8 +62,13 @@ class FrfTarget:
 
     @property
     def deviation(self) -> Vector:
-        """Standard deviation of ln H [-], (channels, frequencies); NaN where a point does not count."""
+        """Standard deviation of ln H [-], (channels, frequencies); NaN where a point does not count.
+
+        By the random error of the data where they tell it, else by coherence and averages.
+        """
         deviation = log_deviation(self.data.coherence, self.averages)
+        told = np.hypot(self.data.random_error / np.abs(self.data.response), FLOOR)
+        deviation = np.where(np.isfinite(told) & np.isfinite(deviation), told, deviation)
         return np.where(np.isfinite(self.data.response), deviation, np.nan)
 
     def model_response(self, car: Car) -> Complex:

@@ -1,0 +1,136 @@
+"""Where an input says something about the car: its power against its own floor, line by line.
+
+A division by what is left of a band-limited input gives an FRF of anything, with a coherence of one where that rest is
+a rounding error or leaked from the excited band. So the power of every line is measured with five Slepian tapers, out
+of which nothing leaks farther than six lines, and compared with what rounding and leakage would leave there.
+
+Source: Thomson, Spectrum estimation and harmonic analysis, Proc. IEEE 70 (1982) 1055; Widrow and Kollar, Quantization
+Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.signal.windows import dpss
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+TAPERS, BANDWIDTH, TAPER_SAMPLES = 5, 6.0, 2048
+
+ABOVE_FLOOR = 100.0
+"""Power over the floor from which an input counts: its noise then changes the FRF by less than 1 %."""
+
+LEAKAGE = 1e-10
+"""Leakage of the tapers beyond six lines, of the strongest line [-]."""
+
+ROUNDING = 1e-15
+"""Rounding of double precision, of the largest sample [-]."""
+
+OF_STRETCH = 0.03
+"""Least power of a line over the mean of its stretch: below it the stretch tells of its other lines only."""
+
+OF_OCTAVES = 1e-4
+"""Least power of a line over the strongest an octave around it: below it stands the skirt of that one."""
+
+FEWEST_LINES = 5.0
+"""Least effective number of driven lines in a stretch, (sum |U|^2)^2 / sum |U|^4; a sine has one to three."""
+
+ROUGHNESS, ROUGH_SHARE = 0.25, 0.05
+"""Least part of an input, of its power there and of the mean of the stretch, that is not smooth from line to line. The
+spectrum of a random input is rough; what is smooth is a transient of the input, or leaked, and cannot be told from the
+transient of the car."""
+
+CAUSES = (
+    "the input lies below the floor of its own rounding and leakage",
+    "the input is a hundredth of that of the lines beside them, at the edge of its band",
+    "fewer than five lines of the input are driven, as by a sine: they cannot tell an FRF from a transient",
+    "the input is 1e-4 and less of what it is within an octave: it leaks from there",
+    "the spectrum of the input is smooth, as of a bump: it cannot be told from the car's own transient; drive it with "
+    "a random signal",
+)
+
+
+def rounding_step(samples: Real) -> float:
+    """Step to which samples were rounded, 0 where there is none: all small differences are multiples of the least."""
+    steps = np.abs(np.diff(np.unique(samples)))
+    steps = steps[steps > 1e-9 * np.ptp(samples)]
+    if not steps.size:
+        return 0.0
+    ratio = steps / np.percentile(steps, 1)
+    small = ratio[ratio < 50.0]
+    if np.any(np.abs(small - np.round(small)) > 0.02):
+        return 0.0
+    return float(np.median(steps[ratio < 1.5]))
+
+
+def tapered_power(samples: Real, rounding: float) -> tuple[Real, float]:
+    """Power of every line under five tapers, averaged over three lines, scaled like |rfft|^2; and its floor."""
+    count = samples.size
+    fine, coarse = np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, TAPER_SAMPLES)
+    power = np.zeros(count // 2 + 1)
+    for taper in dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS):
+        window = CubicSpline(coarse, taper)(fine)
+        power += np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 * count / np.sum(window**2) / TAPERS
+    power = np.convolve(power, np.full(3, 1.0 / 3.0), mode="same")
+    exact = count * (ROUNDING * float(np.max(np.abs(samples)))) ** 2
+    floor = max(count * rounding**2 / 12.0, LEAKAGE * float(np.max(power[TAPERS:])), exact)
+    return power, floor
+
+
+def silent_lines(
+    inputs: Real,
+    spectra: Complex,
+    centres: NDArray[np.int_],
+    half_width: Callable[[int], int],
+    rounding: Sequence[float],
+) -> NDArray[np.int_]:
+    """Why nothing can be said at a line.
+
+    Args:
+        inputs: samples, shape (p, n).
+        spectra: their transform without mean, shape (p, n // 2 + 1).
+        centres: lines of the FRF, shape (m,).
+        half_width: of the stretch around a line [lines].
+        rounding: step of each input, 0 where unknown.
+
+    Returns:
+        0 where every input drives the line, else 1 + the number of the cause, shape (m,).
+    """
+    found = np.zeros(centres.size, dtype=np.int_)
+    for samples, spectrum, step in zip(inputs, spectra, rounding, strict=True):
+        power, floor = tapered_power(samples, step or rounding_step(samples))
+        for index, centre in enumerate(centres):
+            half = half_width(int(centre))
+            offset = np.arange(-half, half + 1) / half
+            drive = spectrum[centre - half : centre + half + 1]
+            energy = np.abs(drive) ** 2
+            smooth = np.linalg.qr(np.vander(offset, 4))[0]
+            rough = float(np.mean(np.abs(drive - smooth @ (smooth.T @ drive)) ** 2))
+            tests = (
+                power[centre] < ABOVE_FLOOR * floor,
+                power[centre] < OF_STRETCH * np.mean(power[centre - half : centre + half + 1]),
+                energy.sum() ** 2 < FEWEST_LINES * np.sum(energy**2),
+                power[centre] < OF_OCTAVES * power[centre // 2 : 2 * centre].max(),
+                rough < max(ROUGHNESS * power[centre], ROUGH_SHARE * energy.mean()),
+            )
+            if any(tests) and not found[index]:
+                found[index] = 1 + tests.index(True)
+    return found
+
+
+def sentences(frequency: Real, silent: NDArray[np.int_], causes: Sequence[str] = CAUSES) -> list[str]:
+    """One sentence for each cause, with the stretches of frequencies that have it."""
+    found = []
+    for number, cause in enumerate(causes, 1):
+        there = np.flatnonzero(silent == number)
+        if there.size:
+            runs = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1)
+            spans = [f"{frequency[run[0]]:.2f} to {frequency[run[-1]]:.2f}" for run in runs[:4]]
+            more = f" and {len(runs) - 4} more stretches" if len(runs) > 4 else ""
+            found.append(f"no FRF at {there.size} frequencies, {', '.join(spans)}{more} Hz: {cause}")
+    return found
