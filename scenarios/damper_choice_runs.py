@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.lumped.damper_optimum import Fluctuation, Optimum, Step, iterate, joint_optimum, optimum
-from vehicle.lumped.harmonic_response import in_phase_response
 from vehicle.lumped.road_holding import printed_load_fluctuation, tyre_load_ratio
 from vehicle.lumped.road_holding_models import RoadHoldingModel, half_car_model, quarter_car_model
 from vehicle.parameters.damper_choice import DamperChoiceParameters, ExponentialRoad, FrequencyBands
@@ -57,14 +56,12 @@ class RoadHolding:
 
 def quarter_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[float, Array]:
     """|response| of wheel and body for the damping of figures 2 and 3; damping -> (2, m)."""
-    return {
-        c: np.abs(in_phase_response(quarter_car_model(parameters.quarter_car, c).model, lines)) for c in QUARTER_DAMPING
-    }
+    return {c: np.abs(quarter_car_model(parameters.quarter_car, c).response(lines)) for c in QUARTER_DAMPING}
 
 
 def half_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[float, Array]:
     """|response| of front wheel, rear wheel, heave, pitch for the damping of figures 5 to 8; damping -> (4, m)."""
-    return {c: np.abs(in_phase_response(half_car_model(parameters.half_car, c, c).model, lines)) for c in HALF_DAMPING}
+    return {c: np.abs(half_car_model(parameters.half_car, c, c).response(lines)) for c in HALF_DAMPING}
 
 
 def half_car_measure(parameters: DamperChoiceParameters, measure: str, road: ExponentialRoad) -> Fluctuation:

@@ -12,9 +12,9 @@ from scenarios.claim import Claim, number_claim, statement_claim, write_claims
 from scenarios.quarter_car_in_mujoco_claims import in_mujoco_claims
 from scenarios.quarter_car_runs import HIGH, LEVELS, LOW, NO_FRICTION, SEED, Array, Runs, peak, rms
 from vehicle.laws.maxwell import Maxwell
-from vehicle.lumped.frequency_response import frequency_response
+from vehicle.linear.natural_modes import natural_modes
+from vehicle.linear.response import frequency_response
 from vehicle.lumped.history import History
-from vehicle.lumped.natural_modes import natural_modes
 
 FIRST, SECOND = (1.0, 8.0), (8.0, 35.0)
 """Bands [Hz] where the first (body) and the second (wheel) resonance are looked for."""

@@ -13,7 +13,7 @@ from scenarios.quarter_car_runs import HIGH, LEVELS, LOW, NO_FRICTION, STEEP, ST
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.maxwell import Maxwell
-from vehicle.lumped.frequency_response import frequency_response
+from vehicle.linear.response import frequency_response
 from vehicle.lumped.history import History
 
 

@@ -14,8 +14,8 @@ import numpy.typing as npt
 from vehicle.assembly.quarter_car import quarter_car_spec
 from vehicle.excitation.signal import Signal
 from vehicle.laws.coulomb import RegularisedCoulomb
+from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.state_space import StateSpace, state_space
 from vehicle.parameters.quarter_car import QuarterCar
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows, prepare_model
@@ -90,8 +90,8 @@ def in_mujoco(
     return Motion(time=times, displacement=displacement, acceleration=acceleration, sliding_velocity=sliding)
 
 
-def friction_of_the_rows(car: QuarterCar) -> StateSpace:
+def friction_of_the_rows(car: QuarterCar) -> FirstOrder:
     """The friction model (2.6) with the law that a friction row answers: min(Fd, max(-Fd, c v)), c = (2/pi) Fd eps."""
     network = quarter_car(car, damper="friction")
     law = RegularisedCoulomb(limit=car.friction.limit, steepness=car.friction.steepness)
-    return state_space(dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),)))
+    return dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),)).first_order()

@@ -15,12 +15,12 @@ from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.switch import Switch
+from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.drive import Sampled, Sine
 from vehicle.lumped.history import History
 from vehicle.lumped.marched_solution import marched_solution
 from vehicle.lumped.quarter_car import quarter_car
 from vehicle.lumped.single_mass import single_mass
-from vehicle.lumped.state_space import StateSpace, state_space
 from vehicle.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.lumped.switch_solution import switch_solution
 from vehicle.parameters.quarter_car import QuarterCar
@@ -94,9 +94,9 @@ class Runs:
         """Distance of the lines [Hz] where resonances are looked for: three windows fit the record."""
         return 3.0 / self.duration
 
-    def model(self, vary: Mapping[str, Any] | None = None, **parts: Any) -> StateSpace:
+    def model(self, vary: Mapping[str, Any] | None = None, **parts: Any) -> FirstOrder:
         """Equations of a composition of parts."""
-        return state_space(quarter_car(self.car, vary=vary, **parts))
+        return quarter_car(self.car, vary=vary, **parts).first_order()
 
     def road_signal(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Signal:
         """Random road of an RMS displacement [m] at uniform steps [s]; its lowest line fits the record once."""
@@ -120,7 +120,7 @@ class Runs:
             lambda: self.road_of(self.model(vary, damper="friction", **parts), rms),
         )
 
-    def road_of(self, model: StateSpace, rms: float) -> History:
+    def road_of(self, model: FirstOrder, rms: float) -> History:
         """Any model on a random road of an RMS displacement [m], from rest."""
         profile = self.road_profile(rms)
         return stiff_solution(model, STEP * np.arange(profile.size), road=Sampled(profile, STEP))
@@ -206,7 +206,7 @@ class Runs:
         """Mass on a damper of section 2.3.2.3 for 0.5 s, with the "smooth" or the "switch" law."""
         p = self.car.mass_on_damper
         friction = SmoothCoulomb(limit=p.friction_limit, steepness=p.steepness)
-        model = state_space(single_mass(mass=p.mass, damping=p.damping, friction=friction))
+        model = single_mass(mass=p.mass, damping=p.damping, friction=friction).first_order()
         times = np.linspace(0.0, 0.5, 10001)
         drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)
         if kind == "smooth":

@@ -23,10 +23,10 @@ ROOMS = {
     "shapes": {"parameters"},
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "laws", "excitation", "assembly", "flexbody", "compiler_cache"},
-    "linear": {"parameters", "simulation"},
+    "linear": {"laws", "parameters", "simulation"},
     "reduced": {"parameters", "excitation", "linear", "simulation", "compiler_cache"},
     "analysis": set(),
-    "lumped": {"parameters", "laws"},
+    "lumped": {"parameters", "laws", "linear"},
     "rendering": {"simulation", "analysis", "assembly", "flexbody", "shapes", "excitation"},
 }
 

@@ -15,7 +15,6 @@ from vehicle.laws.switch import Switch
 from vehicle.lumped.drive import Ramp, Sine
 from vehicle.lumped.quarter_car import quarter_car
 from vehicle.lumped.single_mass import single_mass
-from vehicle.lumped.state_space import state_space
 from vehicle.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.lumped.switch_solution import switch_solution
 from vehicle.parameters.quarter_car import load_quarter_car
@@ -26,7 +25,7 @@ FINE = Tolerances(relative=1e-8, displacement=1e-12, velocity=1e-10)
 
 def oscillator(friction, *, mass=1.0, stiffness=100.0, steepness=1e5, **more):
     law = SmoothCoulomb(limit=friction, steepness=steepness)
-    return state_space(single_mass(mass=mass, stiffness=stiffness, friction=law, **more))
+    return single_mass(mass=mass, stiffness=stiffness, friction=law, **more).first_order()
 
 
 def den_hartog(ratio, share):
@@ -121,7 +120,7 @@ def test_mass_on_a_belt_with_static_and_kinetic_friction():
     """Relaxation oscillation: stick until K x = Fs, then a half sine about Fd/K; period and peak in closed form."""
     belt, static, kinetic, natural = 0.1, 4.0, 2.0, 10.0
     law = Stribeck(sliding_limit=kinetic, static_limit=static, stribeck_velocity=5e-4, exponent=2.0, steepness=1e7)
-    model = state_space(single_mass(mass=1.0, stiffness=100.0, friction=law, belt=True))
+    model = single_mass(mass=1.0, stiffness=100.0, friction=law, belt=True).first_order()
     time = np.arange(0.0, 6.0, 2e-4)
     history = stiff_solution(model, time, road=Ramp(rate=belt), tolerances=FINE)
     x = history.displacement("mass")
@@ -147,7 +146,7 @@ def test_the_locked_strut_unlocks_where_its_force_reaches_the_limit(frequency):
     held = 7e5 * (body - wheel) - 1.0 * s**2 * wheel  # what the friction carries
     amplitude = CAR.friction.limit / abs(held)
     # A steep law, so that the stuck strut creeps at 1e-6 m/s times tan(0.95 pi/2) = 13 only.
-    model = state_space(quarter_car(CAR, damper="friction", vary={"friction.steepness": 1e6}))
+    model = quarter_car(CAR, damper="friction", vary={"friction.steepness": 1e6}).first_order()
     periods = 3
     time = np.linspace(0.0, periods / frequency, 1200)
     peak = {}

@@ -7,7 +7,7 @@ import pytest
 import sympy
 
 from vehicle.errors import ConfigurationError
-from vehicle.lumped.energy_matrices import SpringDamper, energy_matrices
+from vehicle.linear.parts import Network, masses_of, spring_damper
 from vehicle.lumped.half_car_rider import half_car_rider, places, static_tyre_load
 from vehicle.lumped.half_car_rider_printed import growth_rate, printed_damping, printed_stiffness
 from vehicle.parameters.half_car_rider import half_car_rider_parameters
@@ -58,8 +58,8 @@ def test_matrices_are_those_of_lagranges_equations():
     np.testing.assert_allclose(MODEL.mass, mass, atol=ROUNDING * scale)
     np.testing.assert_allclose(MODEL.damping, damping, atol=ROUNDING * scale)
     np.testing.assert_allclose(MODEL.stiffness, stiffness, atol=ROUNDING * scale)
-    np.testing.assert_allclose(MODEL.road_stiffness, road_stiffness, atol=ROUNDING * scale)
-    np.testing.assert_allclose(MODEL.road_damping, road_damping, atol=ROUNDING * scale)
+    np.testing.assert_allclose(MODEL.input_stiffness, road_stiffness, atol=ROUNDING * scale)
+    np.testing.assert_allclose(MODEL.input_damping, road_damping, atol=ROUNDING * scale)
 
 
 def test_matrices_are_symmetric_and_the_car_stands_on_its_tyres():
@@ -73,8 +73,8 @@ def test_matrices_are_symmetric_and_the_car_stands_on_its_tyres():
 
 def test_rigid_heave_with_the_road_costs_no_force():
     heave = np.array([0.0 if name == "pitch" else 1.0 for name in MODEL.coordinates])
-    force = MODEL.stiffness @ heave - MODEL.road_stiffness @ np.ones(2)
-    drag = MODEL.damping @ heave - MODEL.road_damping @ np.ones(2)
+    force = MODEL.stiffness @ heave - MODEL.input_stiffness @ np.ones(2)
+    drag = MODEL.damping @ heave - MODEL.input_damping @ np.ones(2)
     assert np.abs(force).max() < ROUNDING * np.abs(MODEL.stiffness).max()
     assert np.abs(drag).max() < ROUNDING * np.abs(MODEL.damping).max()
 
@@ -113,9 +113,9 @@ def test_printed_diagonals_agree_but_for_the_pitch_damping():
 
 def test_unknown_coordinate_in_an_element_is_refused():
     with pytest.raises(ConfigurationError, match="linear form: found 'wheell', allowed are wheel, road"):
-        energy_matrices(
-            {"wheel": 1.0}, (SpringDamper(extension={"wheell": 1.0}, stiffness=1.0, damping=0.0),), ("road",)
-        )
+        Network(
+            coordinates=("wheel",), masses=masses_of({"wheel": 1.0}), links=(spring_damper({"wheell": 1.0}, 1.0, 0.0),)
+        ).system()
 
 
 def test_seat_arm_may_lie_behind_the_centre_of_gravity():

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from vehicle.errors import ConfigurationError
+from vehicle.linear.parts import ROAD, Network, masses_of, spring_damper
 from vehicle.lumped.bump_road import BumpPassage, bump_passage
-from vehicle.lumped.energy_matrices import SpringDamper, energy_matrices
 from vehicle.lumped.half_car_rider import half_car_rider
 from vehicle.lumped.linear_response import linear_response
 from vehicle.parameters.half_car_rider import half_car_rider_parameters
@@ -24,7 +24,7 @@ def integrated(model, passage, time):
 
     def slope(t, s):
         # the road is asked for inside the open interval, so that the jump belongs to neither side
-        force = model.road_stiffness @ passage.heights(t) + model.road_damping @ passage.rates(t)
+        force = model.input_stiffness @ passage.heights(t) + model.input_damping @ passage.rates(t)
         return np.concatenate((s[n:], inverse @ (force - model.stiffness @ s[:n] - model.damping @ s[n:])))
 
     edges = sorted({0.0, time[-1], *passage.arrivals, *(a + passage.contact for a in passage.arrivals)})
@@ -62,11 +62,8 @@ def test_sampling_does_not_change_the_answer():
 
 def test_undamped_oscillator_follows_its_closed_form():
     w0, w, h0 = 7.0, 11.0, 0.05
-    model = energy_matrices(
-        {"x": 2.0},
-        (SpringDamper(extension={"x": 1.0, "road": -1.0}, stiffness=2.0 * w0**2, damping=0.0),),
-        ("road",),
-    )
+    spring = spring_damper({"x": 1.0, ROAD: -1.0}, 2.0 * w0**2, 0.0)
+    model = Network(coordinates=("x",), masses=masses_of({"x": 2.0}), links=(spring,)).system()
     found = linear_response(model, BumpPassage(height=h0, omega=w, arrivals=(0.0,)), time_step=1e-3, duration=np.pi / w)
     t = found.time[found.time < np.pi / w]
     expected = h0 * w0**2 / (w0**2 - w**2) * (np.sin(w * t) - w / w0 * np.sin(w0 * t))
@@ -86,7 +83,7 @@ def test_acceleration_obeys_the_equation_of_motion():
     passage = bump_passage(CAR.bump, 20.0 / 3.6, 2.8)
     h = linear_response(MODEL, passage, time_step=1e-3, duration=1.0)
     np.testing.assert_allclose(h.road, passage.heights(h.time), atol=1e-12)
-    force = MODEL.road_stiffness @ h.road + MODEL.road_damping @ h.road_rate
+    force = MODEL.input_stiffness @ h.road + MODEL.input_damping @ h.road_rate
     left = MODEL.mass @ h.acceleration + MODEL.damping @ h.velocity + MODEL.stiffness @ h.displacement
     assert np.abs(left - force).max() < 1e-9 * np.abs(force).max()
 

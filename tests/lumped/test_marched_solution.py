@@ -11,7 +11,6 @@ from vehicle.lumped.drive import Sampled
 from vehicle.lumped.marched_solution import marched_solution
 from vehicle.lumped.quarter_car import quarter_car
 from vehicle.lumped.single_mass import single_mass
-from vehicle.lumped.state_space import state_space
 from vehicle.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.parameters.quarter_car import load_quarter_car
 
@@ -36,7 +35,7 @@ def bumpy_road(time, size):
     ids=["friction", "engine and strut", "degressive"],
 )
 def test_the_march_converges_to_the_stiff_solution_with_second_order(parts, size):
-    model = state_space(quarter_car(CAR, damper="friction", **parts))
+    model = quarter_car(CAR, damper="friction", **parts).first_order()
     fine = np.linspace(0.0, END, 6001)
     road = bumpy_road(fine, size)
     reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
@@ -60,7 +59,7 @@ def relative_errors(histories, reference, name):
 @pytest.mark.parametrize(("steepness", "name"), [(30.0, "body"), (30.0, "wheel"), (30.0, "damper")])
 def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
     """A gentle law changes over the whole step: taken at its end the motion is first order."""
-    model = state_space(quarter_car(CAR, damper="friction", vary={"friction.steepness": steepness}))
+    model = quarter_car(CAR, damper="friction", vary={"friction.steepness": steepness}).first_order()
     fine = np.linspace(0.0, END, 6001)
     road = bumpy_road(fine, 0.02)
     reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
@@ -70,7 +69,7 @@ def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
 
 
 def test_without_friction_the_march_is_exact_for_straight_roads():
-    model = state_space(quarter_car(CAR, damper="friction", engine="elastomer", vary={"friction.limit": 0.0}))
+    model = quarter_car(CAR, damper="friction", engine="elastomer", vary={"friction.limit": 0.0}).first_order()
     coarse = 0.02 * np.array([0.0, 1.0, -0.5, 0.25, 0.25, 0.0])
     rough = marched_solution(model, 0.1, coarse)
     fine = np.interp(np.arange(0, 0.5 + 1e-9, 1e-3), np.arange(0, 0.6, 0.1)[:6], coarse)
@@ -80,7 +79,7 @@ def test_without_friction_the_march_is_exact_for_straight_roads():
 
 
 def test_laws_alone_make_a_stack_too():
-    model = state_space(quarter_car(CAR, damper="friction", vary={"friction.limit": np.array([0.0, 75.0, 150.0])}))
+    model = quarter_car(CAR, damper="friction", vary={"friction.limit": np.array([0.0, 75.0, 150.0])}).first_order()
     assert model.models == (3,)
     history = marched_solution(model, 1e-3, bumpy_road(np.linspace(0.0, END, 751), 0.005))
     assert history.sliding_force.shape == (751, 3, 1)
@@ -91,14 +90,16 @@ def test_a_stack_marches_as_the_single_cars():
     fine = np.linspace(0.0, END, 751)
     road = bumpy_road(fine, 0.005)
     mounts, limits = np.array([4e5, 7e5]), np.array([75.0, 150.0])
-    stack = state_space(quarter_car(CAR, damper="friction", vary={"mount.stiffness": mounts, "friction.limit": limits}))
+    stack = quarter_car(
+        CAR, damper="friction", vary={"mount.stiffness": mounts, "friction.limit": limits}
+    ).first_order()
     together = marched_solution(stack, fine[1], road)
     both_roads = marched_solution(stack, fine[1], np.stack([road, 2 * road], axis=1))
     assert together.acceleration("damper").shape == (751, 2)
     for i in range(2):
-        alone = state_space(
-            quarter_car(CAR, damper="friction", vary={"mount.stiffness": mounts[i], "friction.limit": limits[i]})
-        )
+        alone = quarter_car(
+            CAR, damper="friction", vary={"mount.stiffness": mounts[i], "friction.limit": limits[i]}
+        ).first_order()
         single = marched_solution(alone, fine[1], road)
         for output in ("body", "wheel", "damper"):
             # The same operations in the same order, but for the summation inside the matrix products.
@@ -111,7 +112,7 @@ def test_a_stack_marches_as_the_single_cars():
 
 @pytest.mark.parametrize("method", ["Radau", "BDF"])
 def test_other_stiff_methods_agree(method):
-    model = state_space(quarter_car(CAR, damper="friction", engine="elastomer"))
+    model = quarter_car(CAR, damper="friction", engine="elastomer").first_order()
     time = np.linspace(0.0, 0.5, 501)
     road = Sampled(bumpy_road(time, 0.01), time[1])
     one = stiff_solution(model, time, road=road)
@@ -124,7 +125,7 @@ def test_other_stiff_methods_agree(method):
 
 
 def test_velocity_and_acceleration_are_derivatives_of_the_displacement():
-    model = state_space(quarter_car(CAR, damper="friction", engine="elastomer"))
+    model = quarter_car(CAR, damper="friction", engine="elastomer").first_order()
     time = np.linspace(0.0, END, 7501)
     history = stiff_solution(model, time, road=Sampled(bumpy_road(time, 0.01), time[1]), tolerances=FINE)
     for output in ("body", "wheel", "engine"):
@@ -138,8 +139,8 @@ def test_velocity_and_acceleration_are_derivatives_of_the_displacement():
 
 def test_refusals():
     law = SmoothCoulomb(limit=1.0, steepness=1e5)
-    single = state_space(single_mass(mass=1.0, stiffness=1.0, friction=law))
-    stack = state_space(single_mass(mass=np.array([1.0, 2.0]), stiffness=1.0, friction=law))
+    single = single_mass(mass=1.0, stiffness=1.0, friction=law).first_order()
+    stack = single_mass(mass=np.array([1.0, 2.0]), stiffness=1.0, friction=law).first_order()
     road = np.zeros(10)
     with pytest.raises(ConfigurationError, match=r"^timestep: found 0\.0 s, must be finite and greater than 0\.0$"):
         marched_solution(single, 0.0, road)
@@ -150,7 +151,7 @@ def test_refusals():
     with pytest.raises(ConfigurationError, match=r"^road: all displacements must be finite$"):
         marched_solution(single, 1e-3, road + np.nan)
     with pytest.raises(ConfigurationError, match=r"^marched_solution: needed is one sliding pair, found 0$"):
-        marched_solution(state_space(quarter_car(CAR, damper="slip")), 1e-3, road)
+        marched_solution(quarter_car(CAR, damper="slip").first_order(), 1e-3, road)
     with pytest.raises(ConfigurationError, match=r"^stiff_solution: found a stack of \(2,\) models"):
         stiff_solution(stack, [0.0, 1.0])
     with pytest.raises(ConfigurationError, match=r"^time: needed are at least two finite, strictly increasing"):
@@ -168,7 +169,9 @@ def test_refusals():
 def test_the_friction_of_every_step_is_the_law_at_its_end_however_rough_the_road():
     """Jumps of the road throw the velocity across the steep part of the law in single steps."""
     limits = np.linspace(0.0, 300.0, 60)
-    model = state_space(quarter_car(CAR, damper="friction", vary={"friction.limit": limits, "friction.steepness": 1e6}))
+    model = quarter_car(
+        CAR, damper="friction", vary={"friction.limit": limits, "friction.steepness": 1e6}
+    ).first_order()
     road = np.cumsum(np.random.default_rng(3).normal(scale=2e-3, size=400))
     history = marched_solution(model, 1e-3, road)
     law = SmoothCoulomb(limit=limits, steepness=1e6)
@@ -186,9 +189,9 @@ def test_the_viscous_law_is_centred():
     fine = np.linspace(0.0, END, 1501)
     road = bumpy_road(fine, 0.01)
     no_friction = {"friction.limit": 0.0, "damper.mass": 5.0}
-    plain = state_space(quarter_car(CAR, damper="friction", vary={**no_friction, "damper.damping": 3000.0}))
+    plain = quarter_car(CAR, damper="friction", vary={**no_friction, "damper.damping": 3000.0}).first_order()
     knee = {"degressive.low_damping": 3000.0, "degressive.knee_velocity": 100.0}
-    bent = state_space(quarter_car(CAR, damper="friction", degressive=True, vary={**no_friction, **knee}))
+    bent = quarter_car(CAR, damper="friction", degressive=True, vary={**no_friction, **knee}).first_order()
     errors = []
     for stride in (2, 1):
         exact = marched_solution(plain, fine[stride], road[::stride]).acceleration("body")

@@ -10,18 +10,17 @@ import sympy as sp
 
 from vehicle.errors import ConfigurationError
 from vehicle.laws.kelvin import Kelvin
-from vehicle.lumped.frequency_response import frequency_response
-from vehicle.lumped.natural_modes import natural_modes
-from vehicle.lumped.network import ROAD, Link, Mass, Network
+from vehicle.linear.natural_modes import natural_modes
+from vehicle.linear.parts import ROAD, Link, Mass, Network
+from vehicle.linear.response import frequency_response
 from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.state_space import state_space
 from vehicle.parameters.quarter_car import load_quarter_car
 
 CAR = load_quarter_car()
 
 
 def model(**parts):
-    return state_space(quarter_car(CAR, **parts))
+    return quarter_car(CAR, **parts).first_order()
 
 
 def test_published_modes():
@@ -61,7 +60,7 @@ def test_the_body_follows_the_road_at_zero_frequency():
 def test_engine_on_its_mount_alone(engine):
     # A body of 1e9 kg stands still, so the engine vibrates alone; published: 12.7 Hz and 15 % on the linear mount.
     heavy = quarter_car(CAR, damper="stick", engine=engine, vary={"body.mass": 1e9})
-    modes = natural_modes(state_space(heavy))
+    modes = natural_modes(heavy.first_order())
     engine_share = np.abs(modes.shape[:, heavy.coordinates.index("engine")])
     mode = int(np.argmax(engine_share - np.abs(modes.shape[:, heavy.coordinates.index("wheel")])))
     if engine == "linear":
@@ -137,12 +136,10 @@ def test_the_friction_model_follows_lagrange(strut, engine, small_mass):
     lagrange = np.linalg.solve(np.array(mass.evalf(), float), np.array(right.jacobian(plain).evalf(), float))
 
     ours = model(damper="friction", strut=strut, engine=engine, small_mass=small_mass)
-    assert ours.coordinates == tuple(names)
+    assert ours.system.coordinates == tuple(names)
     n = len(names)
     branch = ours.state[n : 2 * n, 2 * n :] if engine == "elastomer" else np.zeros((n, 1))
-    assembled = np.hstack(
-        [ours.state[n : 2 * n, : 2 * n], branch, ours.road[n : 2 * n, None], -ours.friction[n : 2 * n]]
-    )
+    assembled = np.hstack([ours.state[n : 2 * n, : 2 * n], branch, ours.input[n : 2 * n], -ours.friction[n : 2 * n]])
     # A handful of operations: rounding of the largest entry.
     assert assembled == pytest.approx(lagrange, rel=1e-12, abs=1e-9)
     if engine == "elastomer":  # F2' = Ke2 (xe' - xb') - (Ke2/De) F2, below 2.13
@@ -157,7 +154,7 @@ def test_a_stack_of_cars_equals_the_single_ones():
     stack = quarter_car(
         CAR, damper="slip", engine="elastomer", vary={"mount.stiffness": mounts, "damper.damping": dampings}
     )
-    together = frequency_response(state_space(stack), frequency, "body", "acceleration")
+    together = frequency_response(stack.first_order(), frequency, "body", "acceleration")
     assert together.shape == (3, 30)
     for i in range(3):
         car = dataclasses.replace(
@@ -166,13 +163,13 @@ def test_a_stack_of_cars_equals_the_single_ones():
             damper=dataclasses.replace(CAR.damper, damping=float(dampings[i])),
         )
         alone = frequency_response(
-            state_space(quarter_car(car, damper="slip", engine="elastomer")), frequency, "body", "acceleration"
+            quarter_car(car, damper="slip", engine="elastomer").first_order(), frequency, "body", "acceleration"
         )
         assert together[i] == pytest.approx(alone, rel=1e-10)
 
 
 def test_angles_can_be_stacked_and_zero_angle_is_the_vertical_car():
-    stack = state_space(quarter_car(CAR, damper="stick", strut=True, vary={"strut.angle": np.array([0.0, 4.2, 8.4])}))
+    stack = quarter_car(CAR, damper="stick", strut=True, vary={"strut.angle": np.array([0.0, 4.2, 8.4])}).first_order()
     frequency = np.linspace(1.0, 45.0, 40)
     response = frequency_response(stack, frequency, "body")
     vertical = frequency_response(model(damper="stick"), frequency, "body")
@@ -191,9 +188,9 @@ def test_a_critically_damped_model_has_no_full_set_of_eigenvectors_and_is_right_
     frequency = np.linspace(0.1, 5.0, 20)
     s = 2j * np.pi * frequency
     expected = (20 * s + 100) / (s + 10) ** 2
-    response = frequency_response(state_space(network), frequency, "mass")
+    response = frequency_response(network.first_order(), frequency, "mass")
     assert response == pytest.approx(expected, rel=1e-12)
-    assert frequency_response(state_space(network), frequency, "extension") == pytest.approx(expected - 1.0, rel=1e-11)
+    assert frequency_response(network.first_order(), frequency, "extension") == pytest.approx(expected - 1.0, rel=1e-11)
 
 
 BAD = [
@@ -229,7 +226,7 @@ def test_stacks_of_different_length_are_refused():
     with pytest.raises(
         ConfigurationError, match=r"^network: parameters of shapes .*\(3,\), \(4,\).* do not broadcast together$"
     ):
-        state_space(network)
+        network.first_order()
 
 
 def test_a_model_with_friction_has_no_frequency_response():

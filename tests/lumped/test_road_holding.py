@@ -8,7 +8,6 @@ from scipy.integrate import quad
 from scipy.linalg import solve_continuous_lyapunov
 
 from vehicle.lumped import road_holding
-from vehicle.lumped.harmonic_response import in_phase_response
 from vehicle.lumped.ride_measures import ride_measures
 from vehicle.lumped.road_holding import printed_load_fluctuation, tyre_load_ratio, tyre_load_ratio_of_density
 from vehicle.lumped.road_holding_models import half_car_model, quarter_car_model
@@ -31,7 +30,7 @@ def test_printed_measure_is_equation_10():
     for n in range(25):
         amplitude = np.sqrt(quad(lambda f: 4.85e-4 * np.exp(-0.19 * f), n, n + 1)[0])
         mean = quad(
-            lambda f: float(np.abs(in_phase_response(quarter_car_model(P.quarter_car, 3000.0).model, f)[0, 0])),
+            lambda f: float(np.abs(quarter_car_model(P.quarter_car, 3000.0).response(f)[0, 0])),
             n,
             n + 1,
         )[0]
@@ -64,7 +63,7 @@ def test_physical_measure_is_the_integral_of_the_complex_difference():
     model = quarter_car_model(P.quarter_car, 2500.0)
 
     def spectrum(f):
-        return 4.85e-4 * np.exp(-0.19 * f) * np.abs(1.0 - in_phase_response(model.model, f)[0, 0]) ** 2
+        return 4.85e-4 * np.exp(-0.19 * f) * np.abs(1.0 - model.response(f)[0, 0]) ** 2
 
     expected = 297160.0 * np.sqrt(quad(spectrum, 0.0, 25.0, limit=200)[0]) / ((290.15 + 62.01) * 9.81)
     assert tyre_load_ratio(model, P.highway, P.bands)[0] == pytest.approx(expected, rel=1e-3)
@@ -118,6 +117,6 @@ def test_tyre_damping_enters_the_tyre_force():
     damped = dataclasses.replace(CAR, wheel=dataclasses.replace(CAR.wheel, tyre_damping=2000.0))
     lines = np.array([15.0])
     model = quarter_car_model(damped)
-    response = in_phase_response(model.model, lines)[0, 0]
+    response = model.response(lines)[0, 0]
     expected = abs((2e5 + 2j * np.pi * 15.0 * 2000.0) * (1.0 - response)) / model.tyres[0].static_load
     assert tyre_load_ratio_of_density(model, lines, np.ones(1), 1.0)[0] == pytest.approx(expected, rel=1e-12)

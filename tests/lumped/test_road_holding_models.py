@@ -7,7 +7,6 @@ import pytest
 import sympy
 
 from vehicle.errors import ConfigurationError
-from vehicle.lumped.harmonic_response import in_phase_response
 from vehicle.lumped.road_holding_models import half_car_model, quarter_car_model
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.damper_choice import RoadHoldingHalfCar, RoadHoldingQuarterCar, damper_choice_parameters
@@ -43,8 +42,8 @@ def test_half_car_matrices_are_those_of_lagranges_equations():
         (model.mass, [c.diff(t, 2) for c in q], 1.0),
         (model.damping, [c.diff(t) for c in q], 1.0),
         (model.stiffness, q, 1.0),
-        (model.road_stiffness, z, -1.0),
-        (model.road_damping, [c.diff(t) for c in z], -1.0),
+        (model.input_stiffness, z, -1.0),
+        (model.input_damping, [c.diff(t) for c in z], -1.0),
     ):
         expected = sign * np.array([[float(row.coeff(c)) for c in columns] for row in rows])
         np.testing.assert_allclose(matrix, expected, rtol=0, atol=1e-12 * max(1.0, np.abs(expected).max()))  # rounding
@@ -60,7 +59,7 @@ def test_matrices_are_symmetric_definite_and_free_of_force_in_rigid_heave(car):
     # the tyres have no damping: two motions of the half car, one of the quarter car, cost nothing
     assert np.linalg.eigvalsh(model.damping).min() > -1e-9
     heave = np.array([0.0 if name == "pitch" else 1.0 for name in model.coordinates])
-    force = model.stiffness @ heave - model.road_stiffness.sum(axis=1)
+    force = model.stiffness @ heave - model.input_stiffness.sum(axis=1)
     assert np.abs(force).max() < 1e-12 * np.abs(model.stiffness).max()
 
 
@@ -73,7 +72,7 @@ def test_quarter_car_response_is_the_closed_form_of_the_source():
     a = tyre + suspension - w**2 * car.wheel.unsprung_mass
     b = suspension - w**2 * car.sprung_mass
     determinant = a * b - suspension**2
-    wheel, body = in_phase_response(quarter_car_model(car, 4000.0).model, LINES)
+    wheel, body = quarter_car_model(car, 4000.0).response(LINES)
     np.testing.assert_allclose(wheel, b * tyre / determinant, rtol=1e-10)
     np.testing.assert_allclose(body, suspension * tyre / determinant, rtol=1e-10)
 
@@ -87,9 +86,9 @@ def test_half_car_with_inertia_m_a_b_falls_apart_into_two_quarter_cars():
         unsprung_mass=60.0, suspension_stiffness=3.5e4, suspension_damping=2500.0, tyre_stiffness=3e5, tyre_damping=20.0
     )
     half = RoadHoldingHalfCar(sprung_mass=m, pitch_inertia=m * a * b, front_arm=a, rear_arm=b, front=front, rear=rear)
-    found = in_phase_response(half_car_model(half).model, LINES)
+    found = half_car_model(half).response(LINES)
     corners = [
-        in_phase_response(quarter_car_model(RoadHoldingQuarterCar(sprung_mass=share, wheel=axle)).model, LINES)
+        quarter_car_model(RoadHoldingQuarterCar(sprung_mass=share, wheel=axle)).response(LINES)
         for share, axle in ((m * b / (a + b), front), (m * a / (a + b), rear))
     ]
     np.testing.assert_allclose(found[:2], [corners[0][0], corners[1][0]], rtol=1e-9)
@@ -117,4 +116,4 @@ def test_given_damping_replaces_the_cars_own():
 @pytest.mark.parametrize("bad", [[-1.0], [float("nan")]])
 def test_bad_frequency_is_refused(bad):
     with pytest.raises(ConfigurationError, match=r"frequency: must be finite numbers of at least 0\.0 Hz"):
-        in_phase_response(quarter_car_model(QUARTER).model, bad)
+        quarter_car_model(QUARTER).response(bad)

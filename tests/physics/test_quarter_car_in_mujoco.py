@@ -16,10 +16,9 @@ from vehicle.assembly.quarter_car import quarter_car_spec
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
+from vehicle.linear.natural_modes import natural_modes
 from vehicle.lumped.drive import Sampled
-from vehicle.lumped.natural_modes import natural_modes
 from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.state_space import state_space
 from vehicle.lumped.stiff_solution import stiff_solution
 from vehicle.parameters.quarter_car import Friction, load_quarter_car
 
@@ -52,7 +51,7 @@ def solved(size, kind):
     linear = kind in ("slip", "loose")
     model = friction_of_the_rows(CAR) if kind == "rows" else None
     if model is None:
-        model = state_space(quarter_car(LOOSE if linear else CAR, damper="slip" if kind == "slip" else "friction"))
+        model = quarter_car(LOOSE if linear else CAR, damper="slip" if kind == "slip" else "friction").first_order()
     signal = road(size, 3.0 if linear else 10.0)
     time = DEFAULT_STEP * np.arange(round(signal.duration / DEFAULT_STEP) + 1)
     return stiff_solution(model, time, road=Sampled(signal.displacement["fr"], 1e-3))
@@ -140,7 +139,7 @@ def test_the_friction_model_converges_with_second_order():
 
 
 def test_stuck_the_frequencies_converge_with_fourth_order():
-    modes = natural_modes(state_space(quarter_car(CAR, damper="stick")))
+    modes = natural_modes(quarter_car(CAR, damper="stick").first_order())
     masses = np.array([CAR.body.mass, CAR.wheel.mass])
     errors = []
     for step in (4e-3, 2e-3, 1e-3):

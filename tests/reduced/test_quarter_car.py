@@ -15,7 +15,6 @@ from vehicle.laws.coulomb import RegularisedCoulomb
 from vehicle.linear.matrices import CarMatrices
 from vehicle.lumped.drive import Sampled
 from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.state_space import state_space
 from vehicle.lumped.stiff_solution import stiff_solution
 from vehicle.parameters.quarter_car import load_quarter_car
 from vehicle.parameters.vehicle import load_vehicle
@@ -182,7 +181,7 @@ def test_stribeck_against_the_stiff_solver():
     )
     network = quarter_car(CAR, damper="friction")
     network = dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),))
-    solved = stiff_solution(state_space(network), ROAD.time[:3001], road=Sampled(ROAD.displacement["fr"], 1e-3))
+    solved = stiff_solution(network.first_order(), ROAD.time[:3001], road=Sampled(ROAD.displacement["fr"], 1e-3))
     run = reduced(ROAD, **changes)
     # The limit is that of the velocity at the beginning of a step: first order in 0.125 ms.
     compare(

@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
-from vehicle.lumped.harmonic_response import in_phase_response
 from vehicle.lumped.road_holding import printed_load_fluctuation
 from vehicle.lumped.road_holding_models import half_car_model, quarter_car_model
 from vehicle.parameters.axle import Axle
@@ -124,7 +123,7 @@ def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: F
     car = quarter_car_of(values)
     best = _valley(lambda c: float(printed_load_fluctuation(quarter_car_model(car, c), road, bands)[0]))
     lines = np.arange(0.02, 15.0, 0.02)
-    magnitude = [np.abs(in_phase_response(quarter_car_model(car, c).model, lines)) for c in QUARTER_RATIOS]
+    magnitude = [np.abs(quarter_car_model(car, c).response(lines)) for c in QUARTER_RATIOS]
     unsprung, sprung = (np.array([response[i] for response in magnitude]) for i in (0, 1))
     peaks = sprung.max(axis=1)
     residuals = [(best - 3750.0) / _READING]  # optimum 3500 to 4000 N s/m
@@ -153,7 +152,7 @@ def half_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: Freq
     front = [rate(4000.0, 4000.0)[0] - 2.25, rate(4250.0, 3250.0)[0] - 2.125, rate(4250.0, 3000.0)[0] - 2.1]
     rear = [rate(3250.0, 3250.0)[1] - 3.9, rate(4250.0, 3250.0)[1] - 3.55, rate(4250.0, 3000.0)[1] - 3.5]
     lines = np.arange(0.2, 15.0, 0.1)
-    responses = np.array([np.abs(in_phase_response(half_car_model(car, c, c).model, lines)) for c in FRONT_RATIOS])
+    responses = np.array([np.abs(half_car_model(car, c, c).response(lines)) for c in FRONT_RATIOS])
     peaks = responses.max(axis=2)
     highest = peaks.max(axis=0)
     residuals = [value / _READING for value in optima]

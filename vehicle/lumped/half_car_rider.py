@@ -15,7 +15,8 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.lumped.energy_matrices import LinearModel, SpringDamper, energy_matrices
+from vehicle.linear.parts import Link, Network, masses_of, spring_damper
+from vehicle.linear.system import LinearSystem
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters, Limb
 
@@ -56,8 +57,8 @@ def places(parameters: HalfCarRiderParameters) -> Mapping[str, Mapping[str, floa
     )
 
 
-def half_car_rider(parameters: HalfCarRiderParameters) -> LinearModel:
-    """Linear model M x'' + C x' + K x = Bc z' + Bk z of the half car with rider.
+def half_car_rider(parameters: HalfCarRiderParameters) -> LinearSystem:
+    """Linear model of the half car with rider; its outputs are the coordinates and the places of `places`.
 
     Args:
         parameters: the car.
@@ -75,7 +76,7 @@ def half_car_rider(parameters: HalfCarRiderParameters) -> LinearModel:
         "pitch": parameters.body.pitch_inertia,
     }
     place = places(parameters)
-    elements = (
+    links = (
         _on(parameters.upper_limb, {"upper_limb": 1.0, "seat": -1.0}),
         _on(parameters.lower_limb, {"lower_limb": 1.0, "seat": -1.0}),
         _on(parameters.seat, {"seat": 1.0, **{name: -value for name, value in place["seat_base"].items()}}),
@@ -84,7 +85,8 @@ def half_car_rider(parameters: HalfCarRiderParameters) -> LinearModel:
         _tyre(parameters.front, "front"),
         _tyre(parameters.rear, "rear"),
     )
-    return energy_matrices(masses, elements, ROADS)
+    coordinates, extra = tuple(masses), {name: form for name, form in place.items() if name not in masses}
+    return Network(coordinates=coordinates, masses=masses_of(masses), links=links, outputs=extra, inputs=ROADS).system()
 
 
 def static_tyre_load(parameters: HalfCarRiderParameters) -> npt.NDArray[np.float64]:
@@ -103,15 +105,13 @@ def static_tyre_load(parameters: HalfCarRiderParameters) -> npt.NDArray[np.float
     return np.asarray(-stiffness * rest[wheels])
 
 
-def _on(limb: Limb, extension: Mapping[str, float]) -> SpringDamper:
-    return SpringDamper(extension=extension, stiffness=limb.stiffness, damping=limb.damping)
+def _on(limb: Limb, extension: Mapping[str, float]) -> Link:
+    return spring_damper(extension, limb.stiffness, limb.damping)
 
 
-def _suspension(axle: Axle, travel: Mapping[str, float]) -> SpringDamper:
-    return SpringDamper(extension=travel, stiffness=axle.suspension_stiffness, damping=axle.suspension_damping)
+def _suspension(axle: Axle, travel: Mapping[str, float]) -> Link:
+    return spring_damper(travel, axle.suspension_stiffness, axle.suspension_damping)
 
 
-def _tyre(axle: Axle, end: str) -> SpringDamper:
-    return SpringDamper(
-        extension={f"{end}_wheel": 1.0, f"{end}_road": -1.0}, stiffness=axle.tyre_stiffness, damping=axle.tyre_damping
-    )
+def _tyre(axle: Axle, end: str) -> Link:
+    return spring_damper({f"{end}_wheel": 1.0, f"{end}_road": -1.0}, axle.tyre_stiffness, axle.tyre_damping)

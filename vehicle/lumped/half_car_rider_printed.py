@@ -8,9 +8,12 @@ Source: "Parametric study of rider's comfort ...", matrices below equation 16.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.linear.first_order import first_order
 from vehicle.lumped.half_car_rider import half_car_rider
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
 
@@ -65,9 +68,6 @@ def growth_rate(parameters: HalfCarRiderParameters, *, printed: bool) -> float:
         printed: with the printed matrices; else with those of `half_car_rider`.
     """
     model = half_car_rider(parameters)
-    stiffness = printed_stiffness(parameters) if printed else model.stiffness
-    damping = printed_damping(parameters) if printed else model.damping
-    n = stiffness.shape[0]
-    inverse = np.linalg.inv(model.mass)
-    state = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
-    return float(np.linalg.eigvals(state).real.max())
+    if printed:
+        model = replace(model, stiffness=printed_stiffness(parameters), damping=printed_damping(parameters))
+    return float(np.linalg.eigvals(first_order(model).state).real.max())

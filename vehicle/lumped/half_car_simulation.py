@@ -16,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.linear.first_order import first_order
 from vehicle.lumped.bump_road import BumpPassage, bump_passage
-from vehicle.lumped.half_car_rider import half_car_rider, places, static_tyre_load
+from vehicle.lumped.half_car_rider import half_car_rider, static_tyre_load
 from vehicle.lumped.motion_history import MotionHistory
 from vehicle.lumped.semi_active import LAWS, damping_coefficient
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters, SemiActiveDamper
@@ -144,19 +145,18 @@ def _matrices(car: HalfCarRiderParameters) -> _Cars:
         car, front=replace(car.front, suspension_damping=0.0), rear=replace(car.rear, suspension_damping=0.0)
     )
     model = half_car_rider(loose)
-    n = len(model.coordinates)
+    form = first_order(model)
     inverse = np.linalg.inv(model.mass)
-    still = np.zeros((n, len(ENDS)))
-    form = places(car)
-    stretch = np.stack([model.row(form[f"{end}_travel"]) for end in ENDS])
-    body = np.stack([model.row(form[f"{end}_body"]) for end in ENDS])
-    wheel = np.stack([model.row(form[f"{end}_wheel"]) for end in ENDS])
+    still = np.zeros((model.size, len(ENDS)))
+    stretch, body, wheel = (
+        np.stack([model.output(f"{end}_{place}")[0] for end in ENDS]) for place in ("travel", "body", "wheel")
+    )
     stiffness = np.array([car.front.tyre_stiffness, car.rear.tyre_stiffness])
     damping = np.array([car.front.tyre_damping, car.rear.tyre_damping])
     return _Cars(
-        state=np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ model.stiffness, -inverse @ model.damping]]),
-        road=np.vstack((still, inverse @ model.road_stiffness)),
-        road_rate=np.vstack((still, inverse @ model.road_damping)),
+        state=form.state,
+        road=form.input,
+        road_rate=form.input_rate,
         damper=np.vstack((still, -inverse @ stretch.T)),
         stretch=np.hstack((still.T, stretch)),
         body=np.hstack((still.T, body)),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.lumped.state_space import StateSpace
+from vehicle.linear.first_order import FirstOrder
 
 Array = npt.NDArray[np.float64]
 
@@ -16,7 +16,7 @@ Array = npt.NDArray[np.float64]
 class History:
     """Sampled solution; T samples, leading axes of the model behind the time axis."""
 
-    model: StateSpace
+    model: FirstOrder
     time: Array
     """[s], shape (T,)."""
     state: Array
@@ -36,33 +36,38 @@ class History:
 
     def displacement(self, output: str) -> Array:
         """Displacement [m] of an output, shape (T, ...)."""
-        row, road = self.model.row(output)
+        row, road = self._row(output)
         n = row.shape[-1]
         return np.asarray(np.einsum("...i,t...i->t...", row, self.state[..., :n]) + road * self._stacked(self.road))
 
     def velocity(self, output: str) -> Array:
         """Velocity [m/s] of an output, shape (T, ...)."""
-        row, road = self.model.row(output)
+        row, road = self._row(output)
         n = row.shape[-1]
         motion = np.einsum("...i,t...i->t...", row, self.state[..., n : 2 * n])
         return np.asarray(motion + road * self._stacked(self.road_rate))
 
     def acceleration(self, output: str) -> Array:
         """Acceleration [m/s2] of an output that does not move with the road by itself, shape (T, ...)."""
-        row, _ = self.model.row(output)
+        row, _ = self._row(output)
         n, m = row.shape[-1], self.model
         speed = slice(n, 2 * n)
         total = np.einsum("...i,...ij,t...j->t...", row, m.state[..., speed, :], self.state)
-        total += np.einsum("...i,...i->...", row, m.road[..., speed]) * self._stacked(self.road)
-        total += np.einsum("...i,...i->...", row, m.road_rate[..., speed]) * self._stacked(self.road_rate)
-        total += np.einsum("...i,...i->...", row, m.force[..., speed]) * self._stacked(self.force)
+        total += np.einsum("...i,...i->...", row, m.input[..., speed, 0]) * self._stacked(self.road)
+        total += np.einsum("...i,...i->...", row, m.input_rate[..., speed, 0]) * self._stacked(self.road_rate)
+        total += np.einsum("...i,...i->...", row, m.load[..., speed]) * self._stacked(self.force)
         total -= np.einsum("...i,...ik,t...k->t...", row, m.friction[..., speed, :], self.sliding_force)
         return np.asarray(total)
 
     def sliding_velocity(self, pair: int = 0) -> Array:
         """Velocity [m/s] of a sliding pair, shape (T, ...)."""
         motion = np.einsum("...i,t...i->t...", self.model.slide[..., pair, :], self.state)
-        return np.asarray(motion + self.model.slide_road_rate[..., pair] * self._stacked(self.road_rate))
+        return np.asarray(motion + self.model.slide_rate[..., pair, 0] * self._stacked(self.road_rate))
+
+    def _row(self, output: str) -> tuple[Array, Array]:
+        """Coefficients of an output on the coordinates and on the road."""
+        row, inputs = self.model.output(output)
+        return row, inputs[..., 0]
 
     def _stacked(self, values: Array) -> Array:
         """Road quantities with as many axes as the stack of models."""

@@ -15,14 +15,15 @@ import numpy.typing as npt
 from scipy.linalg import expm
 
 from vehicle.errors import ConfigurationError
+from vehicle.linear.first_order import FirstOrder, first_order
+from vehicle.linear.system import LinearSystem
 from vehicle.lumped.bump_road import BumpPassage
-from vehicle.lumped.energy_matrices import LinearModel
 from vehicle.lumped.motion_history import MotionHistory
 
 Array = npt.NDArray[np.float64]
 
 
-def linear_response(model: LinearModel, passage: BumpPassage, *, time_step: float, duration: float) -> MotionHistory:
+def linear_response(model: LinearSystem, passage: BumpPassage, *, time_step: float, duration: float) -> MotionHistory:
     """Response of a model at rest to a bump, exact at every sample.
 
     Args:
@@ -41,12 +42,14 @@ def linear_response(model: LinearModel, passage: BumpPassage, *, time_step: floa
         raise ConfigurationError(f"linear response: time_step: found {time_step!r} s, must be greater than 0.0")
     if not (math.isfinite(duration) and duration >= time_step):
         raise ConfigurationError(f"linear response: duration: found {duration!r} s, must be at least one time step")
-    if len(passage.arrivals) != len(model.roads):
+    if len(passage.arrivals) != len(model.inputs):
         raise ConfigurationError(
-            f"linear response: found {len(passage.arrivals)} arrivals for {len(model.roads)} roads, needed is one each"
+            f"linear response: found {len(passage.arrivals)} arrivals for {len(model.inputs)} roads, needed is one each"
         )
-    n, w = len(model.coordinates), len(model.roads)
-    system = _autonomous(model, passage.omega)
+    n, w = model.size, len(model.inputs)
+    form = first_order(model)
+    size = form.state.shape[-1]
+    system = _autonomous(form, passage.omega)
     time = np.asarray(time_step * np.arange(round(duration / time_step) + 1), dtype=np.float64)
     states = np.zeros((system.shape[0], time.size))
     powers = [expm(system * time_step)]
@@ -59,28 +62,28 @@ def linear_response(model: LinearModel, passage: BumpPassage, *, time_step: floa
         if math.isinf(instant):
             break
         state, since = expm(system * (instant - since)) @ state, instant
-        state[2 * n + wheel], state[2 * n + w + wheel] = 0.0, rate
+        state[size + wheel], state[size + w + wheel] = 0.0, rate
     return MotionHistory(
         coordinates=model.coordinates,
         time=time,
         displacement=states[:n],
         velocity=states[n : 2 * n],
         acceleration=system[n : 2 * n] @ states,
-        road=states[2 * n : 2 * n + w],
-        road_rate=states[2 * n + w :],
+        road=states[size : size + w],
+        road_rate=states[size + w :],
     )
 
 
-def _autonomous(model: LinearModel, omega: float) -> Array:
-    """A of s = (x, x', z, z'), shape (2n + 2w, 2n + 2w)."""
-    n, w = len(model.coordinates), len(model.roads)
-    force = np.hstack((-model.stiffness, -model.damping, model.road_stiffness, model.road_damping))
-    system = np.zeros((2 * n + 2 * w, 2 * n + 2 * w))
-    system[:n, n : 2 * n] = np.eye(n)
-    system[n : 2 * n] = np.linalg.solve(model.mass, force)
-    system[2 * n : 2 * n + w, 2 * n + w :] = np.eye(w)
-    system[2 * n + w :, 2 * n : 2 * n + w] = -(omega**2) * np.eye(w)
-    return system
+def _autonomous(form: FirstOrder, omega: float) -> Array:
+    """A of s = (states, z, z'), shape (s + 2w, s + 2w)."""
+    w = len(form.system.inputs)
+    return np.block(
+        [
+            [form.state, form.input, form.input_rate],
+            [np.zeros((w, form.state.shape[0])), np.zeros((w, w)), np.eye(w)],
+            [np.zeros((w, form.state.shape[0])), -(omega**2) * np.eye(w), np.zeros((w, w))],
+        ]
+    )
 
 
 def _events(passage: BumpPassage) -> list[tuple[float, int, float]]:

@@ -10,16 +10,16 @@ import numpy.typing as npt
 from scipy.linalg import expm
 
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.linear.first_order import FirstOrder
+from vehicle.linear.system import Slide
 from vehicle.lumped.history import Array, History
-from vehicle.lumped.network import Slide
-from vehicle.lumped.state_space import StateSpace
 
 ITERATIONS = 120
 """More than enough: of two iterations one halves the bracket or the step, and 52 halvings exhaust a double."""
 
 
 def marched_solution(
-    model: StateSpace, timestep: float, road: npt.ArrayLike, *, every: int = 1, initial: npt.ArrayLike | None = None
+    model: FirstOrder, timestep: float, road: npt.ArrayLike, *, every: int = 1, initial: npt.ArrayLike | None = None
 ) -> History:
     """March a stack of models with one sliding pair over a road given at every step.
 
@@ -53,8 +53,8 @@ def marched_solution(
     Source: exponential fitting of theta: Liniger and Willoughby, SIAM J. Numer. Anal. 7 (1970).
     """
     shape, size = model.models, model.state.shape[-1]
-    if len(model.slides) != 1:
-        raise ConfigurationError(f"marched_solution: needed is one sliding pair, found {len(model.slides)}")
+    if len(model.system.slides) != 1:
+        raise ConfigurationError(f"marched_solution: needed is one sliding pair, found {len(model.system.slides)}")
     if not (math.isfinite(timestep) and timestep > 0.0):
         raise ConfigurationError(f"timestep: found {timestep!r} s, must be finite and greater than 0.0")
     if every < 1:
@@ -64,7 +64,7 @@ def marched_solution(
         raise ConfigurationError(f"road: found shape {driven.shape}, needed is (T,) or (T, *{shape}) with T >= 2")
     if not np.isfinite(driven).all():
         raise ConfigurationError("road: all displacements must be finite")
-    pair = model.slides[0]
+    pair = model.system.slides[0]
     propagate, at_start, over_step, by_force = _propagators(model, timestep)
     row = model.slide[..., 0, :]
     gain = -np.einsum("...i,...i->...", row, by_force)  # positive: a force against the motion slows it down
@@ -73,7 +73,7 @@ def marched_solution(
     state = (
         np.zeros((*shape, size)) if initial is None else np.array(np.broadcast_to(initial, (*shape, size)), dtype=float)
     )
-    speed = np.einsum("...i,...i->...", row, state) + model.slide_road_rate[..., 0] * rates[0]
+    speed = np.einsum("...i,...i->...", row, state) + model.slide_rate[..., 0, 0] * rates[0]
     force, stuck = np.zeros(shape), np.zeros(shape)
     kept = range(0, len(driven), every)
     states, forces = np.empty((len(kept), *shape, size)), np.empty((len(kept), *shape))
@@ -81,7 +81,7 @@ def marched_solution(
     for step in range(1, len(driven)):
         free = (propagate @ state[..., None])[..., 0]
         free += at_start * ahead[step - 1][..., None] + over_step * (ahead[step] - ahead[step - 1])[..., None]
-        arriving = np.einsum("...i,...i->...", row, free) + model.slide_road_rate[..., 0] * rates[step - 1]
+        arriving = np.einsum("...i,...i->...", row, free) + model.slide_rate[..., 0, 0] * rates[step - 1]
         before, earlier, stuck_earlier = speed, force, stuck
         steep = gain * pair.friction.slope(before)
         stuck = 2.0 * _end_share(steep) - 1.0
@@ -113,14 +113,14 @@ def marched_solution(
     )
 
 
-def _propagators(model: StateSpace, step: float) -> tuple[Array, Array, Array, Array]:
+def _propagators(model: FirstOrder, step: float) -> tuple[Array, Array, Array, Array]:
     """P, R0, R1 and S of a step: exact for a road on a straight line and a constant sliding force."""
     size = model.state.shape[-1]
     # (x, w, w', f) with w' and f constant over the step: one matrix exponential gives all of them.
     whole = np.zeros((*model.models, size + 3, size + 3))
     whole[..., :size, :size] = model.state
-    whole[..., :size, size] = model.road
-    whole[..., :size, size + 1] = model.road_rate
+    whole[..., :size, size] = model.input[..., 0]
+    whole[..., :size, size + 1] = model.input_rate[..., 0]
     whole[..., :size, size + 2] = -model.friction[..., 0]
     whole[..., size, size + 1] = 1.0
     moved = expm(whole * step)

@@ -14,7 +14,8 @@ from vehicle.laws.kelvin import Kelvin
 from vehicle.laws.law import Numbers
 from vehicle.laws.maxwell import Maxwell
 from vehicle.laws.series import in_series
-from vehicle.lumped.network import ROAD, Link, Mass, Network, Row, Slide
+from vehicle.linear.parts import ROAD, Link, Mass, Network
+from vehicle.linear.system import Row, Slide
 from vehicle.lumped.variation import Variation
 from vehicle.parameters.quarter_car import QuarterCar
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.lumped.harmonic_response import in_phase_response
 from vehicle.lumped.road_holding import tyre_load_ratio_of_density
 from vehicle.lumped.road_holding_models import quarter_car_model
 from vehicle.parameters.damper_choice import RoadHoldingQuarterCar
@@ -44,8 +43,7 @@ def ride_measures(
         The three measures.
     """
     model = quarter_car_model(car, damping)
-    response = in_phase_response(model.model, lines)
-    wheel, body = (response[model.model.coordinates.index(name)] for name in ("wheel", "body"))
+    wheel, body = model.response(lines, "wheel", "body")
     acceleration = np.asarray(weight) * (2.0 * np.pi * lines) ** 2 * np.abs(body)
     return RideMeasures(
         tyre_load=float(tyre_load_ratio_of_density(model, lines, density, width)[0]),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.lumped.harmonic_response import in_phase_response
 from vehicle.lumped.road_holding_models import RoadHoldingModel
 from vehicle.lumped.road_spectrum import band_amplitudes, exponential_density
 from vehicle.parameters.damper_choice import ExponentialRoad, FrequencyBands
@@ -42,10 +41,10 @@ def printed_load_fluctuation(
     count = round(bands.highest / bands.width)
     lines = bands.width * (np.arange(count * LINES_PER_BAND) + 0.5) / LINES_PER_BAND
     amplitude = band_amplitudes(road, bands.width * np.arange(count + 1))
-    response = np.abs(in_phase_response(car.model, lines))
+    response = np.abs(car.response(lines, *(tyre.wheel for tyre in car.tyres)))
     rates = []
-    for tyre in car.tyres:
-        magnitude = response[car.model.coordinates.index(tyre.wheel)].reshape(count, LINES_PER_BAND).mean(axis=1)
+    for tyre, found in zip(car.tyres, response, strict=True):
+        magnitude = found.reshape(count, LINES_PER_BAND).mean(axis=1)
         difference = amplitude * (1.0 - magnitude)
         total = difference.sum() if signed else np.abs(difference).sum()
         rates.append(tyre.stiffness * total / tyre.static_load)
@@ -82,10 +81,10 @@ def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Array, density: Arr
     Returns:
         Ratio [-], one for each tyre.
     """
-    response = in_phase_response(car.model, lines)
+    response = car.response(lines, *(tyre.wheel for tyre in car.tyres))
     ratios = []
-    for tyre in car.tyres:
-        deflection = 1.0 - response[car.model.coordinates.index(tyre.wheel)]
+    for tyre, found in zip(car.tyres, response, strict=True):
+        deflection = 1.0 - found
         rate = np.abs(tyre.stiffness + 2j * np.pi * lines * tyre.damping)
         ratios.append(np.sqrt(np.sum((rate * np.abs(deflection)) ** 2 * density * width)) / tyre.static_load)
     return np.array(ratios)

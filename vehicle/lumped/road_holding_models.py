@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle.lumped.energy_matrices import LinearModel, SpringDamper, energy_matrices
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.linear.first_order import first_order
+from vehicle.linear.parts import ROAD, Link, Network, masses_of, spring_damper
+from vehicle.linear.response import frequency_response
+from vehicle.linear.system import LinearSystem
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.damper_choice import RoadHoldingHalfCar, RoadHoldingQuarterCar
 
@@ -30,8 +36,20 @@ class Tyre:
 class RoadHoldingModel:
     """A linear model with its tyres, in the order of its roads."""
 
-    model: LinearModel
+    model: LinearSystem
     tyres: tuple[Tyre, ...]
+
+    def response(self, frequency: npt.ArrayLike, *places: str) -> npt.NDArray[np.complex128]:
+        """Motion per road height, the same road under every wheel at the same time.
+
+        Args:
+            frequency: lines [Hz], shape (m,).
+            places: coordinates; all of them by default.
+
+        Returns:
+            [m/m] or [rad/m], shape (places, m).
+        """
+        return frequency_response(first_order(self.model), frequency, places or self.model.coordinates)
 
 
 def quarter_car_model(car: RoadHoldingQuarterCar, damping: float | None = None) -> RoadHoldingModel:
@@ -41,15 +59,15 @@ def quarter_car_model(car: RoadHoldingQuarterCar, damping: float | None = None) 
         car: parameters.
         damping: damper coefficient in place of the car's own [N s/m].
     """
-    model = energy_matrices(
-        {"wheel": car.wheel.unsprung_mass, "body": car.sprung_mass},
-        (
+    network = Network(
+        coordinates=("wheel", "body"),
+        masses=masses_of({"wheel": car.wheel.unsprung_mass, "body": car.sprung_mass}),
+        links=(
             _suspension(car.wheel, {"body": 1.0, "wheel": -1.0}, damping),
-            _tyre_spring(car.wheel, "wheel", "road"),
+            _tyre_spring(car.wheel, "wheel", ROAD),
         ),
-        ("road",),
     )
-    return RoadHoldingModel(model=model, tyres=(_tyre(car.wheel, "wheel", car.sprung_mass),))
+    return RoadHoldingModel(model=network.system(), tyres=(_tyre(car.wheel, "wheel", car.sprung_mass),))
 
 
 def half_car_model(
@@ -62,24 +80,26 @@ def half_car_model(
         front_damping: front damper coefficient in place of the car's own [N s/m].
         rear_damping: the same at the rear.
     """
-    model = energy_matrices(
-        {
-            "front_wheel": car.front.unsprung_mass,
-            "rear_wheel": car.rear.unsprung_mass,
-            "heave": car.sprung_mass,
-            "pitch": car.pitch_inertia,
-        },
-        (
+    masses = {
+        "front_wheel": car.front.unsprung_mass,
+        "rear_wheel": car.rear.unsprung_mass,
+        "heave": car.sprung_mass,
+        "pitch": car.pitch_inertia,
+    }
+    network = Network(
+        coordinates=tuple(masses),
+        masses=masses_of(masses),
+        links=(
             _suspension(car.front, {"heave": 1.0, "pitch": -car.front_arm, "front_wheel": -1.0}, front_damping),
             _suspension(car.rear, {"heave": 1.0, "pitch": car.rear_arm, "rear_wheel": -1.0}, rear_damping),
             _tyre_spring(car.front, "front_wheel", "front_road"),
             _tyre_spring(car.rear, "rear_wheel", "rear_road"),
         ),
-        ("front_road", "rear_road"),
+        inputs=("front_road", "rear_road"),
     )
     wheelbase = car.front_arm + car.rear_arm
     return RoadHoldingModel(
-        model=model,
+        model=network.system(),
         tyres=(
             _tyre(car.front, "front_wheel", car.sprung_mass * car.rear_arm / wheelbase),
             _tyre(car.rear, "rear_wheel", car.sprung_mass * car.front_arm / wheelbase),
@@ -87,13 +107,13 @@ def half_car_model(
     )
 
 
-def _suspension(axle: Axle, travel: dict[str, float], damping: float | None) -> SpringDamper:
+def _suspension(axle: Axle, travel: dict[str, float], damping: float | None) -> Link:
     chosen = axle.suspension_damping if damping is None else damping
-    return SpringDamper(extension=travel, stiffness=axle.suspension_stiffness, damping=chosen)
+    return spring_damper(travel, axle.suspension_stiffness, chosen)
 
 
-def _tyre_spring(axle: Axle, wheel: str, road: str) -> SpringDamper:
-    return SpringDamper(extension={wheel: 1.0, road: -1.0}, stiffness=axle.tyre_stiffness, damping=axle.tyre_damping)
+def _tyre_spring(axle: Axle, wheel: str, road: str) -> Link:
+    return spring_damper({wheel: 1.0, road: -1.0}, axle.tyre_stiffness, axle.tyre_damping)
 
 
 def _tyre(axle: Axle, wheel: str, sprung_share: float) -> Tyre:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from vehicle.laws.kelvin import Kelvin
 from vehicle.laws.law import ForceLaw, Numbers
-from vehicle.lumped.network import ROAD, Link, Mass, Network, Slide
+from vehicle.linear.parts import ROAD, Link, Mass, Network
+from vehicle.linear.system import Slide
 
 
 def single_mass(

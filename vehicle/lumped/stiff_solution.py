@@ -13,9 +13,9 @@ from scipy.integrate import solve_ivp
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.laws.law import ForceLaw, Parallel
+from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.drive import AtRest, Drive
 from vehicle.lumped.history import Array, History
-from vehicle.lumped.state_space import StateSpace
 
 Method = Literal["LSODA", "Radau", "BDF"]
 
@@ -40,7 +40,7 @@ class Tolerances:
 
 
 def stiff_solution(
-    model: StateSpace,
+    model: FirstOrder,
     time: npt.ArrayLike,
     *,
     road: Drive | None = None,
@@ -107,7 +107,7 @@ def stiff_solution(
         )
     states = solution.y.T
     driven = np.array([(*road.at(t), force.at(t)[0]) for t in times.tolist()])
-    velocities = states @ model.slide.T + driven[:, 1:2] * model.slide_road_rate
+    velocities = states @ model.slide.T + driven[:, 1:2] * model.slide_rate[:, 0]
     forces = np.stack([law.force(velocities[:, i]) for i, law in enumerate(laws)], axis=-1) if laws else velocities
     return History(
         model=model,
@@ -125,17 +125,18 @@ def stiff_solution(
     )
 
 
-def pair_laws(model: StateSpace) -> list[ForceLaw]:
+def pair_laws(model: FirstOrder) -> list[ForceLaw]:
     """The whole law of each sliding pair: friction, and its viscous part where there is one."""
     return [
-        pair.friction if pair.viscous is None else Parallel(laws=(pair.friction, pair.viscous)) for pair in model.slides
+        pair.friction if pair.viscous is None else Parallel(laws=(pair.friction, pair.viscous))
+        for pair in model.system.slides
     ]
 
 
-def _equations(model: StateSpace, laws: list[ForceLaw], road: Drive, force: Drive) -> tuple[Any, Any]:
+def _equations(model: FirstOrder, laws: list[ForceLaw], road: Drive, force: Drive) -> tuple[Any, Any]:
     """Right-hand side and Jacobian, with everything constant taken out of the inner loop."""
-    a, b0, b1, bf = model.state, model.road, model.road_rate, model.force
-    n, v, d = model.friction, model.slide, model.slide_road_rate
+    a, b0, b1, bf = model.state, model.input[:, 0], model.input_rate[:, 0], model.load
+    n, v, d = model.friction, model.slide, model.slide_rate[:, 0]
     driven_by_rate, driven_by_force = bool(b1.any()), bool(bf.any())
 
     def right_hand_side(t: float, x: Array) -> Array:
@@ -159,8 +160,8 @@ def _equations(model: StateSpace, laws: list[ForceLaw], road: Drive, force: Driv
     return right_hand_side, jacobian
 
 
-def _absolute(model: StateSpace, accuracy: Tolerances) -> Array:
+def _absolute(model: FirstOrder, accuracy: Tolerances) -> Array:
     """Absolute tolerance of each state by its kind."""
-    n = len(model.coordinates)
+    n = model.system.size
     rest = model.state.shape[-1] - 2 * n
     return np.array([accuracy.displacement] * n + [accuracy.velocity] * n + [accuracy.force] * rest)

@@ -11,9 +11,9 @@ from scipy.integrate import LSODA, solve_ivp
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.laws.switch import Switch
+from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.drive import AtRest, Drive
 from vehicle.lumped.history import Array, History
-from vehicle.lumped.state_space import StateSpace
 
 MOST_STEPS = 200_000
 """Half a minute of solving; the published half second of the mass on a damper takes 700 steps."""
@@ -44,7 +44,7 @@ class _LimitedLSODA(LSODA):  # type: ignore[misc]
 
 
 def switch_solution(
-    model: StateSpace,
+    model: FirstOrder,
     law: Switch,
     time: npt.ArrayLike,
     *,
@@ -80,12 +80,12 @@ def switch_solution(
 
     Source: Bommer 2006, appendix A (Leine and Nijmeijer).
     """
-    if model.models or len(model.slides) != 1 or model.slide_road_rate.any():
+    if model.models or model.slide.shape[-2] != 1 or model.slide_rate.any():
         raise ConfigurationError("switch_solution: needed is a single model with one sliding pair off the road")
     if most_steps < 1:
         raise ConfigurationError(f"most_steps: found {most_steps!r}, must be at least 1")
     times = np.asarray(time, dtype=float)
-    size, n = model.state.shape[-1], len(model.coordinates)
+    size, n = model.state.shape[-1], model.system.size
     start = np.zeros(size) if initial is None else np.asarray(initial, dtype=float)
     road, force = road or AtRest(), force or AtRest()
     row, effect, limit = model.slide[0], model.friction[:, 0], float(law.limit)
@@ -93,7 +93,7 @@ def switch_solution(
     def fields(t: float, x: Array) -> tuple[Array, float, Array]:
         """Vector field without friction, sliding velocity and mixing."""
         w, rate = road.at(t)
-        bare = model.state @ x + model.road * w + model.road_rate * rate + model.force * force.at(t)[0]
+        bare = model.state @ x + model.input[:, 0] * w + model.input_rate[:, 0] * rate + model.load * force.at(t)[0]
         held, brake = float(row @ bare), float(row @ effect) * limit
         velocity = float(row @ x)
         return bare, velocity, law.mixing(velocity, held - brake, held + brake)

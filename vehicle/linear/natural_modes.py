@@ -1,4 +1,4 @@
-"""Natural frequencies, damping ratios and shapes of a linear lumped model."""
+"""Natural frequencies, damping ratios and shapes of a linear system."""
 
 from __future__ import annotations
 
@@ -8,40 +8,43 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.lumped.state_space import StateSpace
+from vehicle.linear.first_order import FirstOrder
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class NaturalModes:
-    """Oscillating modes sorted by frequency: one for each conjugate pair of poles."""
+    """Oscillating modes sorted by frequency: one for each conjugate pair of poles.
+
+    Attributes:
+        frequency: undamped natural frequency |s| / (2 pi) [Hz], (m,).
+        damped_frequency: frequency Im(s) / (2 pi) of the free decay [Hz], (m,).
+        damping_ratio: -Re(s) / |s| [-], (m,).
+        shape: motion of the coordinates, largest one equal to 1, (m, n).
+    """
 
     frequency: npt.NDArray[np.float64]
-    """Undamped natural frequency |lambda| / (2 pi) [Hz], shape (m,)."""
     damped_frequency: npt.NDArray[np.float64]
-    """Frequency Im(lambda) / (2 pi) of the free decay [Hz], shape (m,)."""
     damping_ratio: npt.NDArray[np.float64]
-    """-Re(lambda) / |lambda| [-], shape (m,)."""
     shape: npt.NDArray[np.complex128]
-    """Motion of the coordinates, largest one equal to 1, shape (m, n)."""
 
 
-def natural_modes(model: StateSpace) -> NaturalModes:
-    """Modes of one linear model from the eigenvalues of A.
+def natural_modes(form: FirstOrder) -> NaturalModes:
+    """Modes of one system from the eigenvalues of A.
 
     Args:
-        model: a single model without sliding pairs.
+        form: a single system.
 
     Returns:
         The oscillating modes; poles on the real axis are left out.
 
     Raises:
-        ConfigurationError: a stack of models, or a model with sliding pairs.
+        ConfigurationError: a stack of systems, or a system with sliding pairs.
     """
-    if model.models or model.slides:
+    if form.models or form.system.slides:
         raise ConfigurationError("natural_modes: needed is one linear model (damper='slip' or damper='stick')")
-    poles, vectors = np.linalg.eig(model.state)
-    order = [i for i in np.argsort(np.abs(poles)) if poles[i].imag > 0.0]
-    shapes = vectors[: len(model.coordinates), order].T
+    poles, vectors = np.linalg.eig(form.state)
+    order = [i for i in np.argsort(np.abs(poles)) if poles[i].imag > 1e-6]
+    shapes = (form.basis @ vectors[: form.basis.shape[1], order]).T
     largest = shapes[np.arange(len(order)), np.argmax(np.abs(shapes), axis=1)]
     chosen = poles[order]
     return NaturalModes(
