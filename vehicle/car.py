@@ -29,9 +29,10 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.library import find_superelement
 from vehicle.flexbody.superelement import Superelement
-from vehicle.linear.frequency_response import matrix_response
+from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices, car_matrices
 from vehicle.linear.modes import Mode, car_modes
+from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.stability import require_stable
 from vehicle.linear.step_error import require_accurate_step
 from vehicle.names import AXES, WHEELS, acceleration_channels, channel_units
@@ -140,7 +141,9 @@ class Car:
         for name in channels:
             if name not in known:
                 raise ConfigurationError(f"no acceleration channel {name!r}; there are {', '.join(known)}")
-        return matrix_response(self.matrices, frequency, channels, wheel=wheel, stuck=_is_stuck(damper))
+        form = first_order(self.matrices.system, stuck=_is_stuck(damper))
+        driven = [float(name == wheel) for name in WHEELS]
+        return exact_response(form, frequency, channels, "acceleration", driven=driven)
 
     def run(
         self,

@@ -8,8 +8,8 @@ import pytest
 
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
+from vehicle.linear.first_order import free_basis
 from vehicle.linear.matrices import car_matrices
-from vehicle.linear.modes import free_basis
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows
 from vehicle.simulation.static_trim import joint_spring_stiffness
@@ -38,14 +38,16 @@ def element_stiffness(car):
 
 
 def in_free_motions(car, matrix, *, stuck=True):
-    basis = free_basis(car.matrices, stuck=stuck)
-    mass = basis.T @ car.matrices.mass @ basis
+    basis = free_basis(car.matrices.system, stuck=stuck)
+    mass = basis.T @ car.matrices.system.mass @ basis
     scale = np.linalg.inv(np.linalg.cholesky(mass))
     return scale @ basis.T @ matrix @ basis @ scale.T
 
 
 def test_stiffness_is_elements_and_a_small_geometric_part(car):
-    found, elements = (in_free_motions(car, matrix) for matrix in (car.matrices.stiffness, element_stiffness(car)))
+    found, elements = (
+        in_free_motions(car, matrix) for matrix in (car.matrices.system.stiffness, element_stiffness(car))
+    )
     difference = np.abs(found - elements)
     # Gravity and preloads turn with the parts: 0.2 % of the stiffest direction in mass-normalised terms.
     assert difference.max() < 0.005 * np.abs(elements).max()
@@ -60,7 +62,7 @@ def test_stiffness_is_elements_and_a_small_geometric_part(car):
 
 def test_without_gravity_the_stiffness_is_that_of_the_elements():
     weightless = Car.load(None, ["gravity=0"])
-    found = in_free_motions(weightless, weightless.matrices.stiffness)
+    found = in_free_motions(weightless, weightless.matrices.system.stiffness)
     elements = in_free_motions(weightless, element_stiffness(weightless))
     # Two derivations: central differences of the forces, and J' K J. Differences of 1e-6 leave 1e-8.
     assert np.max(np.abs(found - elements)) < 1e-6 * np.abs(elements).max()
@@ -68,11 +70,11 @@ def test_without_gravity_the_stiffness_is_that_of_the_elements():
 
 def test_matrices_are_symmetric_and_positive(car):
     matrices = car.matrices
-    np.testing.assert_allclose(matrices.mass, matrices.mass.T, atol=1e-10)
-    assert np.linalg.eigvalsh(matrices.mass)[0] > 0.0
-    np.testing.assert_allclose(matrices.damping, matrices.damping.T, atol=1e-9)
-    assert np.linalg.eigvalsh(matrices.damping)[0] > -1e-6
-    free = in_free_motions(car, matrices.stiffness)
+    np.testing.assert_allclose(matrices.system.mass, matrices.system.mass.T, atol=1e-10)
+    assert np.linalg.eigvalsh(matrices.system.mass)[0] > 0.0
+    np.testing.assert_allclose(matrices.system.damping, matrices.system.damping.T, atol=1e-9)
+    assert np.linalg.eigvalsh(matrices.system.damping)[0] > -1e-6
+    free = in_free_motions(car, matrices.system.stiffness)
     assert np.linalg.eigvalsh((free + free.T) / 2.0)[0] > 0.0
     # Preloads are in equilibrium, so the tangent is that of a potential: symmetric among the free motions.
     assert np.max(np.abs(free - free.T)) < 1e-4 * np.abs(free).max()
@@ -81,16 +83,16 @@ def test_matrices_are_symmetric_and_positive(car):
 def test_ideal_joints_are_eliminated(car):
     matrices = car.matrices
     # Only the rods of the stabilizer on the damper housings are ideal: two balls of three rows.
-    assert matrices.constraints.shape == (6, 63)
-    assert np.linalg.matrix_rank(matrices.constraints) == 6
-    assert free_basis(matrices, stuck=False).shape == (63, 57)
-    stuck = free_basis(matrices, stuck=True)
+    assert matrices.system.constraints.shape == (6, 63)
+    assert np.linalg.matrix_rank(matrices.system.constraints) == 6
+    assert free_basis(matrices.system, stuck=False).shape == (63, 57)
+    stuck = free_basis(matrices.system, stuck=True)
     assert stuck.shape == (63, 55)
-    np.testing.assert_allclose(matrices.constraints @ stuck, 0.0, atol=1e-12)
+    np.testing.assert_allclose(matrices.system.constraints @ stuck, 0.0, atol=1e-12)
     np.testing.assert_allclose(stuck[matrices.dampers], 0.0, atol=1e-12)
     rigid = Car.load(None, ["body.attachment_flexibility=false"])
     # Three more balls a side become ideal.
-    assert np.linalg.matrix_rank(rigid.matrices.constraints) == 24
+    assert np.linalg.matrix_rank(rigid.matrices.system.constraints) == 24
 
 
 def test_energies_of_every_mode_sum_to_one(car):
@@ -105,7 +107,7 @@ def test_energies_of_every_mode_sum_to_one(car):
     matrices = car.matrices
     total = sum(rows.T @ matrices.body_masses[name] @ rows for name, rows in matrices.body_rows.items())
     total[matrices.modal, matrices.modal] += np.eye(9)
-    np.testing.assert_allclose(total, matrices.mass, atol=1e-8 * np.abs(matrices.mass).max())
+    np.testing.assert_allclose(total, matrices.system.mass, atol=1e-8 * np.abs(matrices.system.mass).max())
 
 
 def test_published_modes_with_stuck_dampers(car):
@@ -150,7 +152,7 @@ def test_sliding_dampers_make_another_car(car):
 def test_the_matrices_leave_the_model_alone(car):
     before = car.model.model.qpos_spring.copy()
     again = car_matrices(car.model.model, car.model.static)
-    np.testing.assert_array_equal(again.stiffness, car.matrices.stiffness)
+    np.testing.assert_array_equal(again.system.stiffness, car.matrices.system.stiffness)
     np.testing.assert_array_equal(car.model.model.qpos_spring, before)
     assert mujoco.get_mjcb_control() is None
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from tests.linear.energy_car import EnergyCar
-from vehicle.linear.modes import state_matrix
+from vehicle.linear.first_order import first_order
 
 HIGHEST = 100.0
 """Highest frequency [Hz] of the comparison."""
 
 
 def poles_of(car, *, stuck):
-    found = np.linalg.eigvals(state_matrix(car.matrices, stuck=stuck)[0])
+    found = np.linalg.eigvals(first_order(car.matrices.system, stuck=stuck).state)
     found = found[found.imag > 1e-6]
     return found[np.argsort(np.abs(found))]
 

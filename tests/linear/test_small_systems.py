@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.linear.plain_matrices import plain_matrices
 from vehicle.errors import ConfigurationError
-from vehicle.linear.frequency_response import matrix_response
-from vehicle.linear.matrices import CarMatrices
-from vehicle.linear.modes import car_modes, free_basis, group_of, state_matrix
+from vehicle.linear.first_order import first_order, free_basis
+from vehicle.linear.modes import car_modes, group_of
+from vehicle.linear.response import frequency_response
 
 SPRUNG, UNSPRUNG, SUSPENSION, TYRE = 180.0, 45.0, 3e4, 2.5e5  # the quarter car of source 1
 VISCOUS, TYRE_DAMPING = 1500.0, 400.0
@@ -21,17 +22,16 @@ def quarter_car(*, branch=(), tyre_damping=0.0, links=()):
     masses = {"body": SPRUNG, "tyre_fr": UNSPRUNG}
     mass = np.sum([masses[name] * np.outer(row, row) for name, row in rows.items()], axis=0)
     six = {name: np.vstack([np.zeros((2, 2)), row, np.zeros((3, 2))]) for name, row in rows.items()}
-    branches = np.array([[0.0, 1.0]] * len(branch)).reshape(-1, 2)
-    return CarMatrices(
+    return plain_matrices(
         mass=mass,
         damping=np.diag([tyre_damping, 0.0]),
         stiffness=np.diag([TYRE, SUSPENSION]),
-        constraints=np.array(links, dtype=float).reshape(-1, 2),
+        constraints=links,
         dampers=np.array([1]),
         viscous=np.array([VISCOUS]),
-        branch_rows=branches,
-        branch_stiffness=np.array([stiffness for stiffness, _ in branch]),
-        branch_time=np.array([time for _, time in branch]),
+        branches=[[0.0, 1.0]] * len(branch),
+        branch_stiffness=[stiffness for stiffness, _ in branch],
+        branch_time=[time for _, time in branch],
         plate_stiffness=np.array([[TYRE, 0.0], [0.0, 0.0]]),
         plate_damping=np.array([[tyre_damping, 0.0], [0.0, 0.0]]),
         tyre_stiffness=np.array([TYRE, TYRE]),
@@ -39,7 +39,6 @@ def quarter_car(*, branch=(), tyre_damping=0.0, links=()):
         outputs={"body_acc_z": rows["body"], "wheel_acc_z": rows["tyre_fr"]},
         body_rows=six,
         body_masses={name: np.diag([value] * 3 + [1.0] * 3) for name, value in masses.items()},
-        modal=slice(0, 0),
     )
 
 
@@ -74,7 +73,7 @@ def test_sliding_has_the_roots_of_the_characteristic_polynomial():
 
 def test_a_maxwell_branch_adds_a_real_pole_and_the_right_limits():
     soft = quarter_car(branch=((7e5, 1e-9),))
-    matrix, _ = state_matrix(soft, stuck=False)
+    matrix = first_order(soft.system).state
     assert matrix.shape == (5, 5)
     poles = np.linalg.eigvals(matrix)
     assert np.sum(np.abs(poles.imag) < 1e-6) == 1 and poles.real.max() < 0.0
@@ -95,21 +94,21 @@ def test_a_maxwell_branch_adds_a_real_pole_and_the_right_limits():
 def test_constraints_are_eliminated():
     # wheel = 0.5 * stroke, given twice: one motion is left, the double row takes nothing more.
     matrices = quarter_car(links=((1.0, -0.5), (2.0, -1.0)))
-    basis = free_basis(matrices, stuck=False)
+    basis = free_basis(matrices.system)
     assert basis.shape == (2, 1)
-    np.testing.assert_allclose(matrices.constraints @ basis, 0.0, atol=1e-14)
+    np.testing.assert_allclose(matrices.system.constraints @ basis, 0.0, atol=1e-14)
     np.testing.assert_allclose(basis.T @ basis, 1.0)
-    assert free_basis(quarter_car(), stuck=False).shape == (2, 2)
-    assert free_basis(quarter_car(), stuck=True).shape == (2, 1)
+    assert free_basis(quarter_car().system).shape == (2, 2)
+    assert free_basis(quarter_car().system, stuck=True).shape == (2, 1)
 
 
 @pytest.mark.parametrize("stuck", [True, False])
 def test_frequency_response_by_hand(stuck):
     frequency = np.array([0.5, 3.0, 12.0, 40.0])
     s = 2j * np.pi * frequency
-    found = matrix_response(
-        quarter_car(tyre_damping=TYRE_DAMPING), frequency, ["body_acc_z", "wheel_acc_z"], stuck=stuck
-    )
+    form = first_order(quarter_car(tyre_damping=TYRE_DAMPING).system, stuck=stuck)
+    places = ["body_acc_z", "wheel_acc_z"]
+    found = frequency_response(form, frequency, places, "acceleration", driven=[1.0, 0.0])
     drive = TYRE + TYRE_DAMPING * s
     if stuck:
         body = wheel = drive / ((SPRUNG + UNSPRUNG) * s**2 + drive)
@@ -120,13 +119,13 @@ def test_frequency_response_by_hand(stuck):
         body = wheel * strut / sprung
     np.testing.assert_allclose(found, [s**2 * body, s**2 * wheel], rtol=1e-10)
     # The left plate drives nothing here.
-    assert not matrix_response(quarter_car(), frequency, ["body_acc_z"], wheel="fl", stuck=stuck).any()
+    assert not frequency_response(form, frequency, places, "acceleration", driven=[0.0, 1.0]).any()
 
 
 def test_unknown_channel():
     with pytest.raises(ConfigurationError) as caught:
-        matrix_response(quarter_car(), [1.0], ["roof_acc_z"])
-    assert str(caught.value) == "no acceleration channel 'roof_acc_z'; known are body_acc_z, wheel_acc_z"
+        frequency_response(first_order(quarter_car().system), [1.0], ["roof_acc_z"])
+    assert str(caught.value) == "output 'roof_acc_z': unknown; this model has body_acc_z, wheel_acc_z"
 
 
 def test_groups_of_parts():

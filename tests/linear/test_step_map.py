@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vehicle.car import Car
-from vehicle.linear.modes import free_basis, state_matrix
+from vehicle.linear.first_order import first_order
 from vehicle.linear.step_map import step_map, step_rows
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows, prepare_model
@@ -15,8 +15,8 @@ from vehicle.simulation.element_rows import ElementRows, prepare_model
 
 def mapped(car, stuck, step=None):
     rows = step_rows(car.model, car.matrices, step or car.vehicle.solver.timestep)
-    basis = free_basis(car.matrices, stuck=stuck)
-    return step_map(rows, car.matrices, basis, stuck=stuck), basis
+    form = first_order(car.matrices.system, stuck=stuck)
+    return step_map(rows, form), form.basis
 
 
 @pytest.mark.parametrize("stuck", [False, True])
@@ -49,7 +49,7 @@ def test_the_map_is_what_the_model_steps(stuck):
 def test_its_poles_come_closer_with_the_square_of_the_step(car):
     """Damping is centred, second order; the frequencies of undamped rows would be of fourth."""
     wheel = 2.0 * np.pi * 58.3  # the highest vibration below 100 Hz, with stuck dampers
-    exact = np.linalg.eigvals(state_matrix(car.matrices, stuck=True)[0])
+    exact = np.linalg.eigvals(first_order(car.matrices.system, stuck=True).state)
     pole = exact[np.argmin(np.abs(np.abs(exact) - wheel) + 1e6 * (exact.imag <= 0.0))]
     error = []
     for step in (1e-3, 5e-4, 2.5e-4):

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from scenarios.quarter_car_in_mujoco import friction_of_the_rows
+from tests.linear.plain_matrices import plain_matrices
 from vehicle.analysis.slip import slip_share
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.laws.coulomb import RegularisedCoulomb
-from vehicle.linear.matrices import CarMatrices
 from vehicle.lumped.drive import Sampled
 from vehicle.lumped.quarter_car import quarter_car
 from vehicle.lumped.stiff_solution import stiff_solution
@@ -24,7 +24,6 @@ from vehicle.simulation.acceleration import acceleration
 
 CAR = load_quarter_car()
 ROAD = random_road(rms=2e-3, seed=2006, duration=8.0, lower_band_edge=0.5, upper_band_edge=50.0)
-NONE = np.zeros((0, 6))
 
 
 def matrices():
@@ -47,16 +46,12 @@ def matrices():
         row[first + 2] = 1.0
         outputs[f"damper_top_{wheel}_acc_z"] = row
         outputs[f"suspension_mount_{wheel}_acc_z"] = np.eye(6)[first]
-    return CarMatrices(
+    return plain_matrices(
         mass=both["mass"],
         damping=np.zeros((6, 6)),
         stiffness=both["stiffness"],
-        constraints=NONE,
         dampers=np.array([2, 5]),
         viscous=np.full(2, CAR.damper.damping),
-        branch_rows=NONE,
-        branch_stiffness=np.zeros(0),
-        branch_time=np.zeros(0),
         plate_stiffness=CAR.wheel.tyre_stiffness * wheels,
         plate_damping=np.zeros((2, 6)),
         tyre_stiffness=np.full(2, CAR.wheel.tyre_stiffness),
@@ -64,7 +59,6 @@ def matrices():
         outputs=outputs,
         body_rows={"body": np.zeros((6, 6))},
         body_masses={"body": np.eye(6)},
-        modal=slice(0, 0),
     )
 
 
@@ -85,7 +79,7 @@ def reduced(signal, **changes):
         damper=damper(**changes),
         record_rate=1000.0,
         tyre_load={"fr": 1e6, "fl": 1e6},
-        channels=[*matrices().outputs, "damper_fr_velocity", "damper_fl_velocity", "damper_fr_force"],
+        channels=[*matrices().system.outputs, "damper_fr_velocity", "damper_fl_velocity", "damper_fr_force"],
     )
 
 

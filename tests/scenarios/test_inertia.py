@@ -9,7 +9,6 @@ import pytest
 from scenarios.inertia import main
 from scenarios.inertia_claims import led_by, roll_claims, roll_mode, roll_peak
 from vehicle.car import Car
-from vehicle.linear.frequency_response import matrix_response
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +41,7 @@ def test_the_roll_mode_is_where_the_roof_swings_sideways(variant):
     # Another way to the same mode: the largest lateral FRF of the roof above the lateral and yaw modes (which end at
     # 4 Hz). Its peak lies within the half-power width of the mode.
     lines = np.arange(4.2, 9.0, 0.01)
-    lateral = np.abs(matrix_response(car.matrices, lines, ["roof_left_rear_acc_y"]))[0] / lines**2
+    lateral = np.abs(car.matrix_frf(["roof_left_rear_acc_y"], lines))[0] / lines**2
     assert lines[np.argmax(lateral)] == pytest.approx(mode.frequency, rel=2 * mode.damping_ratio)
 
 
@@ -62,7 +61,7 @@ def test_roll_rows_follow_the_peaks():
 def exact_response(car):
     """FRF of the seat rail from the matrices, as an estimate would hold it."""
     lines = np.arange(2.0, 9.0, 0.02)
-    return SimpleNamespace(frequency=lines, response=matrix_response(car.matrices, lines, ["seat_rail_acc_z"]))
+    return SimpleNamespace(frequency=lines, response=car.matrix_frf(["seat_rail_acc_z"], lines))
 
 
 def test_the_peak_nearest_to_the_mode_is_taken(car):

@@ -6,8 +6,10 @@ The states are (y, y', f_b): with u = N y the free motions of the joints, y' the
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import scipy.linalg
 
 from vehicle.linear.system import Array, LinearSystem
@@ -41,6 +43,10 @@ class FirstOrder:
     def models(self) -> tuple[int, ...]:
         """Shape of the stack of systems; empty for a single one."""
         return self.state.shape[:-2]
+
+    def shape(self, states: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Displacements of the coordinates (n, ...) of states (s, ...)."""
+        return np.asarray(self.basis @ states[: self.basis.shape[1]])
 
     def output(self, name: str) -> tuple[Array, Array]:
         """Coefficients of an output on the free motions (..., m) and on the inputs (..., w)."""

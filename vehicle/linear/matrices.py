@@ -1,10 +1,7 @@
-"""Mass, damping and stiffness matrices of the assembled car in its design position.
+"""Mass, damping and stiffness matrices of the assembled car in its design position, read from its MuJoCo model.
 
-M u'' + C u' + K u + sum_b j_b' f_b = sum_p (k_p z_p + c_p z_p'),   f_b' = K2 j_b u' - f_b / tau_b,   Jc u = 0
-
-with u the velocity coordinates of MuJoCo as small displacements, f_b the Maxwell branches, z_p the plates and Jc the
-ideal joints (and the dampers where they stick). K holds the geometric stiffness of gravity and preloads: it is the
-derivative of the very forces that the time simulation applies.
+u are the velocity coordinates of MuJoCo as small displacements. K holds the geometric stiffness of gravity and
+preloads: it is the derivative of the very forces that the time simulation applies.
 """
 
 from __future__ import annotations
@@ -16,7 +13,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.names import AXES, acceleration_places
+from vehicle.linear.system import LinearSystem
+from vehicle.names import AXES, WHEELS, acceleration_places
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows
 from vehicle.simulation.elements import numeric
@@ -31,38 +29,25 @@ DIFFERENCE_STEP = 1e-6
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarMatrices:
-    """Matrices of the equation above.
+    """The linear car: a system with the plates as inputs and the dampers as sliding pairs, and what its parts are.
 
     Attributes:
-        mass, damping, stiffness: M, C (without the main dampers), K; (n, n).
-        constraints: Jc of the ideal joints; (k, n).
+        system: matrices of `vehicle.linear.system`; C holds the viscous part of the dampers, inputs are WHEELS, outputs
+            turn u'' into the acceleration channels.
         dampers: velocity coordinates of the damper joints, in the order of WHEELS; (2,).
         viscous: damping constants of the dampers [N s/m]; (2,).
-        branch_rows: j_b; (b, n).
-        branch_stiffness, branch_time: K2 [N/m] and tau [s]; (b,).
-        plate_stiffness, plate_damping: k_p and c_p, force per vertical displacement and velocity; (2, n).
         tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (2,).
-        outputs: rows that turn u'' into accelerations; channel name to (n,).
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
         body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
         modal: velocity coordinates of the flexible modes.
     """
 
-    mass: Vector
-    damping: Vector
-    stiffness: Vector
-    constraints: Vector
+    system: LinearSystem
     dampers: npt.NDArray[np.intp]
     viscous: Vector
-    branch_rows: Vector
-    branch_stiffness: Vector
-    branch_time: Vector
-    plate_stiffness: Vector
-    plate_damping: Vector
     tyre_stiffness: Vector
     tyre_damping: Vector
-    outputs: dict[str, Vector]
     body_rows: dict[str, Vector]
     body_masses: dict[str, Vector]
     modal: slice
@@ -92,27 +77,39 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     row_damping[e.rows] = e.damping
     damping = jacobian.T @ (row_damping[:, None] * jacobian)
     damping[np.diag_indices(model.nv)] += np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
+    damping[e.damper_dofs, e.damper_dofs] += rows.viscous
     present = e.branch_stiffness > 0.0
-    vertical = e.rows[e.tyres][:, 2]
-    modes = e.modal_columns
+    vertical = jacobian[e.rows[e.tyres][:, 2]]
+    still = np.zeros(len(e.tyres))
+    count = int(np.count_nonzero(present))
     return CarMatrices(
-        mass=mass,
-        damping=damping,
-        stiffness=stiffness,
-        constraints=jacobian[e.hard_rows.ravel()],
+        system=LinearSystem(
+            coordinates=(),
+            inputs=WHEELS,
+            mass=mass,
+            damping=damping,
+            stiffness=stiffness,
+            input_damping=vertical.T * e.damping[e.tyres, 2],
+            input_stiffness=vertical.T * e.stiffness[e.tyres, 2],
+            branch_rows=jacobian[e.rows[present]],
+            branch_inputs=np.zeros((count, len(e.tyres))),
+            branch_stiffness=e.branch_stiffness[present],
+            branch_time=e.branch_time[present],
+            slide_rows=np.eye(model.nv)[e.damper_dofs],
+            slide_inputs=np.zeros((len(e.damper_dofs), len(e.tyres))),
+            constraints=jacobian[e.hard_rows.ravel()],
+            load=np.zeros(model.nv),
+            outputs={
+                name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modal_columns).items()
+            },
+        ),
         dampers=e.damper_dofs,
         viscous=rows.viscous,
-        branch_rows=jacobian[e.rows[present]],
-        branch_stiffness=e.branch_stiffness[present],
-        branch_time=e.branch_time[present],
-        plate_stiffness=e.stiffness[e.tyres, 2][:, None] * jacobian[vertical],
-        plate_damping=e.damping[e.tyres, 2][:, None] * jacobian[vertical],
         tyre_stiffness=e.stiffness[e.tyres, 2],
         tyre_damping=e.damping[e.tyres, 2],
-        outputs=_outputs(model, data, modes),
         body_rows=_body_rows(model, data),
         body_masses=_body_masses(model, data),
-        modal=modes,
+        modal=e.modal_columns,
     )
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg
 
+from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices
 
 Vector = npt.NDArray[np.float64]
@@ -48,42 +48,6 @@ def grows(poles: npt.NDArray[np.complex128]) -> npt.NDArray[np.bool_]:
     return np.asarray(poles.real > GROWTH_FLOOR + ROUND_OFF * np.abs(poles))
 
 
-def free_basis(matrices: CarMatrices, *, stuck: bool) -> Vector:
-    """Orthonormal basis N of the motions that the ideal joints (and stuck dampers) allow: Jc N = 0; (n, m)."""
-    rows = [matrices.constraints]
-    if stuck:
-        lock = np.zeros((len(matrices.dampers), matrices.mass.shape[0]))
-        lock[np.arange(len(matrices.dampers)), matrices.dampers] = 1.0
-        rows.append(lock)
-    stacked = np.vstack(rows)
-    if stacked.shape[0] == 0:
-        return np.eye(matrices.mass.shape[0])
-    return np.asarray(scipy.linalg.null_space(stacked))
-
-
-def state_matrix(matrices: CarMatrices, *, stuck: bool) -> tuple[Vector, Vector]:
-    """First-order form x' = A x of the free car with x = (y, y', f_b) and u = N y.
-
-    Returns:
-        A, and the basis N.
-    """
-    basis = free_basis(matrices, stuck=stuck)
-    mass = basis.T @ matrices.mass @ basis
-    full_damping = matrices.damping.copy()
-    if not stuck:
-        full_damping[matrices.dampers, matrices.dampers] += matrices.viscous
-    damping = basis.T @ full_damping @ basis
-    stiffness = basis.T @ matrices.stiffness @ basis
-    branches = matrices.branch_rows @ basis
-    size, count = basis.shape[1], len(branches)
-    matrix = np.zeros((2 * size + count, 2 * size + count))
-    matrix[:size, size : 2 * size] = np.eye(size)
-    matrix[size : 2 * size] = -scipy.linalg.solve(mass, np.hstack([stiffness, damping, branches.T]), assume_a="pos")
-    matrix[2 * size :, size : 2 * size] = matrices.branch_stiffness[:, None] * branches
-    matrix[2 * size :, 2 * size :] = -np.diag(1.0 / matrices.branch_time)
-    return matrix, basis
-
-
 def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> list[Mode]:
     """Modes of the car up to a frequency.
 
@@ -96,15 +60,14 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> l
         Modes sorted by natural frequency; overdamped motions (real poles) are left out. What grows is listed at any
         frequency, real poles too, with "grows: " before its description.
     """
-    matrix, basis = state_matrix(matrices, stuck=stuck)
-    poles, vectors = np.linalg.eig(matrix)
+    form = first_order(matrices.system, stuck=stuck)
+    poles, vectors = np.linalg.eig(form.state)
     found = []
-    size = basis.shape[1]
     growing = grows(poles)
     for index in np.flatnonzero((poles.imag > 1e-6) | (growing & (poles.imag >= 0.0))):
         frequency = float(abs(poles[index])) / (2.0 * np.pi)
         if frequency <= highest or growing[index]:
-            shape = basis @ vectors[:size, index]
+            shape = form.shape(vectors[:, index])
             energy = _energy(matrices, shape)
             found.append(
                 Mode(

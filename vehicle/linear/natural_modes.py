@@ -44,7 +44,7 @@ def natural_modes(form: FirstOrder) -> NaturalModes:
         raise ConfigurationError("natural_modes: needed is one linear model (damper='slip' or damper='stick')")
     poles, vectors = np.linalg.eig(form.state)
     order = [i for i in np.argsort(np.abs(poles)) if poles[i].imag > 1e-6]
-    shapes = (form.basis @ vectors[: form.basis.shape[1], order]).T
+    shapes = form.shape(vectors[:, order]).T
     largest = shapes[np.arange(len(order)), np.argmax(np.abs(shapes), axis=1)]
     chosen = poles[order]
     return NaturalModes(

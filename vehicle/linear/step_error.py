@@ -20,8 +20,8 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from vehicle.errors import ConfigurationError
+from vehicle.linear.first_order import FirstOrder, first_order
 from vehicle.linear.matrices import CarMatrices
-from vehicle.linear.modes import state_matrix
 from vehicle.linear.stability import require_stable
 from vehicle.linear.step_map import StepMap, step_map, step_rows
 from vehicle.linear.strained_part import holding_parameter, moving_part
@@ -109,36 +109,35 @@ class _Judge:
 
     def __init__(self, car: CarModel, matrices: CarMatrices) -> None:
         self.car, self.matrices = car, matrices
-        self.states = {stuck: state_matrix(matrices, stuck=stuck) for stuck in (True, False)}
-        self.poles, self.shapes = np.linalg.eig(self.states[False][0])
+        self.forms = {stuck: first_order(matrices.system, stuck=stuck) for stuck in (True, False)}
+        self.poles, self.shapes = np.linalg.eig(self.forms[False].state)
         require_stable(car, matrices, self.poles)
-        self.stuck_poles = np.linalg.eigvals(self.states[True][0])
-        self.names = list(matrices.outputs)
-        self.outputs = np.array([matrices.outputs[name] for name in self.names])
+        self.stuck_poles = np.linalg.eigvals(self.forms[True].state)
+        self.names = list(matrices.system.outputs)
 
     def worst(self, step: float) -> Fault | None:
         """What is worst at a step [s]; None where the step does."""
         rows = step_rows(self.car, self.matrices, step)
         found: list[Fault] = []
-        for stuck, (_, basis) in self.states.items():
-            made = step_map(rows, self.matrices, basis, stuck=stuck)
+        for stuck, form in self.forms.items():
+            made = step_map(rows, form)
             values = np.linalg.eigvals(made.matrix).astype(complex)
-            found += self._growing(values, made.matrix, basis, step) or self._poles(values, step, stuck)
+            found += self._growing(values, made.matrix, form, step) or self._poles(values, step, stuck)
         return max(found, key=lambda fault: fault.severity, default=None) or self._ringing(made, step)
 
-    def _shape(self, matrix: Vector, value: complex, basis: Vector) -> Complex:
+    def _shape(self, matrix: Vector, value: complex, form: FirstOrder) -> Complex:
         """Displacements of the eigenvector of a value, by one step of inverse iteration."""
         shifted = matrix - value * (1.0 + 1e-10) * np.eye(len(matrix))
         start = np.random.default_rng(0).standard_normal(len(matrix))
-        return np.asarray(basis @ np.linalg.solve(shifted, start)[: basis.shape[1]])
+        return form.shape(np.linalg.solve(shifted, start))
 
-    def _growing(self, values: Complex, matrix: Vector, basis: Vector, step: float) -> list[Fault]:
+    def _growing(self, values: Complex, matrix: Vector, form: FirstOrder, step: float) -> list[Fault]:
         """The motion that grows fastest from step to step."""
         index = int(np.argmax(np.abs(values)))
         growth = float(abs(values[index]))
         if growth <= 1.0 + 1e-6:  # round-off of close eigenvalues
             return []
-        shape = self._shape(matrix, values[index], basis)
+        shape = self._shape(matrix, values[index], form)
         pole = complex(np.log(complex(values[index])) / step)
         return [Fault(words="at which the integration is unstable", severity=1e6 * growth, pole=pole, shape=shape)]
 
@@ -163,22 +162,19 @@ class _Judge:
             f"{100.0 * error[worst]:.0f} % off, allowed are {100.0 * POLE_LIMIT:g} %"
         )
         severity = float(error[worst]) / POLE_LIMIT
-        state, basis = self.states[stuck]
-        return [Fault(words=words, severity=severity, pole=pole, shape=self._shape(state, pole, basis))]
+        form = self.forms[stuck]
+        return [Fault(words=words, severity=severity, pole=pole, shape=self._shape(form.state, pole, form))]
 
     def _ringing(self, made: StepMap, step: float) -> Fault | None:
         """The acceleration whose ringing after a step of friction is farthest off; the map is that of sliding."""
         values, vectors = np.linalg.eig(made.matrix)
-        _, basis = self.states[False]
-        size = basis.shape[1]
+        form = self.forms[False]
+        size = form.basis.shape[1]
         velocity = slice(size, 2 * size)
-        places = self.outputs @ basis
+        places = np.array([form.output(name)[0] for name in self.names])
         poles, shapes = self.poles, self.shapes
-        forces = np.zeros((len(poles), 2))
-        mass = basis.T @ self.matrices.mass @ basis
-        forces[velocity] = np.linalg.solve(mass, basis[self.matrices.dampers].T)
         # a(t) = sum_i r_i exp(s_i t), and of the map r_i z_i^n.
-        exact = _residues(places @ shapes[velocity], np.linalg.solve(shapes, forces))
+        exact = _residues(places @ shapes[velocity], np.linalg.solve(shapes, form.friction))
         stepped = _residues(places @ vectors[velocity], np.linalg.solve(vectors, made.load) / step)
         faded, shrunk = poles - FADING, values * np.exp(-FADING * step)
         weight = -1.0 / (faded[:, None] + faded.conj())
@@ -195,7 +191,7 @@ class _Judge:
             f"{100.0 * error[worst]:+.0f} % off, allowed are {100.0 * LOCAL_LIMIT:g} %"
         )
         severity = float(abs(error[worst])) / LOCAL_LIMIT
-        return Fault(words=words, severity=severity, pole=complex(poles[index]), shape=basis @ shapes[:size, index])
+        return Fault(words=words, severity=severity, pole=complex(poles[index]), shape=form.shape(shapes[:, index]))
 
 
 def _residues(outputs: npt.NDArray[Any], inputs: npt.NDArray[Any]) -> npt.NDArray[Any]:

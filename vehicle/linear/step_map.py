@@ -19,6 +19,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.linear.first_order import FirstOrder
 from vehicle.linear.matrices import CarMatrices
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
@@ -46,14 +47,12 @@ class StepRows:
 
     Attributes:
         timestep: h [s].
-        mass: M + J' D J without the dampers; (n, n).
-        dampers: weight D of the viscous part of the dampers [kg]; (2,).
+        mass: M + J' D J, with the viscous part of the dampers; (n, n).
         decay, gain, slope, average: e, g, s and beta of the branches; (b,).
     """
 
     timestep: float
     mass: Vector
-    dampers: Vector
     decay: Vector
     gain: Vector
     slope: Vector
@@ -74,10 +73,11 @@ def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows
     weights[e.rows] = rows.impedance
     weights[e.springs] = rows.spring_impedance
     present = e.branch_stiffness > 0.0
+    mass = matrices.system.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model))
+    mass[matrices.dampers, matrices.dampers] += rows.damper_impedance
     return StepRows(
         timestep=timestep,
-        mass=matrices.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model)),
-        dampers=rows.damper_impedance,
+        mass=mass,
         decay=rows.decay[present],
         gain=rows.branch_gain[present],
         slope=rows.branch_slope[present],
@@ -85,34 +85,29 @@ def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows
     )
 
 
-def step_map(rows: StepRows, matrices: CarMatrices, basis: Vector, *, stuck: bool) -> StepMap:
+def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
     """Map of one step of a car.
 
     Args:
         rows: of the step.
-        matrices: of the car.
-        basis: N of `free_basis`; (n, m).
-        stuck: True with the dampers locked, False with their viscous part alone.
+        form: of the car, with its dampers stuck or sliding.
 
     Returns:
         The map.
     """
-    h, mass, damping = rows.timestep, rows.mass.copy(), matrices.damping.copy()
-    if not stuck:
-        mass[matrices.dampers, matrices.dampers] += rows.dampers
-        damping[matrices.dampers, matrices.dampers] += matrices.viscous
-    branch = matrices.branch_rows @ basis
+    h, basis, system = rows.timestep, form.basis, form.system
+    branch = system.branch_rows @ basis
     e, beta = rows.decay, rows.average
     force, rate = e + beta * ((e - 2.0) * e + 1.0), (1.0 + beta * (e - 1.0)) * rows.gain
     forces = np.hstack(
         [
-            -basis.T @ matrices.stiffness @ basis,
-            -basis.T @ damping @ basis - branch.T @ (rate[:, None] * branch),
+            -basis.T @ system.stiffness @ basis,
+            -basis.T @ system.damping @ basis - branch.T @ (rate[:, None] * branch),
             -branch.T * force,
-            basis[matrices.dampers].T,
+            (system.slide_rows @ basis).T,
         ]
     )
-    acceleration = np.linalg.solve(basis.T @ mass @ basis, forces)
+    acceleration = np.linalg.solve(basis.T @ rows.mass @ basis, forces)
     size, count = basis.shape[1], len(branch)
     v, f = slice(size, 2 * size), slice(2 * size, 2 * size + count)
     whole = np.zeros((2 * size + count, 2 * size + count + 2))

@@ -16,10 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg
 
+from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices
-from vehicle.linear.modes import state_matrix
 from vehicle.names import WHEELS
 
 Vector = npt.NDArray[np.float64]
@@ -78,13 +77,13 @@ class PoleModel:
 
     def _position(self, channel: str) -> tuple[Complex, Vector, Vector]:
         """Displacement of the place, of which `vehicle.simulation.acceleration` makes the channel."""
-        return self.matrices.outputs[channel] @ self.modal, np.zeros(2), np.zeros(2)
+        return self.matrices.system.output(channel)[0] @ self.modal, np.zeros(2), np.zeros(2)
 
     def _tyre(self, channel: str) -> tuple[Complex, Vector, Vector]:
         """Tyre force on the wheel: k (z - J u) + c (z' - J u')."""
         m, index = self.matrices, WHEELS.index(channel.split("_")[1])
-        spring = m.plate_stiffness[index] @ self.modal
-        drag = m.plate_damping[index] @ (self.modal * self.poles)
+        spring = m.system.input_stiffness[:, index] @ self.modal
+        drag = m.system.input_damping[:, index] @ (self.modal * self.poles)
         here = np.zeros(2)
         here[index] = 1.0
         return -(spring + drag), m.tyre_stiffness[index] * here, m.tyre_damping[index] * here
@@ -99,15 +98,10 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     Returns:
         The model, in continuous time.
     """
-    state, basis = state_matrix(matrices, stuck=False)
-    size = basis.shape[1]
-    mass = scipy.linalg.cho_factor(basis.T @ matrices.mass @ basis)
-    push = scipy.linalg.cho_solve(mass, basis.T @ matrices.plate_stiffness.T)
-    drag = scipy.linalg.cho_solve(mass, basis.T @ matrices.plate_damping.T)
-    grip = scipy.linalg.cho_solve(mass, basis[matrices.dampers].T)
-    inputs = np.zeros((len(state), 6))
-    inputs[size : 2 * size] = np.hstack([push, drag, grip])
-    poles, vectors = np.linalg.eig(state)
+    form = first_order(matrices.system)
+    w = len(form.system.inputs)
+    inputs = np.hstack([form.input, form.input_rate, form.friction])
+    poles, vectors = np.linalg.eig(form.state)
     kept = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
     pairs = int(np.count_nonzero(poles.imag > 0.0))
     residues = np.linalg.solve(vectors, inputs.astype(complex))[kept]
@@ -116,10 +110,10 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     return PoleModel(
         poles=poles[kept].astype(complex),
         pairs=pairs,
-        height=residues[:, :2],
-        velocity=residues[:, 2:4],
-        force=residues[:, 4:],
-        slip=basis[matrices.dampers] @ weighted[size : 2 * size],
-        modal=basis @ weighted[:size],
+        height=residues[:, :w],
+        velocity=residues[:, w : 2 * w],
+        force=residues[:, 2 * w :],
+        slip=form.slide @ weighted,
+        modal=form.shape(weighted),
         matrices=matrices,
     )
