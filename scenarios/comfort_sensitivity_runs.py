@@ -13,7 +13,7 @@ from scenarios.car_runs import CarRuns
 from scenarios.comfort_observation import Observation, Question, RoadInput, chosen_engine, observe
 from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.car import Run
-from vehicle.parameters.number_paths import value_of
+from vehicle.parameters.paths import value_of
 from vehicle.parameters.vehicle import Vehicle
 
 Changes = tuple[str, ...]

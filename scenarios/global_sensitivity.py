@@ -20,10 +20,13 @@ from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.command_line import Parser, ProgressLine, parse_and_run
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.output_folder import write_json
+from vehicle.parameters.paths import unit_of
+from vehicle.parameters.ranges import Range
+from vehicle.parameters.vehicle import Vehicle
 from vehicle.sweeps.case import Case, table_cases
 from vehicle.sweeps.executors import executor_factory
 from vehicle.sweeps.indices import morris_effects, morris_sample, sobol_indices, sobol_sample
-from vehicle.sweeps.ranges import Range, sample
+from vehicle.sweeps.sample import sample
 from vehicle.sweeps.store import sweep_folder
 from vehicle.sweeps.sweep import sweep
 from vehicle.sweeps.table import SweepTable
@@ -32,32 +35,29 @@ HALF = "half to one and a half times the final set of the source"
 TENTH = "+-20 %: another spring is a development decision of that size"
 
 RANGES = (
-    Range(path="damper.coulomb_friction", low=62.5, high=250.0, unit="N", reason="what the source varied (figure 4.4)"),
-    Range(path="damper.viscous", low=1125.0, high=3375.0, unit="N s/m", reason=HALF),
+    Range(path="damper.coulomb_friction", low=62.5, high=250.0, reason="what the source varied (figure 4.4)"),
+    Range(path="damper.viscous", low=1125.0, high=3375.0, reason=HALF),
     Range(
         path="bushings.suspension_mount.stiffness.z",
         low=3.5e5,
         high=14e5,
-        unit="N/m",
         reason="what the source varied (figure 4.12)",
     ),
     Range(
         path="bushings.suspension_mount.damping.z",
         low=0.0,
         high=2000.0,
-        unit="N s/m",
         reason="what the source varied (figure 4.8)",
     ),
-    Range(path="main_spring.stiffness", low=2.0e4, high=3.0e4, unit="N/m", reason=TENTH),
-    Range(path="stabilizer.torsional_stiffness", low=2.5e3, high=7.5e3, unit="N m/rad", reason=HALF),
-    Range(path="bushings.tyre.stiffness.z", low=2.0e5, high=3.0e5, unit="N/m", reason="+-20 %: pressure and carcass"),
-    Range(path="bushings.tyre.damping.z", low=0.0, high=800.0, unit="N s/m", reason="none to twice the final set"),
-    Range(path="bushings.hydromount.stiffness.z", low=2.0e5, high=6.0e5, unit="N/m", reason=HALF),
+    Range(path="main_spring.stiffness", low=2.0e4, high=3.0e4, reason=TENTH),
+    Range(path="stabilizer.torsional_stiffness", low=2.5e3, high=7.5e3, reason=HALF),
+    Range(path="bushings.tyre.stiffness.z", low=2.0e5, high=3.0e5, reason="+-20 %: pressure and carcass"),
+    Range(path="bushings.tyre.damping.z", low=0.0, high=800.0, reason="none to twice the final set"),
+    Range(path="bushings.hydromount.stiffness.z", low=2.0e5, high=6.0e5, reason=HALF),
     Range(
         path="body.frequency_scale",
         low=0.8,
         high=1.25,
-        unit="-",
         reason="body modes 20 % lower to 25 % higher: 0.64 to 1.56 times as stiff",
     ),
 )
@@ -221,7 +221,9 @@ def _plain(content: dict[str, object]) -> dict[str, object]:
 
 def _ranges_text() -> str:
     lines = ["| parameter | from | to | unit | why |", "|---|---|---|---|---|"]
-    lines += [f"| {one.path} | {one.low:g} | {one.high:g} | {one.unit} | {one.reason} |" for one in RANGES]
+    lines += [
+        f"| {one.path} | {one.low:g} | {one.high:g} | {unit_of(Vehicle, one.path)} | {one.reason} |" for one in RANGES
+    ]
     return "\n".join(lines)
 
 

@@ -11,9 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.output_folder import write_whole
+from vehicle.parameters.paths import unit_of
+from vehicle.parameters.ranges import Range
+from vehicle.parameters.vehicle import Vehicle
 from vehicle.rendering.figure import COLOURS, saved_figure
 from vehicle.sweeps.indices import MorrisEffects, SobolIndices
-from vehicle.sweeps.ranges import Range
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -79,7 +81,7 @@ def draw_scatter(
             for index, one in enumerate(ranges):
                 axes = panels[index // columns][index % columns]
                 axes.plot(points[:, index], comfort, ".", markersize=3, color=COLOURS[0])
-                axes.set_xlabel(f"{_short(one.path)} [{one.unit}]", fontsize=7)
+                axes.set_xlabel(f"{_short(one.path)} [{unit_of(Vehicle, one.path)}]", fontsize=7)
                 axes.tick_params(labelsize=7)
                 axes.grid(alpha=0.3)
             for row in panels:

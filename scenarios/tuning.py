@@ -28,10 +28,11 @@ from scenarios.tuning_parameters import AUTHORS, QUICK, SLIDING, TEXT, parse_par
 from vehicle.car import Car, Run
 from vehicle.command_line import ProgressLine
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.paths import overrides_of
+from vehicle.parameters.ranges import Range
 from vehicle.tuning.fit import Target, fit
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.full_steps import FullSteps, full_steps
-from vehicle.tuning.parameter import Parameter, overrides_of
 from vehicle.tuning.record_target import RecordTarget
 from vehicle.tuning.result import TuningResult
 
@@ -54,7 +55,7 @@ class Tuning:
     def fit(
         self,
         name: str,
-        parameters: Sequence[Parameter],
+        parameters: Sequence[Range],
         targets: Sequence[Target],
         frozen: Mapping[str, float] = MappingProxyType({}),
     ) -> TuningResult:
@@ -160,7 +161,7 @@ class AuthorsSteps:
         }
 
 
-def authors_steps(tuning: Tuning, parameters: Sequence[Parameter], measurements: Sequence[Measurement]) -> AuthorsSteps:
+def authors_steps(tuning: Tuning, parameters: Sequence[Range], measurements: Sequence[Measurement]) -> AuthorsSteps:
     """Fit the low level, which comes first, and the bump records, one after the other."""
     bumps = [one for one in measurements if isinstance(one.target, RecordTarget)]
     records = [one.target for one in bumps]
@@ -175,7 +176,7 @@ def authors_steps(tuning: Tuning, parameters: Sequence[Parameter], measurements:
 def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Fit parameters to FRFs of files."""
     tuning = Tuning(runs)
-    parameters: Sequence[Parameter] = parse_parameters(options.fit, tuning.vehicle)
+    parameters: Sequence[Range] = parse_parameters(options.fit, tuning.vehicle)
     measurements = own_measurements(options)
     if not options.fit:
         stuck = all(isinstance(one.target, FrfTarget) and one.target.signal is None for one in measurements)

@@ -150,7 +150,7 @@ def _values(result: TuningResult, final: FullSteps | None) -> str:
         known = not math.isnan(error)
         shift = f"{moved[one.path]:+.2f}" if one.path in moved else ""
         lines.append(
-            f"| {one.path} | {one.lower:g} to {one.upper:g} | {one.start:g} | {value:.4g} "
+            f"| {one.path} | {one.low:g} to {one.high:g} | {one.start:g} | {value:.4g} "
             f"| {f'{error:.2g}' if known else 'none'} | {f'{100 * error / value:.2g} %' if known else ''} "
             f"| {_strongest(result, one.path)} | {shift} |"
         )

@@ -17,11 +17,11 @@ from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
 from vehicle.output_folder import write_whole
+from vehicle.parameters.paths import overrides_of
 from vehicle.studies.shaker import FRAME
 from vehicle.studies.tables import write_frf
 from vehicle.tuning.frf_file import read_frf
 from vehicle.tuning.frf_target import FrfTarget
-from vehicle.tuning.parameter import overrides_of
 from vehicle.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z", "suspension_mount_fr_acc_z", "seat_rail_acc_z")

@@ -132,12 +132,13 @@ def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[
         ConfigurationError: a path does not exist, or its value in the first row is none.
     """
     from vehicle.errors import ConfigurationError
-    from vehicle.parameters import toml_file
+    from vehicle.parameters.paths import override
+    from vehicle.parameters.toml_file import read_table as read_toml
     from vehicle.parameters.vehicle import FOCUS_FILE
 
-    table = toml_file.override(toml_file.read_table(FOCUS_FILE if vehicle is None else vehicle), overrides)
+    table = override(read_toml(FOCUS_FILE if vehicle is None else vehicle), overrides)
     try:
-        toml_file.override(table, [f"{path}={value}" for path, value in zip(paths, row, strict=True)])
+        override(table, [f"{path}={value}" for path, value in zip(paths, row, strict=True)])
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from vehicle.assembly.connections import STRUCTURAL_LOSS_TIME, connections
-from vehicle.parameters.toml_file import build, override, read_table
+from vehicle.parameters.paths import override
+from vehicle.parameters.toml_file import build, read_table
 from vehicle.parameters.vehicle import FOCUS_FILE, Vehicle
 
 OMEGA = 2.0 * np.pi * np.array([0.01, 1.0, 7.0, 28.0, 50.0, 1e4])

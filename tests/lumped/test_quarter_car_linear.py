@@ -206,7 +206,7 @@ BAD = [
     ),
     (
         {"damper": "slip", "vary": {"mount.stifness": 1.0}},
-        "mount.stifness: unknown parameter; the nearest known name is mount.stiffness",
+        "no parameter mount.stifness; the nearest is mount.stiffness",
     ),
     ({"damper": "stuck"}, "damper: found 'stuck', allowed are slip, stick, friction"),
     ({"damper": "slip", "engine": "diesel"}, "engine: found 'diesel', allowed are none, linear, elastomer"),

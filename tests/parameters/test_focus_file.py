@@ -11,7 +11,8 @@ import pytest
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.parts import CENTER_PARTS, SIDE_PARTS, Part
-from vehicle.parameters.toml_file import as_table, build, override, read_table, write_text
+from vehicle.parameters.paths import override
+from vehicle.parameters.toml_file import as_table, build, read_table, write_text
 from vehicle.parameters.vehicle import FOCUS_FILE, Vehicle, load_vehicle
 
 LINE = re.compile(r"^(?P<name>[a-z_0-9]+) = (?P<value>.+?)\s+# \[(?P<unit>[^]]+)\] (?P<source>.+)$")

@@ -9,7 +9,8 @@ import pytest
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, FrequencyBands, damper_choice_parameters
 from vehicle.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
-from vehicle.parameters.toml_file import build, override, read_table
+from vehicle.parameters.paths import override
+from vehicle.parameters.toml_file import build, read_table
 
 FILES = [(PUBLISHED, HalfCarRiderParameters), (FITTED, DamperChoiceParameters)]
 

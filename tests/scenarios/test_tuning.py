@@ -13,11 +13,11 @@ from tests.tuning.two_masses import TRUE, MeasuredMasses
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.number_paths import value_of
+from vehicle.parameters.paths import value_of
+from vehicle.parameters.ranges import Range
 from vehicle.studies.tables import write_frf
 from vehicle.tuning.fit import fit
 from vehicle.tuning.full_steps import FullSteps
-from vehicle.tuning.parameter import Parameter
 
 MOUNT = "bushings.suspension_mount.stiffness.z"
 CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")
@@ -47,7 +47,7 @@ def test_hidden_values_are_found(results):
 def test_the_hidden_car_is_no_secret_of_the_fit():
     # Starts are those of the authors, and no start or bound of the fit is a hidden value.
     assert {one.path for one in AUTHORS} == set(HIDDEN)
-    assert all(HIDDEN[one.path] not in (one.lower, one.start, one.upper) for one in AUTHORS)
+    assert all(HIDDEN[one.path] not in (one.low, one.start, one.high) for one in AUTHORS)
 
 
 def test_own_files(tmp_path, capsys):
@@ -90,7 +90,7 @@ def test_own_files(tmp_path, capsys):
 
 def test_parameters_of_the_command_line(car):
     one, two = parse_parameters(["damper.viscous=500:5000", f"{MOUNT}=1e5:1e6:5e5"], car.vehicle)
-    assert (one.lower, one.upper, one.start) == (500.0, 5000.0, value_of(car.vehicle, "damper.viscous"))
+    assert (one.low, one.high, one.start) == (500.0, 5000.0, value_of(car.vehicle, "damper.viscous"))
     assert (two.path, two.start) == (MOUNT, 5e5)
     for text in ("damper.viscous=1", "damper.viscous=a:b", "damper.viscous=1:2:3:4"):
         with pytest.raises(ConfigurationError, match="needed is PATH=LOWER:UPPER"):
@@ -100,10 +100,8 @@ def test_parameters_of_the_command_line(car):
 @pytest.fixture(scope="module")
 def masses():
     """A fit of four parameters, of which one acts on nothing."""
-    parameters = [
-        Parameter(path=path, lower=value / 9, upper=9 * value, start=1.4 * value) for path, value in TRUE.items()
-    ]
-    nothing = Parameter(path="colour", lower=1.0, upper=9.0, start=2.0)
+    parameters = [Range(path=path, low=value / 9, high=9 * value, start=1.4 * value) for path, value in TRUE.items()]
+    nothing = Range(path="colour", low=1.0, high=9.0, start=2.0)
     return fit([*parameters, nothing], [MeasuredMasses(seed=9)], dict)
 
 

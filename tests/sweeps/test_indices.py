@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.parameters.ranges import Range
 from vehicle.sweeps import indices
 from vehicle.sweeps.indices import morris_effects, morris_sample, sobol_indices, sobol_sample
-from vehicle.sweeps.ranges import Range, sample
+from vehicle.sweeps.sample import sample
 
-ANGLES = [Range(path=f"x{i}", low=-np.pi, high=np.pi, unit="-", reason="Ishigami") for i in range(3)]
-UNIT = [Range(path=f"x{i}", low=0.0, high=2.0, unit="-", reason="linear") for i in range(3)]
+ANGLES = [Range(path=f"x{i}", low=-np.pi, high=np.pi) for i in range(3)]
+UNIT = [Range(path=f"x{i}", low=0.0, high=2.0) for i in range(3)]
 
 
 def ishigami(x, a=7.0, b=0.1):
@@ -59,8 +60,8 @@ def test_morris_effects_of_a_linear_function_are_its_slopes():
 @pytest.mark.parametrize("method", ["sobol", "lhs"])
 def test_samples_fill_the_box(method):
     box = [
-        Range(path="a", low=10.0, high=20.0, unit="N", reason=""),
-        Range(path="b", low=-1.0, high=0.0, unit="N", reason=""),
+        Range(path="a", low=10.0, high=20.0),
+        Range(path="b", low=-1.0, high=0.0),
     ]
     points = sample(box, 64, method=method, seed=5)
     assert points.shape == (64, 2)
@@ -75,7 +76,7 @@ def test_samples_fill_the_box(method):
 
 def test_bad_arguments():
     with pytest.raises(ConfigurationError, match="must be ascending"):
-        Range(path="a", low=1.0, high=1.0, unit="-", reason="")
+        Range(path="a", low=1.0, high=1.0)
     with pytest.raises(ConfigurationError, match="found 'random', allowed are sobol, lhs"):
         sample(UNIT, 8, method="random")
     with pytest.raises(ConfigurationError, match="found 1 points of 3 parameters"):

@@ -5,13 +5,13 @@ import pytest
 
 from tests.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses, response
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.parameters.ranges import Range
 from vehicle.tuning.fit import fit
-from vehicle.tuning.parameter import Parameter
 
 PARAMETERS = (
-    Parameter(path="lower", lower=5e4, upper=1e6, start=1.6e5),
-    Parameter(path="upper", lower=5e3, upper=2e5, start=5e4),
-    Parameter(path="damping", lower=2e2, upper=1e4, start=700.0),
+    Range(path="lower", low=5e4, high=1e6, start=1.6e5),
+    Range(path="upper", low=5e3, high=2e5, start=5e4),
+    Range(path="damping", low=2e2, high=1e4, start=700.0),
 )
 
 
@@ -83,9 +83,9 @@ def test_residuals_that_know_their_neighbours_count_less():
 
 
 def test_a_pair_that_acts_as_one_is_named_and_one_of_it_held():
-    rim = Parameter(path="rim", lower=2e5, upper=5e6, start=5e5)
+    rim = Range(path="rim", low=2e5, high=5e6, start=5e5)
     target = MeasuredMasses({**TRUE, "rim": 5e5, "lower": 5e5}, seed=2)
-    tyre = Parameter(path="lower", lower=5e4, upper=2e6, start=4e5)
+    tyre = Range(path="lower", low=5e4, high=2e6, start=4e5)
     result = fitted(target, (tyre, *PARAMETERS[1:], rim))
     assert len(result.unidentified) == 1
     found = result.unidentified[0]
@@ -102,13 +102,13 @@ def test_a_pair_that_acts_as_one_is_named_and_one_of_it_held():
 
 
 def test_a_parameter_without_influence_is_held_alone():
-    result = fitted(MeasuredMasses(seed=2), (*PARAMETERS, Parameter(path="colour", lower=1.0, upper=9.0, start=2.0)))
+    result = fitted(MeasuredMasses(seed=2), (*PARAMETERS, Range(path="colour", low=1.0, high=9.0, start=2.0)))
     assert [(one.path, one.partners, one.spread) for one in result.unidentified] == [("colour", (), np.inf)]
     assert result.values["colour"] == 2.0
 
 
 def test_a_bound_in_the_way_is_named():
-    tight = (Parameter(path="lower", lower=5e4, upper=2e5, start=1.6e5), *PARAMETERS[1:])
+    tight = (Range(path="lower", low=5e4, high=2e5, start=1.6e5), *PARAMETERS[1:])
     result = fitted(MeasuredMasses(seed=2), tight)
     assert result.at_bound == ("lower",)
     assert result.values["lower"] == pytest.approx(2e5, rel=1e-3)
@@ -140,8 +140,10 @@ def test_what_cannot_be_fitted_is_refused():
         fit(PARAMETERS, [], dict)
     with pytest.raises(ConfigurationError, match="lower: given 2 times"):
         fitted(MeasuredMasses(), (*PARAMETERS, PARAMETERS[0]))
+    with pytest.raises(ConfigurationError, match="colour: has no start"):
+        fitted(MeasuredMasses(), (*PARAMETERS, Range(path="colour", low=1.0, high=9.0)))
     with pytest.raises(ConfigurationError, match="can tell none of the parameters: colour"):
-        fit([Parameter(path="colour", lower=1.0, upper=9.0, start=2.0)], [MeasuredMasses()], lambda _: TRUE)
+        fit([Range(path="colour", low=1.0, high=9.0, start=2.0)], [MeasuredMasses()], lambda _: TRUE)
 
 
 def test_a_model_that_fails_is_refused():
@@ -161,8 +163,8 @@ def test_a_model_that_fails_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("lower", "upper", "start"), [(0.0, 2.0, 1.0), (1.0, 2.0, 1.0), (2.0, 1.0, 1.5), (1.0, np.inf, 2.0), (1, 2, np.nan)]
+    ("lower", "upper", "start"), [(0.0, 2.0, 1.0), (1.0, 2.0, 1.0), (2.0, 1.0, 1.5), (1.0, np.inf, 2.0)]
 )
 def test_bounds_that_are_none_are_refused(lower, upper, start):
     with pytest.raises(ConfigurationError, match=r"parameter a: found bounds .*0 < lower < start < upper"):
-        Parameter(path="a", lower=lower, upper=upper, start=start)
+        Range(path="a", low=lower, high=upper, start=start)

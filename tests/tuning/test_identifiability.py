@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from vehicle.parameters.ranges import Range
 from vehicle.tuning.identifiability import WIDEST, covariance, worst_direction
-from vehicle.tuning.parameter import Parameter
 
-A = Parameter(path="a", lower=1.0, upper=np.e**2, start=2.0)  # half width 1
-B = Parameter(path="b", lower=1.0, upper=np.e**4, start=2.0)  # half width 2
+A = Range(path="a", low=1.0, high=np.e**2, start=2.0)  # half width 1
+B = Range(path="b", low=1.0, high=np.e**4, start=2.0)  # half width 2
 
 
 def test_covariance_is_the_inverse_of_the_normal_matrix():

@@ -8,18 +8,19 @@ import pytest
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.bump import bump
+from vehicle.parameters.paths import overrides_of
+from vehicle.parameters.ranges import Range
 from vehicle.tuning.fit import fit
 from vehicle.tuning.frf_file import FrfData
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.full_steps import SMALL, full_steps
-from vehicle.tuning.parameter import Parameter, overrides_of
 from vehicle.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")
 FREQUENCY = np.arange(5.0, 41.0)
-MOUNT = Parameter(path="bushings.suspension_mount.stiffness.z", lower=2e5, upper=3e6, start=8.2e5)
-VISCOUS = Parameter(path="damper.viscous", lower=3e2, upper=8e3, start=1500.0)
-FRICTION = Parameter(path="damper.coulomb_friction", lower=15.0, upper=400.0, start=75.0)
+MOUNT = Range(path="bushings.suspension_mount.stiffness.z", low=2e5, high=3e6, start=8.2e5)
+VISCOUS = Range(path="damper.viscous", low=3e2, high=8e3, start=1500.0)
+FRICTION = Range(path="damper.coulomb_friction", low=15.0, high=400.0, start=75.0)
 NOISE = 0.03
 
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from vehicle.errors import ConfigurationError
 from vehicle.linear.matrices import CarMatrices
 from vehicle.names import AXES
-from vehicle.parameters.number_paths import value_of
+from vehicle.parameters.paths import value_of
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.element_rows import ElementRows

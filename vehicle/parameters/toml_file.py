@@ -1,11 +1,10 @@
-"""TOML files into parameter objects and back: strict names, strict types, dotted overrides."""
+"""TOML files into parameter objects and back: strict names, strict types."""
 
 from __future__ import annotations
 
 import dataclasses
 import difflib
 import functools
-import re
 import tomllib
 import types
 import typing
@@ -14,7 +13,6 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES
 
 T = TypeVar("T")
 
@@ -39,7 +37,7 @@ def read_table(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > LARGEST_FILE:
             raise ConfigurationError(f"{path}: larger than {LARGEST_FILE / 1e6:g} MB; this is no parameter file")
-        return _copy(_parsed(path.read_text(encoding="utf-8")))
+        return copy_table(_parsed(path.read_text(encoding="utf-8")))
     except RecursionError:
         raise ConfigurationError(f"{path}: tables or lists are nested too deep; this is no parameter file") from None
     except UnicodeDecodeError as error:
@@ -93,55 +91,6 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
         elif not path and message.startswith(cls.__name__ + "."):
             message = message[len(cls.__name__) + 1 :]
         raise ConfigurationError(message) from None
-
-
-def override(table: dict[str, Any], assignments: Iterable[str]) -> dict[str, Any]:
-    """Replace single values of nested dictionaries by dotted paths.
-
-    Args:
-        table: as of `read_table`; not changed.
-        assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML. A component of a
-            list of three has its axis behind the path: "bushings.suspension_mount.stiffness.z=5e5".
-
-    Returns:
-        A new table.
-
-    Raises:
-        ConfigurationError: no '=' in the text, a value that is not TOML, or a path that does not exist.
-    """
-    result = _copy(table)
-    for assignment in assignments:
-        path, separator, text = assignment.partition("=")
-        if not separator or not path.strip():
-            raise ConfigurationError(f"--set {assignment}: needed is PATH=VALUE, as in damper.coulomb_friction=93.75")
-        keys = path.strip().split(".")
-        inner: Any = result
-        outer: Any = result
-        axis = None
-        for depth, key in enumerate(keys):
-            if depth == len(keys) - 1 and key in AXES and isinstance(inner, list) and len(inner) == len(AXES):
-                axis = AXES.index(key)
-                break
-            if not isinstance(inner, dict) or key not in inner:
-                known = _paths(result)
-                near = difflib.get_close_matches(path.strip(), known, n=1, cutoff=0.0)
-                raise ConfigurationError(f"--set {assignment}: no parameter {path.strip()}; the nearest is {near[0]}")
-            outer, inner = inner, inner[key]
-        if isinstance(inner, dict):
-            inside = ", ".join(_join(path.strip(), key) for key in list(inner)[:6])
-            raise ConfigurationError(f"--set {assignment}: {path.strip()} is a group; set one of {inside}")
-        if axis is None:
-            value = _value(assignment, text.strip(), inner)
-            if isinstance(inner, list) and len(inner) == len(AXES) and isinstance(value, int | float):
-                raise ConfigurationError(
-                    f"--set {assignment}: {path.strip()} is a vector; give all as [x, y, z], or one component with its "
-                    f"axis behind the path: {path.strip()}.z={text.strip()}"
-                )
-            outer[keys[-1]] = value
-        else:
-            value = _value(assignment, text.strip(), inner[axis])
-            outer[keys[-2]] = [value if index == axis else member for index, member in enumerate(inner)]
-    return result
 
 
 def as_table(instance: Any) -> dict[str, Any]:
@@ -253,38 +202,18 @@ def _number(value: Any, path: str) -> float:
         raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, needed is a finite number") from None
 
 
-def _value(assignment: str, text: str, old: Any) -> Any:
-    """Parse the value of an override; a bare word stands for a text where a text is wanted."""
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except RecursionError:
-        raise ConfigurationError(f"--set {assignment[:60]}...: brackets are nested too deep") from None
-    except tomllib.TOMLDecodeError:
-        if isinstance(old, str) and re.fullmatch(r"[A-Za-z0-9_.-]+", text):
-            return text
-        try:
-            return float(text)  # ".5" and "1." are numbers to everybody but TOML
-        except ValueError:
-            pass
-        raise ConfigurationError(f"--set {assignment}: {text!r} is not a number, a list of numbers or a text") from None
-
-
 def _unknown(path: str, key: str, known: Iterable[str]) -> str:
     near = difflib.get_close_matches(key, list(known), n=1, cutoff=0.0)
     nearest = f"; the nearest known name is {near[0]}" if near else ""
     return f"{path}: unknown parameter{nearest}"
 
 
-def _paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
-    found: list[str] = []
-    for key, value in table.items():
-        place = _join(prefix, key)
-        found.extend(_paths(value, place) if isinstance(value, Mapping) else [place])
-    return found
-
-
-def _copy(table: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: _copy(value) if isinstance(value, Mapping) else value for key, value in table.items()}
+def copy_table(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Copy nested dictionaries, lists included."""
+    return {
+        key: copy_table(value) if isinstance(value, Mapping) else list(value) if isinstance(value, list) else value
+        for key, value in table.items()
+    }
 
 
 def _join(path: str, name: str) -> str:

@@ -12,9 +12,10 @@ from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.elements import Bushings, Damper, MainSpring, Stabilizer
 from vehicle.parameters.hardpoints import Hardpoints
 from vehicle.parameters.parts import Part, require_parts
+from vehicle.parameters.paths import override
 from vehicle.parameters.plausible import require_plausible
 from vehicle.parameters.quantity import quantity, validate
-from vehicle.parameters.toml_file import build, override, read_table
+from vehicle.parameters.toml_file import build, read_table
 
 FOCUS_FILE = Path(str(resources.files("vehicle.parameters") / "focus.toml"))
 """The Ford-Focus-like car of source 1."""

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
-from vehicle.sweeps.ranges import Range
+from vehicle.parameters.ranges import Range
 
 Vector = npt.NDArray[np.float64]
 

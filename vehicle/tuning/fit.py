@@ -18,8 +18,8 @@ import numpy.typing as npt
 from scipy.optimize import least_squares
 
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.parameters.ranges import Range, checked_ranges
 from vehicle.tuning.identifiability import Unidentified, covariance, worst_direction
-from vehicle.tuning.parameter import Parameter, checked_parameters
 from vehicle.tuning.residual_rows import RowStatistics, row_statistics
 from vehicle.tuning.result import TuningResult
 
@@ -60,7 +60,7 @@ class Target(Protocol):
 
 
 def fit(
-    parameters: Sequence[Parameter],
+    parameters: Sequence[Range],
     targets: Sequence[Target],
     build: Callable[[Mapping[str, float]], Any],
     *,
@@ -84,7 +84,7 @@ def fit(
         ConfigurationError: no parameter or target, a parameter twice, or more parameters than values.
         SimulationError: the model gives residuals that are not finite.
     """
-    problem = _Problem(checked_parameters(parameters), targets, build, progress)
+    problem = _Problem(checked_ranges(parameters), targets, build, progress)
     start = problem.residuals(np.zeros(len(parameters)))
     problem.weights = np.ones(start.size)
     point, answer = problem.solve(np.zeros(len(parameters)), COARSE, most_iterations)
@@ -112,7 +112,7 @@ def fit(
     return problem.result(point, start, raw, inner, jacobian, tuple(held), answer)
 
 
-def _open_directions(jacobian: Vector, parameters: list[Parameter]) -> list[Unidentified]:
+def _open_directions(jacobian: Vector, parameters: list[Range]) -> list[Unidentified]:
     """Parameters to hold, one after the other, until every direction that is left is known."""
     found: list[Unidentified] = []
     left = list(range(len(parameters)))
@@ -137,7 +137,7 @@ class _Problem:
 
     def __init__(
         self,
-        parameters: tuple[Parameter, ...],
+        parameters: tuple[Range, ...],
         targets: Sequence[Target],
         build: Callable[[Mapping[str, float]], Any],
         progress: Callable[[int, float], None] | None,
@@ -207,7 +207,7 @@ class _Problem:
     def bounds(self, index: int) -> tuple[float, float]:
         """Bounds of u."""
         one = self.parameters[index]
-        return float(np.log(one.lower / one.start)), float(np.log(one.upper / one.start))
+        return float(np.log(one.low / one.start)), float(np.log(one.high / one.start))
 
     def inside(self, point: Vector) -> list[int]:
         """The free parameters that are not at a bound."""

@@ -97,7 +97,7 @@ def full_steps(
         for parameter in result.parameters:
             if parameter.path in shift:
                 moved = values[parameter.path] * float(np.exp(shift[parameter.path]))
-                values[parameter.path] = float(np.clip(moved, parameter.lower, parameter.upper))
+                values[parameter.path] = float(np.clip(moved, parameter.low, parameter.high))
     freedom = 1.0 - len(result.free) / joined.size
     names = [name for target in targets for name in target.rows]
     weighted = joined * result.weights

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.tuning.parameter import Parameter
+from vehicle.parameters.ranges import Range
 
 Vector = npt.NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class Unidentified:
         )
 
 
-def worst_direction(jacobian: Vector, parameters: Sequence[Parameter]) -> Unidentified | None:
+def worst_direction(jacobian: Vector, parameters: Sequence[Range]) -> Unidentified | None:
     """The parameter to hold, where the data leave a direction open.
 
     With residuals of unit variance and columns d r / d (u / half width), a singular value s is one over the standard

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.parameters.ranges import Range
 from vehicle.tuning.identifiability import Unidentified
-from vehicle.tuning.parameter import Parameter
 from vehicle.tuning.residual_rows import RowStatistics
 
 Vector = npt.NDArray[np.float64]
@@ -39,7 +39,7 @@ class TuningResult:
         weights: of the residuals, one for each row: 1 / (assumed standard deviation times its scale).
     """
 
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[Range, ...]
     values: Mapping[str, float]
     standard_errors: Mapping[str, float]
     free: tuple[str, ...]

@@ -1,41 +1,19 @@
-"""Ranges of parameters, and samples over them."""
+"""Samples over ranges of parameters."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.ranges import Range
 
 Vector = npt.NDArray[np.float64]
 
 METHODS = ("sobol", "lhs")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Range:
-    """A parameter that varies between two values, evenly.
-
-    Attributes:
-        path: of the parameter, as "bushings.suspension_mount.stiffness.z".
-        low, high: its limits.
-        unit: of the parameter.
-        reason: why these limits.
-    """
-
-    path: str
-    low: float
-    high: float
-    unit: str
-    reason: str
-
-    def __post_init__(self) -> None:
-        if not (np.isfinite([self.low, self.high]).all() and self.low < self.high):
-            raise ConfigurationError(f"range of {self.path}: found {self.low!r} to {self.high!r}, must be ascending")
 
 
 def sample(ranges: Sequence[Range], count: int, *, method: str = "sobol", seed: int = 0) -> Vector:

@@ -1,0 +1,96 @@
+"""Paths of parameters: into vehicles and back, whole or their ends, with their units."""
+
+import pytest
+
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError
+from vehicle.parameters.paths import full_path, overrides_of, unit_of, value_of
+from vehicle.parameters.ranges import Range
+from vehicle.parameters.toml_file import as_table
+from vehicle.parameters.vehicle import Vehicle, load_vehicle
+
+
+def test_values_arrive_where_their_paths_say(car):
+    values = {
+        "damper.viscous": 2100.0,
+        "bushings.suspension_mount.stiffness.z": 6.9e5,
+        "bushings.suspension_mount.stiffness.x": 2.9e6,
+        "body.mass": 800.0,
+    }
+    texts = overrides_of(car.vehicle, values)
+    changed = Car.load(overrides=texts).vehicle
+    assert {path: value_of(changed, path) for path in values} == values
+    # The third component is not a parameter and stays.
+    assert changed.bushings.suspension_mount.stiffness[1] == car.vehicle.bushings.suspension_mount.stiffness[1]
+    assert overrides_of(car.vehicle, {}) == ()
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "bushings.suspension_mount.stifness.z",
+        "bushings.suspension_mount.stiffness",
+        "bushings.suspension_mount.stiffness.w",
+        "damper.friction_law",
+        "damper",
+        "body.flexible",
+        "w",
+    ],
+)
+def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
+    for use in (lambda: overrides_of(car.vehicle, {path: 1.0}), lambda: value_of(car.vehicle, path)):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: no number of a vehicle; the nearest is "):
+            use()
+
+
+def test_the_nearest_path_has_its_axis(car):
+    for misspelt in ("bushings.suspension_mount.stifness.z", "suspension_mount.stifness.z"):
+        with pytest.raises(ConfigurationError, match=r"nearest is bushings\.suspension_mount\.stiffness\.z$"):
+            value_of(car.vehicle, misspelt)
+
+
+def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
+    changed = load_vehicle(None, ["coulomb_friction=80", "suspension_mount.stiffness.z=5e5", "hydromount.damping.x=7"])
+    whole = [
+        "damper.coulomb_friction=80",
+        "bushings.suspension_mount.stiffness.z=5e5",
+        "bushings.hydromount.damping.x=7",
+    ]
+    assert changed == load_vehicle(None, whole) != car.vehicle
+    assert value_of(changed, "coulomb_friction") == 80.0
+    # A whole path wins over the end of another one: the point, not a group of bushings.
+    assert full_path(as_table(car.vehicle), "damper") == "damper"
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(None, ["torsional_stifness=1"])
+    assert str(caught.value) == (
+        "--set torsional_stifness=1: no parameter torsional_stifness; the nearest is stabilizer.torsional_stiffness"
+    )
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(None, ["maxwell_stiffness=1", "mass=1"])
+    assert str(caught.value) == (
+        "--set mass=1: parameter mass may be body.mass, parts.a_arm.mass, parts.knuckle.mass, parts.tyre.mass or one "
+        "of 11 others; give more of its path"
+    )
+    with pytest.raises(ConfigurationError, match=r"parameter stiffness\.z: no number of a vehicle; .* may"):
+        value_of(car.vehicle, "stiffness.z")
+
+
+def test_units_are_those_of_the_fields():
+    units = {
+        "damper.viscous": "N s/m",
+        "bushings.tyre.stiffness": "N/m",
+        "bushings.tyre.stiffness.z": "N/m",
+        "parts.engine.mass": "kg",
+        "hardpoints.strut_top.x": "m",
+    }
+    assert {path: unit_of(Vehicle, path) for path in units} == units
+    for path in ("damper", "viscous", "damper.viscous.z", "bushings.tyre.stiffness.w", "body.flexible"):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: no quantity of Vehicle"):
+            unit_of(Vehicle, path)
+
+
+def test_logarithmic_scale():
+    parameter = Range(path="a", low=1.0, high=4.0, start=2.0)
+    assert parameter.value(0.0) == 2.0
+    assert parameter.value(parameter.half_width) == pytest.approx(4.0)
+    assert parameter.value(-parameter.half_width) == pytest.approx(1.0)

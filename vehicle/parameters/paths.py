@@ -1,0 +1,216 @@
+"""Parameters by their dotted paths: which there are, what they hold, their units, and other values in their places.
+
+A path names the tables down to a value, as "bushings.suspension_mount.stiffness"; a component of a vector has its axis
+behind it, as in "bushings.suspension_mount.stiffness.z". The end of a path is enough where only one path ends so, as in
+"suspension_mount.stiffness.z".
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import re
+import tomllib
+import typing
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.names import AXES
+from vehicle.parameters.toml_file import as_table, copy_table
+
+SHOWN = 4
+"""Most paths that a message lists."""
+
+
+def full_path(table: Mapping[str, Any], path: str) -> str:
+    """The whole path of a parameter or of a group.
+
+    Args:
+        table: nested dictionaries, as of `read_table`.
+        path: a whole path, or the end of one.
+
+    Raises:
+        ConfigurationError: nothing is called so (with the nearest path), or more than one thing is.
+    """
+    if _at(table, path) is not None:
+        return path
+    known = paths(table)
+    found = [one for one in known if one.endswith(f".{path}")]
+    if not found:
+        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
+    if len(found) > 1:
+        more = f" or one of {len(found) - SHOWN} others" if len(found) > SHOWN else ""
+        raise ConfigurationError(f"parameter {path} may be {', '.join(found[:SHOWN])}{more}; give more of its path")
+    return found[0]
+
+
+def paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
+    """Paths of all values and of the components of all vectors, in the order of the file."""
+    found: list[str] = []
+    for key, value in table.items():
+        place = f"{prefix}{key}"
+        if isinstance(value, Mapping):
+            found += paths(value, f"{place}.")
+        else:
+            found += [place, *(f"{place}.{axis}" for axis in AXES if _is_vector(value))]
+    return found
+
+
+def nearest(path: str, known: Iterable[str]) -> str:
+    """The known path that is spelt most like another one."""
+    # A short path is compared with the ends of the known ones; of equal ones the first wins.
+    ends = {".".join(one.split(".")[-(path.count(".") + 1) :]): one for one in reversed(list(known))}
+    return ends[difflib.get_close_matches(path, list(ends)[::-1], n=1, cutoff=0.0)[0]]
+
+
+def override(table: Mapping[str, Any], assignments: Iterable[str]) -> dict[str, Any]:
+    """Replace single values of nested dictionaries.
+
+    Args:
+        table: as of `read_table`; not changed.
+        assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML.
+
+    Returns:
+        A new table.
+
+    Raises:
+        ConfigurationError: no '=' in the text, a value that is not TOML, a group, or a path that does not exist or is
+            not complete enough.
+    """
+    result: dict[str, Any] = copy_table(table)
+    for assignment in assignments:
+        given, separator, text = (part.strip() for part in assignment.partition("="))
+        if not separator or not given:
+            raise ConfigurationError(f"--set {assignment}: needed is PATH=VALUE, as in damper.coulomb_friction=93.75")
+        try:
+            path = full_path(result, given)
+        except ConfigurationError as error:
+            raise ConfigurationError(f"--set {assignment}: {error}") from None
+        old = _at(result, path)
+        if isinstance(old, Mapping):
+            inside = ", ".join(f"{path}.{key}" for key in list(old)[:6])
+            raise ConfigurationError(f"--set {assignment}: {given} is a group; set one of {inside}")
+        value = _value(assignment, text, old)
+        if _is_vector(old) and isinstance(value, int | float):
+            raise ConfigurationError(
+                f"--set {assignment}: {given} is a vector; give all as [x, y, z], or one component with its axis "
+                f"behind the path: {given}.z={text}"
+            )
+        parent, _, name = path.rpartition(".")
+        outer: Any = _at(result, parent) if parent else result
+        outer[AXES.index(name) if isinstance(outer, list) else name] = value
+    return result
+
+
+def value_of(vehicle: Any, path: str) -> float:
+    """Value of a number in a parameter object.
+
+    Args:
+        vehicle: the parameters.
+        path: as of `full_path`, of a number or of a component.
+
+    Raises:
+        ConfigurationError: the path is no number of it.
+    """
+    table = as_table(vehicle)
+    try:
+        found = _at(table, full_path(table, path))
+        if _is_number(found):
+            return float(found)
+        raise ConfigurationError(f"the nearest is {nearest(path, _numbers(table))}")
+    except ConfigurationError as error:
+        # Of a misspelt one the nearest number is wanted, not the nearest text.
+        misspelt = str(error).startswith("no parameter")
+        reason = f"the nearest is {nearest(path, _numbers(table))}" if misspelt else str(error)
+        raise ConfigurationError(f"parameter {path}: no number of a vehicle; {reason}") from None
+
+
+def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
+    """Overrides "path=value" that put numbers into a parameter object.
+
+    Args:
+        vehicle: the car they are for.
+        values: path to value.
+
+    Returns:
+        Texts for `override`.
+
+    Raises:
+        ConfigurationError: a path that is no number of it.
+    """
+    for path in values:
+        value_of(vehicle, path)
+    return tuple(f"{path}={float(value)!r}" for path, value in values.items())
+
+
+def unit_of(kind: type[Any], path: str) -> str:
+    """Unit of a parameter, as its field declares it; arguments as of `quantity_of`."""
+    return str(quantity_of(kind, path)["unit"])
+
+
+def quantity_of(kind: type[Any], path: str) -> Mapping[str, Any]:
+    """What the field of a parameter declares, as of `quantity`: unit, meaning, range.
+
+    Args:
+        kind: a parameter class, as Vehicle.
+        path: a whole path, of a value or of a component.
+
+    Raises:
+        ConfigurationError: the path is no quantity of the class.
+    """
+    inner: Any = kind
+    found: Mapping[str, Any] = {}
+    for key in path.split("."):
+        origin = typing.get_origin(inner)
+        if dataclasses.is_dataclass(inner) and key in (fields := {one.name: one for one in dataclasses.fields(inner)}):
+            found, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
+        elif isinstance(origin, type) and issubclass(origin, Mapping):
+            inner = typing.get_args(inner)[1]
+        elif origin is tuple and key in AXES and found.get("length") == len(AXES):
+            inner = float
+        else:
+            found = {}
+            break
+    if "unit" not in found:
+        raise ConfigurationError(f"parameter {path}: no quantity of {kind.__name__}; give the whole path of a value")
+    return found
+
+
+def _at(table: Any, path: str) -> Any:
+    """What a whole path leads to; None where it leads nowhere."""
+    inner = table
+    for key in path.split("."):
+        if isinstance(inner, Mapping):
+            inner = inner.get(key)
+        else:
+            inner = inner[AXES.index(key)] if key in AXES and _is_vector(inner) else None
+    return inner
+
+
+def _numbers(table: Mapping[str, Any]) -> list[str]:
+    return [path for path in paths(table) if _is_number(_at(table, path))]
+
+
+def _is_vector(value: Any) -> bool:
+    return isinstance(value, list) and len(value) == len(AXES)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _value(assignment: str, text: str, old: Any) -> Any:
+    """Parse the value of an override; a bare word stands for a text where a text is wanted."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except RecursionError:
+        raise ConfigurationError(f"--set {assignment[:60]}...: brackets are nested too deep") from None
+    except tomllib.TOMLDecodeError:
+        if isinstance(old, str) and re.fullmatch(r"[A-Za-z0-9_.-]+", text):
+            return text
+        try:
+            return float(text)  # ".5" and "1." are numbers to everybody but TOML
+        except ValueError:
+            pass
+        raise ConfigurationError(f"--set {assignment}: {text!r} is not a number, a list of numbers or a text") from None
