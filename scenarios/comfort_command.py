@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from scenarios.car_study import car_parser
 from scenarios.comfort_sensitivity_runs import Records
+from scenarios.study import car_parser
 from vehicle.errors import ConfigurationError
 
 RECORDS = 4
@@ -15,14 +15,13 @@ QUICK = Records(count=2, duration=8.0, lead=3.0)
 """Records with --quick."""
 
 
-def comfort_parser(name: str, description: str) -> argparse.ArgumentParser:
+def comfort_parser(name: str) -> argparse.ArgumentParser:
     """Parser of a study; the reduced engine by default.
 
     Args:
         name: module name.
-        description: one line.
     """
-    parser = car_parser(name, description)
+    parser = car_parser(name)
     parser.set_defaults(engine="auto")
     parser.add_argument(
         "--records", type=int, metavar="N", help=f"records of road for every point, 60 s each; {RECORDS} by default"

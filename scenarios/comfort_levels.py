@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.claim import Claim, Interval, spread_claim
+from scenarios.claims import Claim, Interval, spread_claim
 from scenarios.comfort_sensitivity_runs import ComfortRuns
 from scenarios.road_signals import RATE_HZ, ROAD_RMS
 from vehicle.analysis.window_extremes import window_extremes

@@ -39,11 +39,7 @@ class RoadInput:
     def signal(self) -> Signal:
         """Generate the road."""
         return road(
-            rms=self.rms,
-            seed=self.seed,
-            duration=self.duration,
-            lead=self.lead,
-            lower_band_edge=self.lower_band_edge,
+            rms=self.rms, seed=self.seed, duration=self.duration, lead=self.lead, lower_band_edge=self.lower_band_edge
         )
 
     def identity(self) -> dict[str, object]:

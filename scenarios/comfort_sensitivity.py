@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.car_runs import CarRuns
-from scenarios.car_study import QUICK_NOTE, Findings, run_car_study
-from scenarios.claim import Claim
+from scenarios.claims import Claim
 from scenarios.comfort_command import QUICK, comfort_parser, records_of
 from scenarios.comfort_levels import level_claims, road_levels
 from scenarios.comfort_sensitivity_beyond import beyond_findings, beyond_questions, rigid_curves
@@ -26,6 +25,7 @@ from scenarios.comfort_sensitivity_runs import SOURCE, ComfortRuns, Curves
 from scenarios.comfort_sensitivity_tables import curve_table, plain
 from scenarios.comfort_setting import setting
 from scenarios.road_signals import ROAD_EDGE_HZ, ROAD_RMS
+from scenarios.study import QUICK_NOTE, Findings, run_car_study
 
 QUICK_WHY = f"records of {QUICK.duration:g} s tell it too coarsely"
 
@@ -89,7 +89,7 @@ def all_claims(comfort: ComfortRuns, curves: Mapping[str, Curves], rigid: Mappin
 
 def main(arguments: list[str] | None = None) -> int:
     """Command line; returns the exit code."""
-    parser = comfort_parser("comfort_sensitivity", "Comfort on a smooth and a rough road against parameters.")
+    parser = comfort_parser("comfort_sensitivity")
     parser.add_argument("--source-only", action="store_true", help="only the three parameters of source 1")
     return run_car_study(parser, _study, arguments)
 

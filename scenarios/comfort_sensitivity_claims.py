@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from scenarios.claim import Claim, Interval, interval_claim, number_claim, statement_claim
+from scenarios.claims import FITTED, PREDICTED, Claim, Interval, interval_claim
 from scenarios.comfort_sensitivity_runs import Curves, Point
 from scenarios.road_signals import PUBLISHED_SLIP, ROAD_EDGE_HZ
 
@@ -35,7 +35,6 @@ SLIP_TOLERANCE = 0.03
 SAME_INFLUENCE = 0.25
 """Largest difference of two ranges that count as about the same, as a share of one: two divisions of 2 % in 16 %."""
 
-
 MOUNT_WHY = (
     "more than printed: most of the comfort value lies in body modes that are driven through the mount, whose shapes "
     "are not published"
@@ -56,7 +55,7 @@ WHY = {
 def slip_claims(nominal: Mapping[str, Point], slip_velocity: float) -> list[Claim]:
     """Slip shares of both roads, nominal car."""
     return [
-        number_claim(
+        FITTED.number(
             f"slip share of the right damper, {road} road [%]",
             100.0 * PUBLISHED_SLIP[road],
             100.0 * found.slip,
@@ -65,8 +64,6 @@ def slip_claims(nominal: Mapping[str, Point], slip_velocity: float) -> list[Clai
             f"{100.0 * found.slip_error:.2f} points; {100.0 * found.saturated:.1f} % above 1 mm/s. One band edge, "
             f"{ROAD_EDGE_HZ:g} Hz, fitted to both shares: tolerance {100.0 * SLIP_TOLERANCE:g} points, what a quarter "
             "of the slip velocity changes",
-            status="fitted",
-            source="text",
         )
         for road, found in nominal.items()
     ]
@@ -78,39 +75,33 @@ def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
     for name, rising in RISING.items():
         for road, points in curves[name].items():
             claims.append(
-                statement_claim(
+                PREDICTED.statement(
                     f"comfort value against {TITLES[name]}, {road} road",
                     "rises over the whole range" if rising else "falls over the whole range",
                     ", ".join(f"{100.0 * one.relative:.1f}" for one in points) + " %",
                     is_monotone(points, rising=rising),
                     "from point to point by more than twice the standard error of both",
-                    status="predicted",
-                    source="text",
                 )
             )
     for name in ("coulomb_friction", "mount_damping"):
         smooth, rough = (100.0 * _range(curves[name][road]) for road in ("smooth", "rough"))
         claims.append(
-            statement_claim(
+            PREDICTED.statement(
                 f"influence of {TITLES[name]}, smooth road against rough",
                 "greater on the smooth road",
                 f"range {smooth:.1f} against {rough:.1f} points",
                 smooth > rough,
                 "largest minus smallest relative comfort value",
-                status="predicted",
-                source="text",
             )
         )
     smooth, rough = (100.0 * _range(curves["mount_stiffness"][road]) for road in ("smooth", "rough"))
     claims.append(
-        statement_claim(
+        PREDICTED.statement(
             "influence of mount stiffness, smooth road against rough",
             "about the same",
             f"range {smooth:.1f} against {rough:.1f} points",
             abs(rough - smooth) <= SAME_INFLUENCE * smooth,
             f"ranges within {100.0 * SAME_INFLUENCE:g} % of each other",
-            status="predicted",
-            source="text",
         )
     )
     return claims

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.car_charts import figure_file
+from scenarios.charts import figure_file
 from scenarios.comfort_observation import chosen_engine
 from scenarios.comfort_sensitivity_claims import PUBLISHED
 from scenarios.comfort_sensitivity_runs import Changes, ComfortRuns, Curves, Point, Variation

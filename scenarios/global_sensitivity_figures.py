@@ -65,11 +65,7 @@ def draw_morris(path: Path, found: MorrisEffects, caption: str) -> None:
 
 
 def draw_scatter(
-    path: Path,
-    ranges: Sequence[Range],
-    points: npt.NDArray[np.float64],
-    comfort: npt.NDArray[np.float64],
-    caption: str,
+    path: Path, ranges: Sequence[Range], points: npt.NDArray[np.float64], comfort: npt.NDArray[np.float64], caption: str
 ) -> None:
     """Comfort value of every run over each parameter."""
 

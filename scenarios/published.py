@@ -6,7 +6,6 @@ python -m scenarios.published [--output DIR] [--quick] [--jobs N] [--reuse]
 from __future__ import annotations
 
 import argparse
-import importlib
 import json
 import sys
 import time as clock
@@ -16,9 +15,10 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from scenarios.claim import LEGEND, headline, table_lines
+from scenarios.claims import LEGEND, headline, table_lines
 from scenarios.output_folder import prepare_folder, write_text
 from scenarios.slip_definition import definition_lines
+from scenarios.study import main_of
 from vehicle.command_line import Parser, parse_and_run
 from vehicle.errors import DataError, SimulationError
 
@@ -26,7 +26,6 @@ CAR_SCENARIOS = ("levels", "inertia", "bump", "stribeck", "comfort_sensitivity",
 LUMPED_SCENARIOS = ("quarter_car",)
 SCENARIOS = CAR_SCENARIOS + LUMPED_SCENARIOS
 """Scenarios in the order of the table; the first ones take the options of the complete car."""
-
 
 HOME = Path("renders/published")
 """The table of the full study is kept under version control."""
@@ -130,7 +129,7 @@ def scenario_results(name: str, options: argparse.Namespace) -> dict[str, Any]:
         arguments = ["--output", str(folder), "--force", "--jobs", str(options.jobs)]
         if options.quick:
             arguments.append("--quick")
-        code = importlib.import_module(f"scenarios.{name}").main(arguments)
+        code = main_of(name)(arguments)
         if code:
             raise SimulationError(f"scenarios.{name}: ended with exit code {code}; its message is above")
     try:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from scenarios.bump_claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
-from scenarios.levels_claims import PUBLISHED_SLIP, SLIP_TOLERANCE
+from scenarios.bump.claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
+from scenarios.levels import PUBLISHED_SLIP, SLIP_TOLERANCE
 from scenarios.road_signals import PUBLISHED_SLIP as PUBLISHED_ROAD_SLIP
 
 

@@ -7,17 +7,26 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
-from scenarios.bump import FULL, HIGH, QUICK
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.bump.runs import FULL, HIGH, QUICK, relative_acceleration
 from scenarios.car_runs import CarRuns, Case
-from scenarios.car_study import Findings, car_parser, run_car_study, setting
-from scenarios.relative_acceleration import relative_acceleration
-from scenarios.slip_peaks import slip_phases
-from scenarios.stribeck_claims import peak_claims, peak_table
-from scenarios.stribeck_figures import force_figure, peak_figure
-from vehicle.excitation.bump import BUMP_DURATION_S, bump
+from scenarios.charts import figure_file
+from scenarios.claims import OWN_CHECK, PREDICTED, Claim
+from scenarios.study import Findings, car_parser, computed_by, run_car_study, setting
+from vehicle.analysis.slip_peaks import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
+from vehicle.car import SATURATED_VELOCITY, Run
+from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, bump
+from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.degressive import Degressive
+from vehicle.laws.stribeck import Stribeck
+from vehicle.parameters.elements import Damper
+from vehicle.rendering.figure import COLOURS
 
 LAWS = {
     "Coulomb": ("damper.friction_law=coulomb", "damper.coulomb_friction=125"),
@@ -39,9 +48,9 @@ AFTER = BUMP_DURATION_S + 0.2
 """Slips that begin until this long after the start of the bump count [s]; later ones are the noise."""
 
 
-def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
+def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the bump with both laws, draw the figures into the folder, and compare."""
-    record = QUICK if quick else FULL
+    record = QUICK if options.quick else FULL
     signal = bump(amplitude=HIGH, duration=record.noisy, start=record.start)
     step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.timestep)!r}"
     cases = [Case(signal=signal, overrides=(*law, step)) for law in LAWS.values()]
@@ -51,6 +60,7 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
             run.time,
             run["damper_fr_velocity"],
             relative_acceleration(run),
+            saturated=SATURATED_VELOCITY,
             begin=record.start,
             until=record.start + AFTER,
         )
@@ -61,19 +71,175 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     return Findings(
         title="Coulomb and Stribeck friction over the 7.5 mm bump (source 1, section 3.4)",
         claims=peak_claims(found, phases),
-        notes=[peak_table(phases, record.start), *setting(runs, found["Coulomb"], quick)],
+        notes=[peak_table(phases, record.start), *setting(runs, found["Coulomb"], options.quick)],
         data={"phases": {name: [asdict(phase) for phase in one] for name, one in phases.items()}},
     )
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Command line; returns the exit code."""
-    parser = car_parser("stribeck", "Coulomb against Stribeck friction: relative acceleration and damper force.")
-    return run_car_study(parser, _study, arguments)
+    return run_car_study(car_parser("stribeck"), study, arguments)
 
 
-def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    return study(runs, folder, quick=options.quick)
+FORCE_TOLERANCE = 0.012
+"""Largest difference between simulated force and law over the largest force: the line up to the limit in place of the
+arctangent (0.6 % of 125 N at 1 mm/s) and a Stribeck limit that is one step of 0.125 ms old (2600 N s/m at 5 m/s2)."""
+
+
+def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Damper force [N] of equations 3.1 and 3.2, or with C.1 for D v, at velocities [m/s]."""
+    speeds = np.asarray(velocity, dtype=float)
+    friction: SmoothCoulomb | Stribeck
+    if damper.friction_law == "stribeck":
+        friction = Stribeck(
+            sliding_limit=damper.coulomb_friction,
+            static_limit=damper.stribeck_friction,
+            stribeck_velocity=damper.stribeck_velocity,
+            exponent=damper.stribeck_exponent,
+            steepness=damper.smoothing,
+        )
+    else:
+        friction = SmoothCoulomb(limit=damper.coulomb_friction, steepness=damper.smoothing)
+    viscous = damper.viscous * speeds
+    if damper.viscous_law == "degressive":
+        law = Degressive(
+            low_damping=damper.degressive_viscous, high_damping=damper.viscous, knee_velocity=damper.degressive_velocity
+        )
+        viscous = law.force(speeds)
+    return np.asarray(viscous + friction.force(speeds))
+
+
+def force_error(run: Run) -> float:
+    """Largest |simulated force - law| over the largest force, where the right damper is faster than 1 mm/s [-]."""
+    velocity, force = run["damper_fr_velocity"], run["damper_fr_force"]
+    fast = np.abs(velocity) > SATURATED_VELOCITY
+    if not fast.any():
+        return 0.0
+    wanted = law_force(run.car.vehicle.damper, velocity[fast])
+    return float(np.max(np.abs(force[fast] - wanted)) / np.max(np.abs(force)))
+
+
+def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) -> list[Claim]:
+    """Rows: the extra peak with each law, and the simulated force against the law."""
+    rule = (
+        f"an extremum of the relative acceleration 5 to {1e3 * SEARCHED:g} ms after the end of stick that stands out "
+        f"by at least {100 * STANDING_OUT:g} % of the largest break-away jump of its run"
+    )
+    claims = []
+    for name, published in (("Stribeck", "present"), ("Coulomb", "absent")):
+        count, top = len(extra_peaks(phases[name])), most_prominent(phases[name])
+        text = "no extremum" if top is None else f"the largest stands out by {top.prominence:.2f} m/s2"
+        claims.append(
+            PREDICTED.statement(
+                f"extra peak after stick ends, {name}",
+                published,
+                f"{count}; {text} ({1e3 * top.delay:.0f} ms after)" if top else f"{count}; {text}",
+                (count > 0) == (published == "present"),
+                f"{rule}; largest jump {max((phase.jump for phase in phases[name]), default=0.0):.2f} m/s2",
+            )
+        )
+    errors = {name: force_error(run) for name, run in runs.items()}
+    claims.append(
+        OWN_CHECK.statement(
+            "damper force over velocity against equations 3.1 and 3.2",
+            "on the law",
+            ", ".join(f"{name}: {100 * error:.2f} % of the largest force" for name, error in errors.items()),
+            max(errors.values()) <= FORCE_TOLERANCE,
+            f"largest difference above 1 mm/s; {100 * FORCE_TOLERANCE:g} %: line for arctangent, limit one step behind",
+        )
+    )
+    return claims
+
+
+def peak_table(phases: Mapping[str, list[SlipPhase]], start: float) -> str:
+    """Every slip with its break-away jump and its most prominent later peak."""
+    lines = [
+        f"Slides of the right damper from the end of stick, above {1e3 * SATURATED_VELOCITY:g} mm/s, where friction "
+        "is saturated (bump begins at 5 s):",
+        "",
+        "| law | stick ends [s] | sliding lasts [ms] | largest velocity [mm/s] | break-away jump [m/s2] "
+        "| most prominent later extremum: delay [ms], height, prominence [m/s2] |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name, found in phases.items():
+        for phase in found:
+            top = most_prominent([phase])
+            text = "none" if top is None else f"{1e3 * top.delay:.0f}, {top.height:.2f}, {top.prominence:.2f}"
+            lines.append(
+                f"| {name} | {phase.start - start + BUMP_START_S:.3f} | {1e3 * (phase.end - phase.start):.0f} "
+                f"| {1e3 * phase.velocity:.1f} | {phase.jump:.2f} | {text} |"
+            )
+    return "\n".join(lines)
+
+
+DETAIL = (-0.01, 0.08)
+"""Magnified around the end of stick [s]."""
+
+
+def peak_figure(path: Path, runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]], start: float) -> None:
+    """Write the relative acceleration over the bump, and magnified after the first three ends of stick.
+
+    Args:
+        path: PNG file.
+        runs: law to run.
+        phases: law to slips.
+        start: of the bump [s].
+    """
+    shift = BUMP_START_S - start
+    note = (
+        "A = 7.5 mm; acceleration of the damper top relative to the knuckle along the strut axis; circles: extra "
+        "peaks, which stand out by at least half of the largest break-away jump; below: after the ends of stick. Time "
+        f"histories, no averages; {computed_by(next(iter(runs.values())))}"
+    )
+    title = "Relative acceleration damper top - knuckle with both friction laws (figure 3.38)"
+    with figure_file(path, (13.0, 7.6), title, note) as figure:
+        upper, lower = figure.subfigures(2, 1)
+        whole = upper.subplots(1, 1)
+        details = lower.subplots(1, 3, sharey=True)
+        begins = [phase.start for phase in phases["Coulomb"][:3]]
+        for (name, run), colour in zip(runs.items(), COLOURS, strict=False):
+            time, values = run.time, relative_acceleration(run)
+            peaks = extra_peaks(phases[name])
+            for axis, (begin, end) in zip(
+                (whole, *details),
+                ((start - 0.02, start + 0.7), *((one + DETAIL[0], one + DETAIL[1]) for one in begins)),
+                strict=False,
+            ):
+                keep = (time >= begin) & (time <= end)
+                axis.plot(time[keep] + shift, values[keep], color=colour, label=name)
+                inside = [peak for peak in peaks if begin <= peak.time <= end]
+                axis.plot(
+                    [peak.time + shift for peak in inside],
+                    [peak.height for peak in inside],
+                    "o",
+                    color=colour,
+                    markerfacecolor="none",
+                    markersize=8,
+                )
+                axis.set_xlim(begin + shift, end + shift)
+                axis.set_xlabel("time [s]")
+        for axis in (whole, details[0]):
+            axis.set_ylabel("relative acceleration [m/s²]")
+        whole.legend(loc="upper right")
+
+
+def force_figure(path: Path, runs: Mapping[str, Run]) -> None:
+    """Write the damper force over the velocity: every sample, and the law."""
+    note = (
+        "A = 7.5 mm; dots: every sample of the run with noise, right damper; line: viscous force and friction of "
+        f"equations 3.1 and 3.2. No averages; {computed_by(next(iter(runs.values())))}"
+    )
+    with figure_file(path, (11.5, 5.0), "Damper force over velocity (figure 3.39)", note) as figure:
+        axes = figure.subplots(1, 2, sharex=True, sharey=True)
+        speeds = np.concatenate([-np.geomspace(0.1, 1e-6, 400), np.geomspace(1e-6, 0.1, 400)])
+        for axis, (name, run), colour in zip(axes, runs.items(), COLOURS, strict=False):
+            axis.plot(speeds, law_force(run.car.vehicle.damper, speeds), color="#222222", label="law")
+            axis.plot(
+                run["damper_fr_velocity"], run["damper_fr_force"], ".", markersize=3, color=colour, label="simulated"
+            )
+            axis.set(title=name, xlabel="damper velocity [m/s]", xlim=(-0.1, 0.1))
+            axis.legend(loc="upper left")
+        axes[0].set_ylabel("damper force [N]")
 
 
 if __name__ == "__main__":

@@ -13,10 +13,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 from scenarios.car_runs import CarRuns
-from scenarios.car_study import QUICK_NOTE, Findings, run_car_study
 from scenarios.comfort_command import comfort_parser, records_of
 from scenarios.comfort_sensitivity_runs import ComfortRuns
 from scenarios.comfort_setting import setting
+from scenarios.study import QUICK_NOTE, Findings, run_car_study
 from scenarios.tornado_bars import all_bars, tornado_questions
 from scenarios.tornado_claims import bar_table, tornado_claims
 from scenarios.tornado_figures import draw_tornado
@@ -50,7 +50,7 @@ def study(comfort: ComfortRuns, folder: Path, *, quick: bool) -> Findings:
 
 def main(arguments: list[str] | None = None) -> int:
     """Command line; returns the exit code."""
-    parser = comfort_parser("tornado", "Comfort on both roads against all parameters, as a tornado chart.")
+    parser = comfort_parser("tornado")
     return run_car_study(parser, _study, arguments)
 
 

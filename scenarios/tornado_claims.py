@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from scenarios.claim import Claim, statement_claim
+from scenarios.claims import DUPLICATE, Claim
 from scenarios.comfort_sensitivity_tables import number
 from scenarios.road_signals import ROAD_RMS
 from scenarios.tornado_bars import Bar
@@ -24,14 +24,12 @@ def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
         bar = next(bar for bar in bars if bar.label.startswith(name))
         pairs = {road: (bar.at_low[road].relative, bar.at_high[road].relative) for road in ROAD_RMS}
         claims.append(
-            statement_claim(
+            DUPLICATE.statement(
                 f"comfort and {name}, both roads",
                 statement,
                 ", ".join(f"{road} {100.0 * low:.1f} to {100.0 * high:.1f} %" for road, (low, high) in pairs.items()),
                 all((high > low) == rising for low, high in pairs.values()),
                 f"relative comfort value from {bar.low:g} to {bar.high:g}",
-                status="duplicate",
-                source="text",
             )
         )
     return claims

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.car_charts import figure_file
+from scenarios.charts import figure_file
 from scenarios.comfort_sensitivity_runs import ComfortRuns
 from scenarios.road_signals import ROAD_RMS
 from scenarios.tornado_bars import Bar

@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 from scenarios.car_runs import CarRuns, Case
-from scenarios.car_study import Findings, car_parser, run_car_study
+from scenarios.study import Findings, car_parser, run_car_study
 from scenarios.tuning_claims import data_note, demonstration_claims, fit_notes, fit_numbers, frozen_note, own_claims
 from scenarios.tuning_data import BAND, CHANNELS, NOISE, SPACING, Measurement, make_measurements
 from scenarios.tuning_figures import correlation_figure, level_figure, parameter_figure, record_figure
@@ -209,7 +209,7 @@ def _draw(folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequ
 
 def parser() -> argparse.ArgumentParser:
     """Options of the command."""
-    found = car_parser("tuning", "Fit parameters of the car to FRFs and bump records.")
+    found = car_parser("tuning")
     found.add_argument("--frf", type=Path, action="append", default=[], metavar="FILE.csv", help="own FRFs; repeatable")
     found.add_argument(
         "--level",

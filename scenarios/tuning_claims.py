@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from scenarios.claim import Claim, statement_claim
+from scenarios.claims import OWN_CHECK, Claim
 from scenarios.tuning_data import NOISE, Measurement
 from scenarios.tuning_parameters import SLIDING
 from vehicle.tuning.full_steps import SMALL, FullSteps
@@ -30,14 +30,12 @@ def demonstration_claims(final: FullSteps, alone: FullSteps | None, true: Mappin
 def own_claims(result: TuningResult, final: FullSteps | None) -> list[Claim]:
     """Rows: whether the fit ended at a minimum inside its bounds, the final check."""
     claims = [
-        statement_claim(
+        OWN_CHECK.statement(
             "the fit ends at a minimum within its bounds",
             "yes",
             result.message if not result.at_bound else f"at a bound: {', '.join(result.at_bound)}",
             result.converged and not result.at_bound,
             "a value at a bound means wrong bounds, or a model that cannot follow the data",
-            status="own check",
-            source="inferred",
         )
     ]
     return claims if final is None else [*claims, _checked("the fit", final)]
@@ -47,42 +45,29 @@ def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim
     """Row of one hidden value."""
     held = next((one for one in result.unidentified if one.path == path), None)
     if held is not None:
-        return statement_claim(
-            name,
-            f"hidden {true:g}",
-            f"not told by the data, held at {held.held_at:g}",
-            True,
-            held.sentence(),
-            status="own check",
-            source="inferred",
+        return OWN_CHECK.statement(
+            name, f"hidden {true:g}", f"not told by the data, held at {held.held_at:g}", True, held.sentence()
         )
     away = result.deviation(path, true)
     start = next(one.start for one in result.parameters if one.path == path)
-    return Claim(
-        name=name,
-        published=true,
-        ours=result.values[path],
-        deviation=result.values[path] / true - 1.0,
-        within=bool(abs(away) <= WITHIN),
-        why=f"hidden value, not printed: {away:+.2f} standard errors of {result.standard_errors[path]:.3g} away, "
-        f"allowed {WITHIN:g}; started at {start:g}",
-        status="own check",
-        source="inferred",
+    allowed = WITHIN * result.standard_errors[path]
+    why = (
+        f"hidden value, not printed: {away:+.2f} standard errors of {result.standard_errors[path]:.3g} away, "
+        f"allowed {WITHIN:g}; started at {start:g}"
     )
+    return OWN_CHECK.number(name, true, result.values[path], allowed, why)
 
 
 def _checked(name: str, final: FullSteps) -> Claim:
     path, largest = max(final.moved.items(), key=lambda item: abs(item[1]))
     steps = ", ".join(f"{step:.2g}" for step in final.largest_steps)
-    return statement_claim(
+    return OWN_CHECK.statement(
         f"final check with the full simulation: {name}",
         "no step left",
         f"weighted residuals {final.first:.3f} at the values of the fast models, {final.result.after:.3f} at the end; "
         f"largest steps {steps} standard errors; {path} moved most, by {largest:+.1f} standard errors",
         final.settled,
         f"Gauss-Newton steps with the Jacobian of the fast models; the last must be below {SMALL:g} standard errors",
-        status="own check",
-        source="inferred",
     )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.car_charts import INK, FrfCurve, draw_frf, figure_file, rows_of
+from scenarios.charts import INK, FrfCurve, draw_frf, figure_file, rows_of
 from vehicle.car import Car
 from vehicle.names import channel_units
 from vehicle.rendering.figure import COLOURS

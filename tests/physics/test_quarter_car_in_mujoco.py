@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from scenarios.quarter_car_in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
+from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
 from tests.simulation.row_model import poles
 from vehicle.analysis.slip import slip_share
 from vehicle.assembly.quarter_car import quarter_car_spec

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from scenarios.quarter_car_in_mujoco import friction_of_the_rows
+from scenarios.quarter_car.in_mujoco import friction_of_the_rows
 from tests.linear.plain_matrices import plain_matrices
 from vehicle.analysis.slip import slip_share
 from vehicle.excitation.random_road import random_road

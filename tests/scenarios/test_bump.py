@@ -6,12 +6,10 @@ import subprocess
 import numpy as np
 import pytest
 
-from scenarios.bump import main
-from scenarios.bump_claims import slip_after
-from scenarios.bump_extremes import AXES, extreme_claims
-from scenarios.bump_film import BANNER, HALF, side_by_side
-from scenarios.relative_acceleration import relative_acceleration
-from scenarios.ring_down import ring_down_time
+from scenarios.bump.__main__ import main
+from scenarios.bump.claims import extreme_claims
+from scenarios.bump.figures import BANNER, HALF, side_by_side
+from scenarios.bump.runs import FIGURE_AXES, relative_acceleration, ring_down_time, slip_after
 from vehicle.excitation.bump import bump
 from vehicle.rendering.backend import film_available, find_ffmpeg
 
@@ -38,7 +36,7 @@ def test_first_slips_and_what_is_not_judged(results):
         "bump 7.5 mm, end of stick with Fd 125 N [s]": ("chosen", True),
         "bump 1.5 mm": ("chosen", True),
     }
-    assert len(rows) == 2 + 2 * len(AXES)
+    assert len(rows) == 2 + 2 * len(FIGURE_AXES)
     slip, end = (content[key]["125 N"] for key in ("first_slip_s", "first_saturated_s"))
     assert slip > end + 0.005
     assert content["slip_velocity"] == 0.012
@@ -71,9 +69,9 @@ def test_slip_after_is_told_as_if_the_bump_began_at_five_seconds(bump_run):
 
 
 def test_every_end_of_an_axis_is_a_row():
-    inside = {point: (low[0] + 0.1, high[0] + 0.1) for point, (_, _, low, high) in AXES.items()}
+    inside = {point: (low[0] + 0.1, high[0] + 0.1) for point, (_, _, low, high) in FIGURE_AXES.items()}
     assert all(claim.within for claim in extreme_claims(inside))
-    still = dict.fromkeys(AXES, (0.01, -0.01))
+    still = dict.fromkeys(FIGURE_AXES, (0.01, -0.01))
     assert [claim.within for claim in extreme_claims(still)] == [False] * 12
 
 

@@ -3,29 +3,36 @@
 import argparse
 import json
 from dataclasses import asdict
+from pathlib import Path
 
 import pytest
 
-from scenarios.claim import (
+import scenarios
+from scenarios.__main__ import main as print_list
+from scenarios.claims import (
+    FITTED,
+    PREDICTED,
     STATUSES,
+    TABLE,
     Claim,
+    Kind,
     Status,
     headline,
     interval_claim,
-    number_claim,
     spread_claim,
-    statement_claim,
     write_claims,
 )
 from scenarios.output_folder import prepare_folder, write_text
-from scenarios.study_command import run_study, study_parser
+from scenarios.study import STUDIES, Findings, lumped_parser, main_of, run_lumped_study
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
+
+HOME = Path(scenarios.__file__).parent
 
 
 def test_number_row():
-    row = number_claim("peak [Hz]", 2.0, 2.5, 0.4, "because", status="predicted", source="text")
+    row = PREDICTED.number("peak [Hz]", 2.0, 2.5, 0.4, "because")
     assert (row.deviation, row.within) == (0.25, False)
-    assert number_claim("peak [Hz]", 2.0, 2.5, 0.5, "because", status="fitted", source="text").within is True
+    assert FITTED.number("peak [Hz]", 2.0, 2.5, 0.5, "because").within is True
 
 
 def test_an_extreme_agrees_inside_its_interval():
@@ -46,7 +53,7 @@ def test_a_distribution_agrees_when_the_interval_lies_between_its_percentiles():
 
 
 def made(status: Status, within: bool) -> Claim:
-    return statement_claim("a", "b", "c", within, "w", status=status, source="text")
+    return Kind(status, "text").statement("a", "b", "c", within, "w")
 
 
 def test_the_headline_counts_predicted_rows_only():
@@ -59,7 +66,7 @@ def test_the_headline_counts_predicted_rows_only():
 
 def test_files_hold_rows_notes_and_data(tmp_path):
     rows = [
-        number_claim("a | b", 2.0, 2.1, 0.2, "w", status="predicted", source="table"),
+        TABLE.number("a | b", 2.0, 2.1, 0.2, "w"),
         made("fitted", False),
         interval_claim("c", (95.0, float("inf")), 90.0, "v"),
     ]
@@ -102,25 +109,39 @@ def test_failed_write_leaves_nothing(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
+def failing(error):
+    def study(parameters: None, folder: Path, options: argparse.Namespace) -> Findings:
+        raise error
+
+    return study
+
+
+def run(study, folder, *more):
+    return run_lumped_study(lumped_parser("x"), lambda options: None, study, ["--output", str(folder), *more])
+
+
 @pytest.mark.parametrize(
     ("error", "code"),
     [(ConfigurationError("c"), 2), (SimulationError("s"), 4), (OutputError("o"), 6), (KeyboardInterrupt(), 130)],
 )
-def test_errors_become_exit_codes(error, code, capsys):
-    def fail(options: argparse.Namespace) -> str:
-        raise error
-
-    assert run_study(study_parser("x", "x"), fail, []) == code
+def test_errors_become_exit_codes(error, code, tmp_path, capsys):
+    assert run(failing(error), tmp_path) == code
     assert capsys.readouterr().out == ""
 
 
-def test_debug_shows_the_traceback(capsys):
-    def fail(options: argparse.Namespace) -> str:
-        raise ConfigurationError("c")
-
-    assert run_study(study_parser("x", "x"), fail, ["--debug"]) == 2
+def test_debug_shows_the_traceback(tmp_path, capsys):
+    assert run(failing(ConfigurationError("c")), tmp_path, "--debug") == 2
     assert "Traceback" in capsys.readouterr().err
 
 
 def test_default_folder_is_named_after_the_study():
-    assert str(study_parser("half_car_rider", "x").parse_args([]).output) == "runs/half_car_rider"
+    assert str(lumped_parser("half_car_rider").parse_args([]).output) == "runs/half_car_rider"
+
+
+def test_the_list_holds_every_study_and_no_other(capsys):
+    assert print_list() == 0
+    shown = capsys.readouterr().out
+    found = {path.stem for path in HOME.glob("*.py") if "__main__" in path.read_text(encoding="utf-8")}
+    found |= {path.parent.name for path in HOME.glob("*/__main__.py")}
+    assert found - {"__main__", "study"} == set(STUDIES)
+    assert all(f"\n{name} " in shown and callable(main_of(name)) for name in STUDIES)

@@ -204,7 +204,7 @@ def test_one_component_of_a_bushing_varies(tmp_path):
 
 
 def test_the_options_choose_records_and_engine():
-    parser = comfort_parser("comfort_sensitivity", "")
+    parser = comfort_parser("comfort_sensitivity")
     assert parser.parse_args([]).engine == "auto"
     assert records_of(parser.parse_args(["--records", "7"])).count == 7
     assert records_of(parser.parse_args(["--quick"])).duration < 60.0

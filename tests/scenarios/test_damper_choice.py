@@ -6,10 +6,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from scenarios.claim import Claim
-from scenarios.complete_car_quarter import complete_car_quarter
-from scenarios.damper_choice import main
-from scenarios.damper_choice_tradeoff import trade_off
+from scenarios.claims import Claim
+from scenarios.damper_choice.__main__ import main
+from scenarios.damper_choice.runs import complete_car_quarter, trade_off
 from vehicle.parameters.damper_choice import FITTED, damper_choice_parameters
 from vehicle.parameters.vehicle import load_vehicle
 
@@ -91,7 +90,7 @@ def test_trade_off_scales_with_the_class_and_has_its_optima_inside():
 
 def test_trade_off_grid_is_fine_enough(monkeypatch):
     before = trade_off(P.quarter_car, [500.0, 3000.0]).measures["A"]
-    monkeypatch.setattr("scenarios.damper_choice_tradeoff.EDGES", np.geomspace(0.1, 50.0, 1601))
+    monkeypatch.setattr("scenarios.damper_choice.runs.EDGES", np.geomspace(0.1, 50.0, 1601))
     after = trade_off(P.quarter_car, [500.0, 3000.0]).measures["A"]
     for old, new in zip(before, after, strict=True):
         for name in ("tyre_load", "acceleration", "travel"):

@@ -6,10 +6,10 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from scenarios.claim import Claim
-from scenarios.half_car_rider import main
-from scenarios.half_car_rider_claims import relative_changes
-from scenarios.half_car_rider_runs import SPEEDS, TIME_STEP, VARIED, outcome, parameter_study, passive, varied
+from scenarios.claims import Claim
+from scenarios.half_car_rider.__main__ import main
+from scenarios.half_car_rider.claims import relative_changes
+from scenarios.half_car_rider.runs import SPEEDS, TIME_STEP, VARIED, outcome, parameter_study, passive, varied
 from vehicle.analysis.exposure import vibration_dose_value
 from vehicle.lumped.bump_road import bump_passage
 from vehicle.lumped.half_car_rider import half_car_rider, places

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from scenarios.inertia import main
-from scenarios.inertia_claims import led_by, roll_claims, roll_mode, roll_peak
+from scenarios.inertia import led_by, main, roll_claims, roll_mode, roll_peak
 from vehicle.car import Car
 
 

@@ -6,17 +6,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from scenarios.levels import main
-from scenarios.levels_claims import (
+from scenarios.levels import (
+    CHANNELS,
+    DAMPER,
+    OUTPUTS,
     PUBLISHED_SLIP,
     LevelNumbers,
     axis_claims,
     frequency_claims,
+    main,
     order_claims,
     quarter_turn,
     slip_claims,
 )
-from scenarios.levels_figures import CHANNELS, DAMPER, OUTPUTS
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,11 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from scenarios.claim import Claim
-from scenarios.quarter_car import main
-from scenarios.quarter_car_claims import write_results
-from scenarios.quarter_car_figures import FIGURES
-from scenarios.quarter_car_runs import LOW, Runs, peak
+from scenarios.claims import Claim
+from scenarios.quarter_car.__main__ import main
+from scenarios.quarter_car.claims import findings
+from scenarios.quarter_car.figures import FIGURES
+from scenarios.quarter_car.runs import LOW, Runs, peak
 from vehicle.parameters.quarter_car import load_quarter_car
 
 
@@ -64,7 +64,7 @@ class Short(Runs):
 
 
 def test_the_table_holds_every_published_row(tmp_path):
-    write_results(Short(car=load_quarter_car(), quick=True), tmp_path)
+    findings(Short(car=load_quarter_car(), quick=True)).write(tmp_path)
     results = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
     names = [row["name"] for row in results["rows"]]
     for wanted in (

@@ -6,9 +6,8 @@ import json
 import numpy as np
 import pytest
 
-from scenarios.slip_peaks import extra_peaks, most_prominent, slip_phases
-from scenarios.stribeck import main
-from scenarios.stribeck_claims import force_error, law_force, peak_claims
+from scenarios.stribeck import force_error, law_force, main, peak_claims
+from vehicle.analysis.slip_peaks import extra_peaks, most_prominent, slip_phases
 from vehicle.car import Car
 from vehicle.excitation.bump import bump
 
@@ -45,7 +44,7 @@ def slip(burst):
     since = TIME - 0.3
     relative = np.where(inside, 4.0 * np.exp(-since / 0.01), 0.0)
     relative += burst * np.exp(-(((TIME - 0.33) / 0.003) ** 2))
-    return slip_phases(TIME, velocity, relative, begin=0.2, until=0.6)
+    return slip_phases(TIME, velocity, relative, saturated=1e-3, begin=0.2, until=0.6)
 
 
 def test_a_burst_after_break_away_is_an_extra_peak():
@@ -72,7 +71,7 @@ def test_a_small_burst_and_the_jump_itself_are_none():
 
 def test_slips_outside_the_stretch_and_short_ones_do_not_count():
     velocity = np.where((TIME >= 0.3) & (TIME < 0.31), 0.02, 0.0) + np.where(TIME > 0.8, 0.02, 0.0)
-    assert slip_phases(TIME, velocity, np.sin(300.0 * TIME), begin=0.2, until=0.6) == []
+    assert slip_phases(TIME, velocity, np.sin(300.0 * TIME), saturated=1e-3, begin=0.2, until=0.6) == []
 
 
 def test_law_of_equations_3_1_and_3_2():

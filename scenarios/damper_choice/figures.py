@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.chart import COLORS, chart, lines
-from scenarios.damper_choice_runs import READ_OFF, START_REAR, RoadHolding
+from scenarios.charts import chart, lines
+from scenarios.damper_choice.runs import READ_OFF, SPEED, START_REAR, RoadHolding, TradeOff
 from vehicle.lumped.damper_optimum import Fluctuation
+from vehicle.lumped.road_spectrum import ROAD_CLASSES
+from vehicle.rendering.figure import COLOURS
 
 Array = npt.NDArray[np.float64]
 
@@ -47,13 +49,13 @@ def optimum_figure(folder: Path, found: dict[str, RoadHolding], road: str) -> No
     with chart(folder / f"figure_09_10_{road}.png", caption, columns=2, size=(11.0, 4.8)) as panels:
         for panel, (measure, one) in zip(panels, found.items(), strict=True):
             curves = [
-                ("quarter car", one.quarter, COLORS[0], "-"),
-                ("half car front, equal dampers", one.equal[0], COLORS[1], "--"),
-                ("half car rear, equal dampers", one.equal[1], COLORS[2], "-."),
+                ("quarter car", one.quarter, COLOURS[0], "-"),
+                ("half car front, equal dampers", one.equal[0], COLOURS[1], "--"),
+                ("half car rear, equal dampers", one.equal[1], COLOURS[2], "-."),
             ]
             label = "R as printed [-]" if measure == "printed" else "RMS tyre force / static load [-]"
             lines(panel, one.damping, curves, xlabel="damping [N s/m]", ylabel=label, title=f"{measure} measure")
-            for best, color in zip((one.quarter_optimum, *one.equal_optima), COLORS, strict=False):
+            for best, color in zip((one.quarter_optimum, *one.equal_optima), COLOURS, strict=False):
                 panel.plot(best.damping, best.value, "o", color=color, markersize=5)
             panel.set_ylim(bottom=0.0)
 
@@ -73,10 +75,10 @@ def iteration_figure(folder: Path, found: RoadHolding, measure: Fluctuation) -> 
             values = [float(measure(float(a), float(b))[end]) for a, b in pairs]
             other = "rear" if end == 0 else "front"
             title = f"figure {number}: {other} held at {held:.0f} N s/m"
-            curve = (step.changed, values, COLORS[1 + end], "-")
+            curve = (step.changed, values, COLOURS[1 + end], "-")
             lines(panel, READ_OFF, [curve], xlabel=f"{step.changed} damping [N s/m]", ylabel="R [-]", title=title)
             best = step.front if end == 0 else step.rear
-            panel.plot(best, step.fluctuation[end], "o", color=COLORS[1 + end], markersize=5)
+            panel.plot(best, step.fluctuation[end], "o", color=COLOURS[1 + end], markersize=5)
             panel.set_ylim(bottom=0.0)
             front, rear = step.front, step.rear
 
@@ -84,7 +86,52 @@ def iteration_figure(folder: Path, found: RoadHolding, measure: Fluctuation) -> 
 def _responses(panel: object, frequency: Array, curves: dict[float, Array], title: str, unit: str) -> None:
     drawn = [
         (f"{c:.0f} N s/m", values, color, style)
-        for (c, values), color, style in zip(curves.items(), COLORS, STYLES, strict=False)
+        for (c, values), color, style in zip(curves.items(), COLOURS, STYLES, strict=False)
     ]
     lines(panel, frequency, drawn, xlabel="frequency [Hz]", ylabel=f"transmissibility {unit}", title=title)
     panel.set_ylim(bottom=0.0)  # type: ignore[attr-defined]
+
+
+def trade_off_figure(path: Path, found: TradeOff, name: str) -> None:
+    """One figure: the three measures over damping, and comfort against road holding."""
+    from matplotlib import colormaps
+
+    caption = (
+        f"{name} on roads of ISO 8608, classes A to H, {3.6 * SPEED:.0f} km/h, linear model: every class doubles all "
+        "values. Ring: the car's own damper; square: least tyre load; triangle: best comfort. Above the dashed line "
+        "(1/3 of the static load) the tyre leaves the road now and then and the linear values no longer hold."
+    )
+    colors = colormaps["viridis"](np.linspace(0.0, 0.9, len(ROAD_CLASSES)))
+    quantities = (
+        ("tyre_load", 1.0, "RMS tyre force / static load [-]"),
+        ("acceleration", 1.0, "RMS body acceleration, Wk [m/s$^2$]"),
+        ("travel", 1e3, "RMS suspension travel [mm]"),
+    )
+    with chart(path, caption, rows=2, columns=2, size=(12.0, 9.0)) as panels:
+        for (road, row), color in zip(found.measures.items(), colors, strict=True):
+            values = {key: factor * np.array([getattr(one, key) for one in row]) for key, factor, _ in quantities}
+            for panel, (key, _, label) in zip(panels, quantities, strict=False):
+                panel.semilogy(found.damping, values[key], color=color, linewidth=1.4)
+                panel.set_xlabel("damping [N s/m]")
+                panel.set_ylabel(label)
+                panel.annotate(road, (found.damping[-1], values[key][-1]), fontsize=9, color=color)
+            last = panels[3]
+            last.loglog(values["acceleration"], values["tyre_load"], color=color, linewidth=1.4)
+            for damping, marker in (
+                (found.own, "o"),
+                (found.best("tyre_load"), "s"),
+                (found.best("acceleration"), "^"),
+            ):
+                x = np.interp(damping, found.damping, values["acceleration"])
+                y = np.interp(damping, found.damping, values["tyre_load"])
+                ring = marker == "o"  # stays visible where it coincides with a best one
+                size, fill = (9, "none") if ring else (4, "full")
+                last.plot(x, y, marker, color=color, markersize=size, fillstyle=fill)
+            last.annotate(road, (values["acceleration"][-1], values["tyre_load"][-1]), fontsize=9, color=color)
+        panels[0].axhline(1.0 / 3.0, color="#888888", linestyle="--", linewidth=0.9)
+        panels[3].axhline(1.0 / 3.0, color="#888888", linestyle="--", linewidth=0.9)
+        for panel in panels[:3]:
+            panel.axvline(found.own, color="#888888", linestyle=":", linewidth=0.9)
+        panels[3].set_xlabel("RMS body acceleration, Wk [m/s$^2$]")
+        panels[3].set_ylabel("RMS tyre force / static load [-]")
+        panels[3].set_title("comfort against road holding, damping along each curve", fontsize=10)

@@ -1,4 +1,4 @@
-"""Figures of the bumps: time histories as in figures 3.13 to 3.20, friction limits as in figure 3.12, ring-down."""
+"""Figures of the bumps, as 3.12 to 3.20 of the source, and the film of both side by side, in step."""
 
 from __future__ import annotations
 
@@ -6,15 +6,21 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
-from scenarios.bump_claims import PUBLISHED_FRICTION, BumpNumbers
-from scenarios.car_charts import figure_file, rows_of
-from scenarios.car_study import computed_by
-from scenarios.relative_acceleration import relative_acceleration
-from scenarios.ring_down import SHARE, ring_down_time
+from scenarios.bump.claims import PUBLISHED_FRICTION
+from scenarios.bump.runs import RUNG_DOWN, BumpNumbers, relative_acceleration, ring_down_time
+from scenarios.charts import figure_file, rows_of
+from scenarios.study import computed_by
 from vehicle.car import Run
+from vehicle.errors import OutputError
 from vehicle.excitation.bump import BUMP_START_S
+from vehicle.output_folder import write_whole
+from vehicle.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.rendering.figure import COLOURS
+from vehicle.rendering.film import QUALITY
+from vehicle.rendering.layout import Layout
+from vehicle.rendering.shot import Shot
 
 VERTICAL = {
     "seat rail (3.13)": "seat_rail_acc_z",
@@ -127,7 +133,7 @@ def ring_down_figure(path: Path, still: Sequence[Run], sizes: Sequence[float], e
                 relative = motion / np.max(np.abs(motion[run.time >= end]))
                 axis.plot(run.time[after] - end, relative[after], color=colour, label=f"A = {1e3 * size:g} mm")
                 axis.axvline(ring_down_time(run.time, motion, end), color=colour, linestyle=":", linewidth=1.3)
-            axis.axhspan(-SHARE, SHARE, color="#e2e2e2", zorder=0)
+            axis.axhspan(-RUNG_DOWN, RUNG_DOWN, color="#e2e2e2", zorder=0)
             axis.set(ylim=(-1.1, 1.1), ylabel=f"{label}\n[-]")
         axes[0].legend(loc="upper right")
         axes[-1].set_xlabel("time after the bump [s]")
@@ -138,3 +144,79 @@ def _caption(run: Run, what: str) -> str:
         f"{what}. Bump under the right front wheel from t = {BUMP_START_S:g} s; time histories, no averages; "
         f"{computed_by(run)}"
     )
+
+
+Picture = npt.NDArray[np.uint8]
+
+HALF = (960, 600)
+"""Width and height of one half [pixel]: wide enough for the captions that its height gives."""
+
+BANNER = 48
+"""Height of the captions above the halves [pixel]."""
+
+SLOW, FPS = 3.0, 30.0
+
+SHOWN_BUMP = 0.06
+"""Height [m] to which every bump is exaggerated: a linear car would look alike in both halves."""
+
+
+def side_by_side(path: Path, runs: Sequence[Run], sizes: Sequence[float], *, start: float, duration: float) -> None:
+    """Write the film as H.264 in MP4.
+
+    Args:
+        path: MP4 file.
+        runs: with poses, in the order from left to right.
+        sizes: A of the bumps [m].
+        start: first time shown [s].
+        duration: length of the film [s].
+
+    Raises:
+        MissingPartError: no off-screen OpenGL library or no ffmpeg.
+        OutputError: the file cannot be written.
+    """
+    ffmpeg, backend = find_ffmpeg(), choose_backend()
+    shots = [
+        Shot(
+            run,
+            Layout(width=HALF[0], height=HALF[1]),
+            start=start,
+            duration=duration,
+            slow=SLOW,
+            exaggeration=SHOWN_BUMP / size,
+            fps=FPS,
+        )
+        for run, size in zip(runs, sizes, strict=True)
+    ]
+    captions = [f"bump of {1e3 * size:g} mm, motion {SHOWN_BUMP / size:g} times" for size in sizes]
+    banner = np.concatenate([_banner(text) for text in captions], axis=1)
+
+    import mediapy
+
+    mediapy.set_ffmpeg(ffmpeg)
+
+    def write(file: Path) -> None:
+        shape = (banner.shape[0] + HALF[1], banner.shape[1])
+        with mediapy.VideoWriter(
+            file, shape=shape, fps=FPS, codec="h264", crf=QUALITY, encoded_format="yuv420p"
+        ) as writer:
+            for halves in zip(*(shot.frames(backend) for shot in shots), strict=True):
+                writer.add_image(np.concatenate([banner, np.concatenate(halves, axis=1)], axis=0))
+
+    try:
+        write_whole(path, write)
+    except RuntimeError as error:
+        # What ffmpeg complains about comes as a RuntimeError with these words.
+        if str(error).startswith("Error writing"):
+            raise OutputError(f"{path}: the film cannot be written: {' '.join(str(error).split())}") from None
+        raise
+
+
+def _banner(text: str) -> Picture:
+    """A strip with a text in its middle, (height, width, 3)."""
+    import matplotlib
+    from PIL import Image, ImageDraw, ImageFont
+
+    font = ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans-Bold.ttf"), 24)
+    image = Image.new("RGB", (HALF[0], BANNER), (28, 37, 48))
+    ImageDraw.Draw(image).text((HALF[0] / 2, BANNER / 2), text, fill=(255, 255, 255), font=font, anchor="mm")
+    return np.asarray(image)

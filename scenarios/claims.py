@@ -40,7 +40,7 @@ LEGEND = (
 )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Claim:
     """One row: what is printed, what we find, whether the two agree, why, and what kind of row it is."""
 
@@ -58,45 +58,35 @@ class Claim:
     """Lowest and highest published value, infinite where it is open; None where the print is no interval."""
 
 
-def number_claim(
-    name: str, published: float, ours: float, tolerance: float, why: str, *, status: Status, source: Source
-) -> Claim:
-    """Row of a printed number.
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """Makes the rows of one status from one place of the source."""
 
-    Args:
-        name: what is compared, with its unit.
-        published: printed value, not 0.
-        ours: own value.
-        tolerance: largest |ours - published|, in the unit of the value.
-        why: reason of the tolerance, and of a disagreement.
-        status, source: as of `Claim`.
-    """
-    return Claim(
-        name=name,
-        published=published,
-        ours=float(ours),
-        deviation=float(ours - published) / published,
-        within=bool(abs(ours - published) <= tolerance),
-        why=why,
-        status=status,
-        source=source,
-    )
+    status: Status
+    source: Source
+
+    def number(self, name: str, published: float, ours: float, tolerance: float, why: str) -> Claim:
+        """Row of a printed number.
+
+        Args:
+            name: what is compared, with its unit.
+            published: printed value, not 0.
+            ours: own value.
+            tolerance: largest |ours - published|, in the unit of the value.
+            why: reason of the tolerance, and of a disagreement.
+        """
+        deviation = float(ours - published) / published
+        within = bool(abs(ours - published) <= tolerance)
+        return Claim(name, published, float(ours), deviation, within, why, self.status, self.source)
+
+    def statement(self, name: str, published: str, ours: str, holds: bool, why: str) -> Claim:
+        """Row of a printed statement in words."""
+        return Claim(name, published, ours, None, bool(holds), why, self.status, self.source)
 
 
-def statement_claim(
-    name: str, published: str, ours: str, holds: bool, why: str, *, status: Status, source: Source
-) -> Claim:
-    """Row of a printed statement in words."""
-    return Claim(
-        name=name,
-        published=published,
-        ours=ours,
-        deviation=None,
-        within=bool(holds),
-        why=why,
-        status=status,
-        source=source,
-    )
+PREDICTED, FITTED, CHOSEN = Kind("predicted", "text"), Kind("fitted", "text"), Kind("chosen", "text")
+OWN_CHECK, COMPARED = Kind("own check", "inferred"), Kind("own check", "text")
+TABLE, INFERRED, DUPLICATE = Kind("predicted", "table"), Kind("predicted", "inferred"), Kind("duplicate", "text")
 
 
 def interval_claim(name: str, interval: Interval, ours: float, why: str, *, status: Status = "predicted") -> Claim:
@@ -112,17 +102,8 @@ def interval_claim(name: str, interval: Interval, ours: float, why: str, *, stat
     low, high = interval
     nearest = min(max(ours, low), high)
     inside = bool(low <= ours <= high)
-    return Claim(
-        name=name,
-        published=_between(interval),
-        ours=float(ours),
-        deviation=0.0 if inside else float(ours - nearest) / abs(nearest) if nearest else None,
-        within=inside,
-        why=why,
-        status=status,
-        source="axis interval",
-        interval=interval,
-    )
+    deviation = 0.0 if inside else float(ours - nearest) / abs(nearest) if nearest else None
+    return Claim(name, _between(interval), float(ours), deviation, inside, why, status, "axis interval", interval)
 
 
 def spread_claim(
@@ -141,17 +122,10 @@ def spread_claim(
         status: as of `Claim`.
     """
     low, middle, high = (float(value) for value in np.percentile(np.asarray(ours), (5.0, 50.0, 95.0)))
-    return Claim(
-        name=name,
-        published=_between(interval),
-        ours=f"5th to 95th percentile {low:.3g} to {high:.3g}, median {middle:.3g}",
-        deviation=None,
-        within=bool(low <= interval[0] and interval[1] <= high),
-        why=f"the interval must lie between our percentiles; {why}",
-        status=status,
-        source="axis interval",
-        interval=interval,
-    )
+    text = f"5th to 95th percentile {low:.3g} to {high:.3g}, median {middle:.3g}"
+    inside = bool(low <= interval[0] and interval[1] <= high)
+    why = f"the interval must lie between our percentiles; {why}"
+    return Claim(name, _between(interval), text, None, inside, why, status, "axis interval", interval)
 
 
 def headline(rows: Sequence[Mapping[str, Any]]) -> str:

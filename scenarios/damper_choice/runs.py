@@ -8,10 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.analysis.weighting import weighting
 from vehicle.lumped.damper_optimum import Fluctuation, Optimum, Step, iterate, joint_optimum, optimum
+from vehicle.lumped.ride_measures import RideMeasures, ride_measures
 from vehicle.lumped.road_holding import printed_load_fluctuation, tyre_load_ratio
 from vehicle.lumped.road_holding_models import RoadHoldingModel, half_car_model, quarter_car_model
-from vehicle.parameters.damper_choice import DamperChoiceParameters, ExponentialRoad, FrequencyBands
+from vehicle.lumped.road_spectrum import ROAD_CLASSES, iso_8608_density
+from vehicle.parameters.axle import Axle
+from vehicle.parameters.damper_choice import (
+    DamperChoiceParameters,
+    ExponentialRoad,
+    FrequencyBands,
+    RoadHoldingQuarterCar,
+)
+from vehicle.parameters.vehicle import Vehicle
 
 Array = npt.NDArray[np.float64]
 
@@ -98,4 +108,93 @@ def road_holding(
         read_off=read_off,
         continuous=iterate(both, rear=START_REAR),
         joint=joint_optimum(both, start=(read_off[-1].front, read_off[-1].rear)),
+    )
+
+
+WHEEL_PARTS = ("knuckle", "tyre", "brake_disc", "caliper", "damper_bottom", "main_spring_lower", "stabilizer_rod")
+"""Parts that move with the wheel."""
+
+LINK_PARTS = ("a_arm", "steering_rod")
+"""Parts between body and wheel: half of their mass moves with the wheel."""
+
+
+def complete_car_quarter(vehicle: Vehicle) -> RoadHoldingQuarterCar:
+    """Quarter car that stands for the front right corner of the complete car.
+
+    The sprung mass is the share of body and engine on one front wheel between front wheels and rear supports; spring
+    and damper act along the strut, at the wheel with the square of the cosine of its angle. Left out: the flexible
+    body, the engine on its mounts, the friction of the damper, the suspension mount and the stabilizer.
+
+    Args:
+        vehicle: the complete car.
+
+    Returns:
+        Its equivalent quarter car.
+    """
+    points = vehicle.hardpoints
+    rear = points.rear_support[0]
+    base = rear - points.wheel_center[0]
+    front_share = (
+        vehicle.body.mass * (rear - vehicle.body.cog[0]) + vehicle.parts["engine"].mass * (rear - points.engine_cog[0])
+    ) / base
+    strut = np.subtract(points.strut_top, points.damper_bottom)
+    slope = float(strut[2] / np.linalg.norm(strut)) ** 2
+    unsprung = sum(vehicle.parts[name].mass for name in WHEEL_PARTS)
+    unsprung += 0.5 * sum(vehicle.parts[name].mass for name in LINK_PARTS)
+    return RoadHoldingQuarterCar(
+        sprung_mass=0.5 * front_share,
+        wheel=Axle(
+            unsprung_mass=unsprung,
+            suspension_stiffness=slope * vehicle.main_spring.stiffness,
+            suspension_damping=slope * vehicle.damper.viscous,
+            tyre_stiffness=vehicle.bushings.tyre.stiffness[2],
+            tyre_damping=vehicle.bushings.tyre.damping[2],
+        ),
+    )
+
+
+SPEED = 80.0 / 3.6
+"""Speed on the roads of ISO 8608 [m/s], assumed."""
+
+EDGES = np.geomspace(0.1, 50.0, 801)
+"""Edges of the intervals of integration [Hz]; twice as many change no measure by more than 0.1 %."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class TradeOff:
+    """Measures of one car over damping for every road class."""
+
+    damping: Array
+    """[N s/m], shape (m,)."""
+    measures: dict[str, list[RideMeasures]]
+    """Road class -> one for each damping."""
+    own: float
+    """Damping of the car itself [N s/m]."""
+
+    def best(self, name: str) -> float:
+        """Damping of the least value of a measure: the same for every class, for all densities are proportional."""
+        return float(self.damping[np.argmin([getattr(one, name) for one in self.measures["A"]])])
+
+
+def trade_off(car: RoadHoldingQuarterCar, damping: npt.ArrayLike) -> TradeOff:
+    """Measures of a quarter car over damping on all classes of ISO 8608.
+
+    Args:
+        car: quarter car.
+        damping: damper coefficients [N s/m].
+    """
+    lines = np.asarray(np.sqrt(EDGES[1:] * EDGES[:-1]), dtype=np.float64)
+    width = np.diff(EDGES)
+    coefficients = np.asarray(damping, dtype=np.float64)
+    weight = weighting("Wk").spectrum_factor(lines)
+    return TradeOff(
+        damping=coefficients,
+        measures={
+            name: [
+                ride_measures(car, c, lines, iso_8608_density(name, SPEED, lines), width, weight)
+                for c in coefficients.tolist()
+            ]
+            for name in ROAD_CLASSES
+        },
+        own=car.wheel.suspension_damping,
     )

@@ -9,7 +9,6 @@ import numpy.typing as npt
 from scipy.signal import find_peaks
 
 from vehicle.analysis.slip import slip_intervals
-from vehicle.car import SATURATED_VELOCITY
 
 Vector = npt.NDArray[np.float64]
 
@@ -61,20 +60,23 @@ class SlipPhase:
     peaks: tuple[SlipPeak, ...]
 
 
-def slip_phases(time: Vector, velocity: Vector, relative: Vector, *, begin: float, until: float) -> list[SlipPhase]:
+def slip_phases(
+    time: Vector, velocity: Vector, relative: Vector, *, saturated: float, begin: float, until: float
+) -> list[SlipPhase]:
     """Slips that begin in a stretch of a run, with the peaks that follow each break-away.
 
     Args:
         time: [s], (n,).
         velocity: of the damper [m/s], (n,).
         relative: acceleration of the damper top relative to the knuckle [m/s2], (n,).
+        saturated: velocity above which the friction is saturated and stick has ended [m/s].
         begin, until: stretch [s].
 
     Returns:
         Phases of at least `SHORTEST_SLIP`, in the order of time.
     """
     phases = []
-    for start, end in slip_intervals(time, velocity, SATURATED_VELOCITY):
+    for start, end in slip_intervals(time, velocity, saturated):
         if not begin <= start <= until or end - start < SHORTEST_SLIP:
             continue
         # The jump back to zero at the end of the slip is no peak: the window ends before it.

@@ -1,4 +1,4 @@
-"""Charts of the complete car: FRFs with phase and coherence, time histories; written whole or not at all."""
+"""Charts with title, caption and units: FRFs, time histories, lines; written whole or not at all."""
 
 from __future__ import annotations
 
@@ -101,13 +101,21 @@ def draw_frf(
 
 @contextmanager
 def figure_file(path: Path, size: tuple[float, float], title: str, caption: str) -> Iterator[Any]:
-    """Give an empty figure with title and caption; write it under a temporary name and rename it when complete."""
+    """Give an empty figure; write it with title and caption under a temporary name and rename it when complete.
+
+    Args:
+        path: PNG file.
+        size: width and height [inch].
+        title: above the figure; none if empty.
+        caption: what is seen, under which conditions.
+    """
     draft = path.with_name(f".{path.name}.draft.png")
     try:
         with saved_figure(draft, size) as figure:
             yield figure
-            figure.suptitle(title, fontsize=12)
-            figure.supxlabel("\n".join(textwrap.wrap(caption, width=int(14.5 * size[0]))), fontsize=8.5, color=INK)
+            if title:
+                figure.suptitle(title, fontsize=12)
+            figure.supxlabel(textwrap.fill(caption, width=int(14.5 * size[0])), fontsize=8.5, color=INK)
         write_whole(path, lambda temporary: _move(draft, temporary))
     finally:
         draft.unlink(missing_ok=True)
@@ -115,6 +123,32 @@ def figure_file(path: Path, size: tuple[float, float], title: str, caption: str)
 
 def _move(source: Path, target: Path) -> None:
     source.replace(target)
+
+
+@contextmanager
+def chart(
+    path: Path, caption: str, *, rows: int = 1, columns: int = 1, size: tuple[float, float] = (9.0, 5.0)
+) -> Iterator[Sequence[Any]]:
+    """The axes of a figure without title, row by row; arguments as of `figure_file`."""
+    with figure_file(path, size, "", caption) as figure:
+        yield figure.subplots(rows, columns, squeeze=False).ravel()
+
+
+def lines(
+    panel: Any,
+    x: npt.ArrayLike,
+    curves: Sequence[tuple[str | None, npt.ArrayLike, str, str]],
+    *,
+    xlabel: str,
+    ylabel: str,
+    title: str = "",
+) -> None:
+    """Draw curves (label, values, colour, line style) over a common axis; without label a curve has no legend entry."""
+    for label, values, colour, style in curves:
+        panel.plot(x, values, color=colour, linestyle=style, linewidth=1.4, label=label)
+    panel.set(xlabel=xlabel, ylabel=ylabel, title=title)
+    if any(label for label, *_ in curves):
+        panel.legend()
 
 
 def rows_of(figure: Any, count: int, columns: int, **options: Any) -> Any:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.claim import Claim, number_claim, statement_claim
-from scenarios.half_car_rider_runs import KMH, SPEEDS, passive
+from scenarios.claims import PREDICTED, Claim
+from scenarios.half_car_rider.runs import KMH, SPEEDS, passive
 from vehicle.lumped.half_car_rider import places
 from vehicle.lumped.motion_history import MotionHistory
 from vehicle.lumped.settling import settling_time
@@ -55,29 +55,25 @@ def base_case_claims(car: HalfCarRiderParameters, history: MotionHistory) -> lis
             factor * float(np.abs(history.of(place[name], quantity)).max()) for name in ("upper_limb", "lower_limb")
         )
         rows.append(
-            statement_claim(
+            PREDICTED.statement(
                 f"{figure}: peak {quantity} of the upper body above that of the lower body",
                 "larger",
                 f"upper {upper:.3g} {unit}, lower {lower:.3g} {unit}",
                 upper > lower,
                 _why_upper(car, history, quantity),
-                status="predicted",
-                source="text",
             )
         )
     seat, body = _peaks(car, history, ("seat", "body"))
     stiff = replace(car, seat=replace(car.seat, stiffness=STIFF_SEAT))
     stiff_seat, stiff_body = _peaks(stiff, passive(stiff, SPEEDS[0]), ("seat", "body"))
     rows.append(
-        statement_claim(
+        PREDICTED.statement(
             "figure 10: peak acceleration of the seat above that of the chassis",
             "larger",
             f"seat {seat:.3g} m/s2, chassis {body:.3g} m/s2",
             seat > body,
             "the seat is not printed; the assumed one isolates from the pulse of the bump. With a seat of "
             f"{STIFF_SEAT:.0f} N/m it would be {stiff_seat:.3g} against {stiff_body:.3g} m/s2",
-            status="predicted",
-            source="text",
         )
     )
     for name, quantity, printed, limit, figure in SETTLING:
@@ -121,8 +117,8 @@ def _settling(
     label = f"{figure}: settling time of {name} {quantity} [s]"
     if limit:
         text, holds = f"longer than {printed}", ours >= printed - READING
-        return statement_claim(label, text, f"{ours:.2f}", holds, why, status="predicted", source="text")
-    return number_claim(label, printed, ours, READING, why, status="predicted", source="text")
+        return PREDICTED.statement(label, text, f"{ours:.2f}", holds, why)
+    return PREDICTED.number(label, printed, ours, READING, why)
 
 
 def base_case_table(car: HalfCarRiderParameters, history: MotionHistory) -> dict[str, dict[str, Any]]:

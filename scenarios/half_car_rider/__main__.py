@@ -8,28 +8,19 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from scenarios.claim import headline, write_claims
-from scenarios.half_car_rider_base_case import base_case_claims, base_case_table
-from scenarios.half_car_rider_claims import (
-    dose_claims,
-    matrix_claim,
-    speed_claims,
-    travel_claims,
-)
-from scenarios.half_car_rider_figures import lift_off_figure, speed_figure, study_figures, time_figures
-from scenarios.half_car_rider_runs import SPEEDS, Outcome, driven, outcome, parameter_study, passive
-from scenarios.output_folder import prepare_folder
-from scenarios.study_command import run_study, study_parser
+from scenarios.half_car_rider.base_case import base_case_claims, base_case_table
+from scenarios.half_car_rider.claims import dose_claims, matrix_claim, speed_claims, travel_claims
+from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
+from scenarios.half_car_rider.runs import SPEEDS, Outcome, driven, outcome, parameter_study, passive
+from scenarios.study import Findings, lumped_parser, run_lumped_study
 from vehicle.lumped.half_car_simulation import PASSIVE
 from vehicle.lumped.semi_active import LAWS
-from vehicle.parameters.half_car_rider import PUBLISHED, half_car_rider_parameters
-
-TITLE = "Half car with seat and rider"
+from vehicle.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
 
 SETTLING_NOTE = (
     "Settling times: the source names no band. 0.5 % of the peak is the one of 0.5, 1, 2 and 5 % that comes nearest to "
@@ -42,10 +33,8 @@ ASSUMED = (
 )
 
 
-def study(options: argparse.Namespace) -> str:
-    """Run everything and write the files; returns the line to print."""
-    car = half_car_rider_parameters(options.parameters or PUBLISHED)
-    folder = prepare_folder(options.output, force=options.force)
+def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace) -> Findings:
+    """Run everything, draw the figures into the folder, and compare."""
     factors = [float(f) for f in np.linspace(0.8, 1.2, 3 if options.quick else 9)]
     history = passive(car, SPEEDS[0])
     studied = parameter_study(car, factors)
@@ -72,8 +61,8 @@ def study(options: argparse.Namespace) -> str:
     lift_off_figure(folder, car, history, free[0], SPEEDS[0])
     base = {"base_case": base_case_table(car, history)}
     notes = [_lift_off_note(outcomes[PASSIVE], free_outcomes), _law_table(outcomes), SETTLING_NOTE, ASSUMED]
-    write_claims(folder, TITLE, claims, notes, {**_data(outcomes, free_outcomes, studied, factors, scan), **base})
-    return f"{folder}: {headline([asdict(claim) for claim in claims])}; see results.md"
+    data = {**_data(outcomes, free_outcomes, studied, factors, scan), **base}
+    return Findings(title="Half car with seat and rider", claims=claims, unjudged=None, notes=notes, data=data)
 
 
 def _scan_speeds(quick: bool) -> list[float]:
@@ -144,10 +133,13 @@ def _row(one: Outcome) -> dict[str, Any]:
     }
 
 
-def main(argv: list[str] | None = None) -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Command line; returns the exit code."""
-    parser = study_parser("half_car_rider", "Half car with seat and rider over a bump.")
-    return run_study(parser, study, sys.argv[1:] if argv is None else argv)
+
+    def load(options: argparse.Namespace) -> HalfCarRiderParameters:
+        return half_car_rider_parameters(options.parameters or PUBLISHED)
+
+    return run_lumped_study(lumped_parser("half_car_rider"), load, study, arguments)
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.claim import Claim, statement_claim
-from scenarios.half_car_rider_runs import KMH, SPEEDS, VARIED, Outcome, passive, varied
+from scenarios.claims import COMPARED, PREDICTED, Claim
+from scenarios.half_car_rider.runs import KMH, SPEEDS, VARIED, Outcome, passive, varied
 from vehicle.lumped.half_car_rider import places
 from vehicle.lumped.half_car_rider_printed import growth_rate
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
@@ -43,14 +43,12 @@ def dose_claims(
             change = relative_changes([[getattr(o, f"{limb}_vdv") for o in row] for row in studied[parameter]])
             mass = relative_changes([[getattr(o, f"{limb}_vdv") for o in row] for row in studied["sprung_mass"]])
             rows.append(
-                statement_claim(
+                PREDICTED.statement(
                     f"VDV of the {limb} body with {VARIED[parameter]}",
                     direction,
                     f"{_changes(change)} from {factors[0]:.0%} to {factors[-1]:.0%}, at {_speeds()} km/h",
                     _agrees(direction, change, LITTLE * np.abs(mass)),
                     f"rule: {_rule(direction)} at every speed; {reasons[parameter]}",
-                    status="predicted",
-                    source="text",
                 )
             )
     for limb in ("upper", "lower"):
@@ -59,14 +57,12 @@ def dose_claims(
             for name in ("sprung_mass", "unsprung_mass", "suspension_stiffness")
         )
         rows.append(
-            statement_claim(
+            PREDICTED.statement(
                 f"VDV of the {limb} body: sprung mass and suspension stiffness against unsprung mass",
                 "both stronger",
                 f"mean change {mass.mean():.1%}, {stiffness.mean():.1%} against {unsprung.mean():.1%}",
                 bool(min(mass.mean(), stiffness.mean()) > unsprung.mean()),
                 "mean over the five speeds of the magnitude of the change from 80 to 120 %",
-                status="predicted",
-                source="text",
             )
         )
     return rows
@@ -100,14 +96,12 @@ def travel_claims(
     for parameter, direction in TRAVEL_DIRECTIONS.items():
         change = relative_changes([[o.travel for o in row] for row in studied[parameter]])
         rows.append(
-            statement_claim(
+            PREDICTED.statement(
                 f"suspension travel with {VARIED[parameter]}",
                 direction,
                 f"{_changes(change)} from {factors[0]:.0%} to {factors[-1]:.0%}, at {_speeds()} km/h",
                 _agrees(direction, change, np.zeros_like(change)),
                 f"rule: {_rule(direction)} at every speed; {_why_travel(car, parameter, factors)}",
-                status="predicted",
-                source="text",
             )
         )
     return rows
@@ -128,10 +122,7 @@ def _why_travel(car: HalfCarRiderParameters, parameter: str, factors: Sequence[f
 
 
 def speed_claims(
-    car: HalfCarRiderParameters,
-    scan: Mapping[str, Sequence[float]],
-    upper: Sequence[float],
-    one_sided: Sequence[float],
+    car: HalfCarRiderParameters, scan: Mapping[str, Sequence[float]], upper: Sequence[float], one_sided: Sequence[float]
 ) -> list[Claim]:
     """Rows on the dose value over speed.
 
@@ -144,7 +135,7 @@ def speed_claims(
     peak = int(np.argmax(scan["upper"]))
     at_peak, slow, fast = (1e3 * car.bump.length / (v * KMH) for v in (scan["speed"][peak], SPEEDS[0], SPEEDS[-1]))
     return [
-        statement_claim(
+        PREDICTED.statement(
             "VDV with speed, 20 to 60 km/h",
             "rises",
             f"upper body {_list(upper)}; tyres that can leave the road {_list(one_sided)} m/s^1.75",
@@ -153,17 +144,13 @@ def speed_claims(
             "the impulse h0 wb 2 / (pi v) k that reaches the body falls as 1 / v. The dose value is largest at "
             f"{scan['speed'][peak]:.0f} km/h ({scan['upper'][peak]:.2f}, {at_peak:.0f} ms on the bump) and falls from "
             "there on, with linear and with one-sided tyres",
-            status="predicted",
-            source="text",
         ),
-        statement_claim(
+        COMPARED.statement(
             "VDV of 15 m/s^1.75 is severe discomfort",
             "limit of BS 6841",
             f"largest of the study {max(upper):.2f} m/s^1.75",
             max(upper) < 15.0,
             "one bump stays far below the limit; unweighted acceleration, as in the source",
-            status="own check",
-            source="text",
         ),
     ]
 
@@ -171,15 +158,13 @@ def speed_claims(
 def matrix_claim(car: HalfCarRiderParameters) -> Claim:
     """Row on the printed matrices."""
     printed, ours = growth_rate(car, printed=True), growth_rate(car, printed=False)
-    return statement_claim(
+    return COMPARED.statement(
         "matrices [C] and [K] below equation 16",
         "equations of motion of the passive car",
         f"largest real part of the poles {printed:+.2f} 1/s as printed, {ours:+.2f} 1/s derived from the energies",
         printed < 0.0,
         "typing errors: neither is symmetric and the pitch damping is negative, so the printed equations grow for "
         "ever; the figures of the source cannot come from them as they stand",
-        status="own check",
-        source="text",
     )
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from scenarios.claim import Claim, number_claim, statement_claim, write_claims
-from scenarios.quarter_car_in_mujoco_claims import in_mujoco_claims
-from scenarios.quarter_car_runs import HIGH, LEVELS, LOW, NO_FRICTION, SEED, Array, Runs, peak, rms
+from scenarios.claims import DUPLICATE, INFERRED, PREDICTED, TABLE, Claim
+from scenarios.quarter_car.in_mujoco import in_mujoco_claims
+from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, NO_FRICTION, SEED, Array, Runs, peak, rms
+from scenarios.study import Findings
 from vehicle.laws.maxwell import Maxwell
 from vehicle.linear.natural_modes import natural_modes
 from vehicle.linear.response import frequency_response
@@ -19,16 +18,11 @@ from vehicle.lumped.history import History
 FIRST, SECOND = (1.0, 8.0), (8.0, 35.0)
 """Bands [Hz] where the first (body) and the second (wheel) resonance are looked for."""
 
-PRINTED: dict[str, Any] = {"status": "predicted", "source": "text"}
-"""Most rows: printed in the text, and nothing was fitted to them."""
-
-AGAIN: dict[str, Any] = {"status": "duplicate", "source": "text"}
-
 ABOUT = "printed with 'about', read from a figure: 5 %"
 
 
-def write_results(runs: Runs, folder: Path) -> None:
-    """Write `results.md` and `results.json` of the whole study."""
+def findings(runs: Runs) -> Findings:
+    """The table of the whole study."""
     claims = [*_modes(runs), *_elements(runs), *_mass_on_damper(runs), *_sines(runs), *_levels(runs)]
     claims += [*_engine(runs), *_degressive(runs), *_inclined(runs), *_steepness(runs), *in_mujoco_claims(runs)]
     notes = [
@@ -40,9 +34,8 @@ def write_results(runs: Runs, folder: Path) -> None:
         "PSD over the road velocity PSD, looked for in "
         f"{FIRST[0]:g} to {FIRST[1]:g} Hz and {SECOND[0]:g} to {SECOND[1]:g} Hz.",
     ]
-    write_claims(
-        folder, "Quarter-car family (source 1, chapter 2 and appendices A to D)", claims, notes, {"quick": runs.quick}
-    )
+    title = "Quarter-car family (source 1, chapter 2 and appendices A to D)"
+    return Findings(title=title, claims=claims, unjudged=None, notes=notes, data={"quick": runs.quick})
 
 
 def _modes(runs: Runs) -> list[Claim]:
@@ -55,13 +48,8 @@ def _modes(runs: Runs) -> list[Claim]:
             if damper == "slip":
                 why += f"; undamped frequency, the free decay has {modes.damped_frequency[index]:.2f} Hz"
             claims.append(
-                number_claim(
-                    f"{damper} mode {index + 1} [Hz]",
-                    value,
-                    float(modes.frequency[index]),
-                    0.05 * value,
-                    why,
-                    **PRINTED,
+                PREDICTED.number(
+                    f"{damper} mode {index + 1} [Hz]", value, float(modes.frequency[index]), 0.05 * value, why
                 )
             )
     return claims
@@ -75,26 +63,22 @@ def _elements(runs: Runs) -> list[Claim]:
     frequency, angle = elastomer.loss_peak()
     at_nine = float(np.degrees(elastomer.loss_angle(2.0 * np.pi * 9.0)))
     return [
-        number_claim("engine alone [Hz]", 12.7, float(natural / (2 * np.pi)), 0.05, "printed digits", **PRINTED),
-        number_claim(
+        PREDICTED.number("engine alone [Hz]", 12.7, float(natural / (2 * np.pi)), 0.05, "printed digits"),
+        PREDICTED.number(
             "engine alone, damping [%]",
             15.0,
             float(50.0 * mount.damping / (engine.mass * natural)),
             0.5,
             "printed digits",
-            **PRINTED,
         ),
-        number_claim("elastomer, loss angle at 9 Hz [deg]", 10.0, at_nine, 0.5, "printed digits", **AGAIN),
-        number_claim(
-            "elastomer, largest loss angle [deg]", 10.0, float(np.degrees(angle)), 0.5, "printed digits", **PRINTED
-        ),
-        number_claim(
+        DUPLICATE.number("elastomer, loss angle at 9 Hz [deg]", 10.0, at_nine, 0.5, "printed digits"),
+        PREDICTED.number("elastomer, largest loss angle [deg]", 10.0, float(np.degrees(angle)), 0.5, "printed digits"),
+        PREDICTED.number(
             "elastomer, frequency of the largest loss angle [Hz]",
             9.0,
             float(frequency / (2 * np.pi)),
             0.5,
             "9 Hz is the corner K2/(2 pi De) of the branch alone; the whole mount peaks at sqrt(K1/(K1 + K2)) of it",
-            **PRINTED,
         ),
     ]
 
@@ -109,30 +93,26 @@ def _mass_on_damper(runs: Runs) -> list[Claim]:
     force_gap = float(np.abs(smooth.sliding_force - switched.sliding_force)[fast].max()) / p.friction_limit
     stuck = float(np.mean(np.abs(vs) <= p.stick_band))
     return [
-        statement_claim(
+        PREDICTED.statement(
             "switch and smooth law above 5e-5 m/s",
             "agree",
             f"velocities differ by at most {gap:.2g} m/s, forces by {100 * force_gap:.2g} % of Fd",
             gap < 5e-5 and bool(force_gap < 0.0128),
             "agree: closer than the velocity of the statement; the atan law lacks 2/(pi eps v) = 1.27 % there",
-            **PRINTED,
         ),
-        number_claim(
+        INFERRED.number(
             "mass on damper, velocity peak [m/s]",
             (p.force_amplitude - p.friction_limit) / p.damping,
             float(np.abs(vs).max()),
             4e-6,
             "(F - Fd)/D; the inertia of 1 kg changes it by less than 0.1 %",
-            status="predicted",
-            source="inferred",
         ),
-        statement_claim(
+        PREDICTED.statement(
             "mass on damper sticks in intervals",
             "yes",
             f"{100 * stuck:.1f} % of the time",
             bool(abs(stuck - 2 / np.pi * np.arcsin(p.friction_limit / p.force_amplitude)) < 1e-3),
             "(2/pi) asin(Fd/F) = 30.0 % of the time without inertia",
-            **PRINTED,
         ),
     ]
 
@@ -145,7 +125,7 @@ def _sines(runs: Runs) -> list[Claim]:
         ratio = float(np.abs(friction).max() / np.abs(none).max())
         spectrum_ = np.abs(np.fft.rfft(friction - friction.mean()))
         # One statement about a start that is not told: the second start says it again.
-        kind = PRINTED if phase == 0.0 else AGAIN
+        kind = PREDICTED if phase == 0.0 else DUPLICATE
         dominant = float(np.argmax(spectrum_) / (friction.size * 1e-3))
         why = "a stuck strut damps nothing, so its vibration of 4.8 Hz is that of the start; " + (
             "a sine switched on at rest gives less than the printed one, whose start is not told"
@@ -153,34 +133,26 @@ def _sines(runs: Runs) -> list[Claim]:
             else "where the start makes the strut slip, it decays to what Fd can hold and stays; 'about': 25 %"
         )
         claims.append(
-            number_claim(
-                f"sine 1 mm, {start}: body acceleration with / without friction", 10.0, ratio, 2.5, why, **kind
-            )
+            kind.number(f"sine 1 mm, {start}: body acceleration with / without friction", 10.0, ratio, 2.5, why)
         )
         name = f"sine 1 mm, {start}: frequency of the body [Hz]"
-        claims.append(number_claim(name, 5.0, dominant, 0.5, "lines 0.5 Hz apart", **kind))
+        claims.append(kind.number(name, 5.0, dominant, 0.5, "lines 0.5 Hz apart"))
     braked, free = runs.sine(HIGH), runs.sine(HIGH, NO_FRICTION)
     ratio = rms(_late(braked)) / rms(_late(free))
     wheel = rms(_late(braked, "wheel") - _late(free, "wheel")) / rms(_late(free, "wheel"))
     body = rms(_late(braked) - _late(free)) / rms(_late(free))
     claims.append(
-        number_claim(
-            "sine 50 mm: body acceleration RMS with / without friction",
-            1.0,
-            ratio,
-            0.1,
-            "'nearly equal': 10 %",
-            **PRINTED,
+        PREDICTED.number(
+            "sine 50 mm: body acceleration RMS with / without friction", 1.0, ratio, 0.1, "'nearly equal': 10 %"
         )
     )
     claims.append(
-        statement_claim(
+        PREDICTED.statement(
             "sine 50 mm: extra wheel motion at each transition",
             "small, hardly any at the body",
             f"{100 * wheel:.0f} % of the wheel's RMS, {100 * body:.0f} % of the body's",
             body < wheel,
             "RMS of the difference with and without friction; it must be smaller at the body",
-            **PRINTED,
         )
     )
     return claims
@@ -201,35 +173,24 @@ def _levels(runs: Runs) -> list[Claim]:
         for level, a, b in zip(LEVELS, first, second, strict=True)
     )
     claims = [
-        number_claim("road 0.5 mm: first resonance [Hz]", 4.8, first[0][0], 0.25, ABOUT, **PRINTED),
-        number_claim("road 0.5 mm: second resonance [Hz]", 25.0, second[0][0], 1.25, ABOUT, **PRINTED),
-        number_claim(
-            "road 50 mm: first resonance [Hz]", 2.0, first[-1][0], 0.25, "read from a figure: 0.25 Hz", **PRINTED
-        ),
-        number_claim(
-            "road 50 mm: second resonance [Hz]",
-            12.5,
-            second[-1][0],
-            1.25,
-            _flat_top(runs),
-            **PRINTED,
-        ),
-        statement_claim(
+        PREDICTED.number("road 0.5 mm: first resonance [Hz]", 4.8, first[0][0], 0.25, ABOUT),
+        PREDICTED.number("road 0.5 mm: second resonance [Hz]", 25.0, second[0][0], 1.25, ABOUT),
+        PREDICTED.number("road 50 mm: first resonance [Hz]", 2.0, first[-1][0], 0.25, "read from a figure: 0.25 Hz"),
+        PREDICTED.number("road 50 mm: second resonance [Hz]", 12.5, second[-1][0], 1.25, _flat_top(runs)),
+        PREDICTED.statement(
             "resonances move down as the level grows",
             "yes",
             text,
             all(b[0] < a[0] + 1.5 * runs.resolution for a, b in itertools.pairwise(first))
             and second[-1][0] < second[0][0],
             "the first rises by less than the 1.5 lines a Hann window resolves; - : no top inside the band",
-            **PRINTED,
         ),
-        statement_claim(
+        PREDICTED.statement(
             "resonances become damped as the level grows",
             "yes",
             f"peaks fall to {100 * first[-1][1] / first[0][1]:.1g} % and {100 * second[-1][1] / second[0][1]:.1g} %",
             first[-1][1] < first[0][1] and second[-1][1] < second[0][1],
             "height over the road velocity PSD, highest against lowest level",
-            **PRINTED,
         ),
     ]
     return claims
@@ -263,22 +224,19 @@ def _engine(runs: Runs) -> list[Claim]:
         ):
             found = peak(*_response(runs, family, level), FIRST)[0]
             why = "read from a figure with lines of 0.5 Hz"
-            claims.append(
-                number_claim(f"{name} road, {label}: first resonance [Hz]", value, found, 0.5, why, **PRINTED)
-            )
+            claims.append(PREDICTED.number(f"{name} road, {label}: first resonance [Hz]", value, found, 0.5, why))
         frequency, linear = runs.spectrum("linear mount", level)
         _, elastomer = runs.spectrum("elastomer", level)
         for band, less in (((12.5, 16.0), True), ((16.0, 30.0), False)):
             inside = (frequency >= band[0]) & (frequency <= band[1])
             ratio = float(np.sqrt(elastomer[inside].sum() / linear[inside].sum()))
             claims.append(
-                statement_claim(
+                PREDICTED.statement(
                     f"{name} road, body {band[0]:g} to {band[1]:g} Hz, elastomer against linear mount",
                     "more damped" if less else "less damped",
                     f"RMS in the band x {ratio:.3f}",
                     (ratio < 1.0) == less,
                     "sign of the change",
-                    **PRINTED,
                 )
             )
     return claims
@@ -289,21 +247,19 @@ def _degressive(runs: Runs) -> list[Claim]:
     wheel = [peak(*_response(runs, family, LOW), (20.0, 30.0)) for family in ("degressive", "constant damping")]
     body = [peak(*_response(runs, family, HIGH), FIRST) for family in ("degressive", "constant damping")]
     return [
-        statement_claim(
+        PREDICTED.statement(
             "degressive damper, low road: peak at 25 Hz",
             "less damped",
             f"height x {wheel[0][1] / wheel[1][1]:.2f}, at {wheel[0][0]:.2f} Hz",
             wheel[0][1] > wheel[1][1],
             "PSD of the body acceleration, largest line in 20 to 30 Hz",
-            **PRINTED,
         ),
-        statement_claim(
+        PREDICTED.statement(
             "degressive damper, high road: first resonance",
             "higher and more damped",
             f"{body[1][0]:.2f} to {body[0][0]:.2f} Hz, height x {body[0][1] / body[1][1]:.2f}",
             body[0][0] > body[1][0] and body[0][1] < body[1][1],
             "largest line of the response",
-            **PRINTED,
         ),
     ]
 
@@ -320,23 +276,21 @@ def _inclined(runs: Runs) -> list[Claim]:
             whole.append(float(np.sqrt(density.sum() / upright.sum())) - 1.0)
             near.append(float(np.sqrt(density[inside].sum() / upright[inside].sum())) - 1.0)
         claims.append(
-            statement_claim(
+            PREDICTED.statement(
                 f"angle of the strut, {name} road: body acceleration 1 to 50 Hz",
                 "no significant change",
                 f"RMS {100 * whole[0]:+.1f} % at 4.2 deg, {100 * whole[1]:+.1f} % at 8.4 deg",
                 max(abs(value) for value in whole) < 0.1,
                 "significant: 10 % of the RMS",
-                **PRINTED,
             )
         )
         claims.append(
-            statement_claim(
+            PREDICTED.statement(
                 f"angle of the strut, {name} road: near 20 Hz",
                 "slight decrease",
                 f"RMS 18 to 22 Hz {100 * near[0]:+.1f} % at 4.2 deg, {100 * near[1]:+.1f} % at 8.4 deg",
                 max(near) < 0.0,
                 "a decrease at both angles",
-                **PRINTED,
             )
         )
     return claims
@@ -350,27 +304,23 @@ def _steepness(runs: Runs) -> list[Claim]:
     for steepness, value, error in ((1e6, 0.0175, 0.0), (1e5, 0.0169, 3.0), (1e4, 0.0165, 5.6)):
         label = f"table B.1, eps {steepness:.0e}"
         claims.append(
-            number_claim(
+            TABLE.number(
                 f"{label}: RMS [m/s2]",
                 value,
                 values[steepness],
                 0.05 * value,
                 "the input is not printed; ours is the lowest random road, 0.5 mm, so the sizes cannot be compared",
-                status="predicted",
-                source="table",
             )
         )
         ours = 100.0 * (1.0 - values[steepness] / values[1e6])
         if steepness < 1e6:
             claims.append(
-                number_claim(
+                TABLE.number(
                     f"{label}: error against eps 1e6 [%]",
                     error,
                     ours,
                     2.0,
                     "2 points; depends on how long the unknown input stays near the friction limit",
-                    status="predicted",
-                    source="table",
                 )
             )
     return claims

@@ -9,14 +9,12 @@ import argparse
 import math
 import sys
 from collections.abc import Mapping
-from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from scenarios.claim import headline, write_claims
-from scenarios.complete_car_quarter import complete_car_quarter
-from scenarios.damper_choice_claims import (
+from scenarios.damper_choice.claims import (
     half_optimum_claims,
     half_response_claims,
     quarter_optimum_claims,
@@ -24,38 +22,36 @@ from scenarios.damper_choice_claims import (
     rate_claims,
     ratio_claims,
 )
-from scenarios.damper_choice_figures import (
+from scenarios.damper_choice.figures import (
     half_response_figure,
     iteration_figure,
     optimum_figure,
     quarter_response_figure,
+    trade_off_figure,
 )
-from scenarios.damper_choice_runs import (
+from scenarios.damper_choice.runs import (
     MEASURES,
     RoadHolding,
+    TradeOff,
+    complete_car_quarter,
     half_car_measure,
     half_responses,
     quarter_responses,
     road_holding,
+    trade_off,
 )
-from scenarios.damper_choice_tradeoff import TradeOff, trade_off, trade_off_figure
-from scenarios.output_folder import prepare_folder
-from scenarios.study_command import run_study, study_parser
+from scenarios.study import Findings, lumped_parser, run_lumped_study
 from vehicle.lumped.damper_fit import HALF_FREE, QUARTER_FREE, fit_half_car, fit_quarter_car
 from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
 from vehicle.parameters.toml_file import as_table
 from vehicle.parameters.vehicle import load_vehicle
 
-TITLE = "Choice of dampers for road holding"
-
 HEAVY_INDEX = 0.5
 """Least J / (Ms a b) of the comparison fit of --refit [-]."""
 
 
-def study(options: argparse.Namespace) -> str:
-    """Run everything and write the files; returns the line to print."""
-    parameters = damper_choice_parameters(options.parameters or FITTED)
-    folder = prepare_folder(options.output, force=options.force)
+def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Namespace) -> Findings:
+    """Run everything, draw the figures into the folder, and compare."""
     damping = [float(c) for c in np.linspace(1000.0, 8000.0, 15 if options.quick else 57)]
     lines = np.arange(0.01, 15.0, 0.01)
     wide = np.arange(0.02, 30.0, 0.02)
@@ -97,8 +93,7 @@ def study(options: argparse.Namespace) -> str:
     if options.refit:
         data["refit"] = _refit(parameters)
         notes.append(_refit_note(data["refit"]))
-    write_claims(folder, TITLE, claims, notes, data)
-    return f"{folder}: {headline([asdict(claim) for claim in claims])}; see results.md"
+    return Findings(title="Choice of dampers for road holding", claims=claims, unjudged=None, notes=notes, data=data)
 
 
 def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:
@@ -232,11 +227,15 @@ def _refit(parameters: DamperChoiceParameters) -> dict[str, Any]:
     return result
 
 
-def main(argv: list[str] | None = None) -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Command line; returns the exit code."""
-    parser = study_parser("damper_choice", "Choice of dampers for road holding.")
+    parser = lumped_parser("damper_choice")
     parser.add_argument("--refit", action="store_true", help="repeat the fit of the parameters and write it beside")
-    return run_study(parser, study, sys.argv[1:] if argv is None else argv)
+
+    def load(options: argparse.Namespace) -> DamperChoiceParameters:
+        return damper_choice_parameters(options.parameters or FITTED)
+
+    return run_lumped_study(parser, load, study, arguments)
 
 
 if __name__ == "__main__":

@@ -8,12 +8,13 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.chart import COLORS, chart, lines
-from scenarios.half_car_rider_runs import SPEEDS, VARIED, Outcome
+from scenarios.charts import chart, lines
+from scenarios.half_car_rider.runs import SPEEDS, VARIED, Outcome
 from vehicle.lumped.half_car_rider import places
 from vehicle.lumped.motion_history import MotionHistory
 from vehicle.lumped.tyre_contact import linear_tyre_load
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.rendering.figure import COLOURS
 
 BUMP = "Half-sine bump 0.05 m high, 0.5 m long"
 
@@ -43,7 +44,7 @@ def time_figures(
         )
         with chart(folder / f"{name}.png", caption, rows=len(shown), size=(9.0, 3.0 + 2.2 * len(shown))) as panels:
             for panel, one in zip(panels, shown, strict=True):
-                for (law, history), color in zip(histories.items(), COLORS, strict=False):
+                for (law, history), color in zip(histories.items(), COLOURS, strict=False):
                     curve = (law, factor * history.of(place[one], quantity), color, LINE_STYLES[law])
                     lines(panel, history.time, [curve], xlabel="time [s]", ylabel=label, title=one.replace("_", " "))
                 panel.set_xlim(0.0, 4.0)
@@ -97,9 +98,9 @@ def _study(
     ylabel: str,
 ) -> None:
     for index, speed in enumerate(SPEEDS):
-        curves = [(f"{speed:.0f} km/h", solid[index], COLORS[index], "-")]
+        curves = [(f"{speed:.0f} km/h", solid[index], COLOURS[index], "-")]
         if dashed is not None:
-            curves.append((None, dashed[index], COLORS[index], "--"))  # type: ignore[arg-type]
+            curves.append((None, dashed[index], COLOURS[index], "--"))  # type: ignore[arg-type]
         lines(panel, percent, curves, xlabel=xlabel, ylabel=ylabel)
     panel.set_ylim(bottom=0.0)  # type: ignore[attr-defined]
 
@@ -114,11 +115,11 @@ def speed_figure(
     )
     with chart(folder / "speed.png", caption, columns=2, size=(11.0, 4.8)) as (left, right):
         left.axvspan(SPEEDS[0], SPEEDS[-1], color="#eeeeee")
-        curves = [("upper body", scan["upper"], COLORS[0], "-"), ("lower body", scan["lower"], COLORS[1], "--")]
+        curves = [("upper body", scan["upper"], COLOURS[0], "-"), ("lower body", scan["lower"], COLOURS[1], "--")]
         lines(left, scan["speed"], curves, xlabel="speed [km/h]", ylabel="VDV [m/s$^{1.75}$]", title="passive")
         for index, (law, outcomes) in enumerate(laws.items()):
             style = "--" if law.endswith("on_off") else "-"
-            color = "black" if law == "passive" else COLORS[((index - 1) // 2) % len(COLORS)]
+            color = "black" if law == "passive" else COLOURS[((index - 1) // 2) % len(COLOURS)]
             curve = (law.replace("_", " "), [o.upper_vdv for o in outcomes], color, style)
             lines(right, speeds, [curve], xlabel="speed [km/h]", ylabel="VDV of the upper body [m/s$^{1.75}$]")
         right.set_ylim(bottom=0.0)
@@ -140,7 +141,7 @@ def lift_off_figure(
             lines(
                 panel,
                 glued.time,
-                [("linear tyre", a / 1e3, COLORS[0], "-")],
+                [("linear tyre", a / 1e3, COLOURS[0], "-")],
                 xlabel="time [s]",
                 ylabel="tyre load [kN]",
                 title=end,
@@ -148,7 +149,7 @@ def lift_off_figure(
             lines(
                 panel,
                 free.time,
-                [("one-sided tyre", b / 1e3, COLORS[1], "--")],
+                [("one-sided tyre", b / 1e3, COLOURS[1], "--")],
                 xlabel="time [s]",
                 ylabel="tyre load [kN]",
                 title=end,

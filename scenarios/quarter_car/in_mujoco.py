@@ -11,6 +11,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.claims import OWN_CHECK, Claim
+from scenarios.quarter_car.runs import STEP, Runs, rms
+from vehicle.analysis.slip import slip_share
 from vehicle.assembly.quarter_car import quarter_car_spec
 from vehicle.excitation.signal import Signal
 from vehicle.laws.coulomb import RegularisedCoulomb
@@ -95,3 +98,38 @@ def friction_of_the_rows(car: QuarterCar) -> FirstOrder:
     network = quarter_car(car, damper="friction")
     law = RegularisedCoulomb(limit=car.friction.limit, steepness=car.friction.steepness)
     return dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),)).first_order()
+
+
+MIDDLE = 0.005
+"""RMS of the road [m] on which the damper slips part of the time."""
+
+
+def in_mujoco_claims(runs: Runs) -> list[Claim]:
+    """The same physics twice: element rows of the complete car in MuJoCo against the stiff solver."""
+    motion = in_mujoco(runs.car, runs.road_signal(MIDDLE))
+    every = round(STEP / DEFAULT_STEP)
+    slipping = 100.0 / runs.car.friction.steepness
+    share = 100.0 * slip_share(motion.sliding_velocity[::every], slipping)
+    claims = []
+    for law, history, places in (
+        ("the law of the row", runs.road_of(friction_of_the_rows(runs.car), MIDDLE), ("body", "wheel", "damper")),
+        ("the published atan law", runs.road(MIDDLE), ("body", "wheel")),
+    ):
+        gaps = {
+            place: 100.0 * (rms(value[::every]) / rms(history.acceleration(place)) - 1.0)
+            for place, value in motion.acceleration.items()
+        }
+        expected = 100.0 * slip_share(history.sliding_velocity(), slipping)
+        ours = ", ".join(f"{place} {gap:+.2f} %" for place, gap in gaps.items())
+        claims.append(
+            OWN_CHECK.statement(
+                f"road 5 mm, quarter car in MuJoCo against the stiff solver with {law}",
+                "same physics",
+                f"acceleration RMS {ours}; slip {share:.1f} against {expected:.1f} % of the time",
+                all(abs(gaps[place]) < 1.0 for place in places) and abs(share - expected) < 0.5,
+                f"not printed, our own check at {1e3 * DEFAULT_STEP:g} ms: RMS of {', '.join(places)} within 1 %, slip "
+                "(100/eps) within 0.5 points"
+                + ("" if "damper" in places else "; the two laws differ below 1/eps, which the damper mass feels"),
+            )
+        )
+    return claims

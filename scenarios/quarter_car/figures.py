@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.chart import COLORS, chart, lines
-from scenarios.quarter_car_runs import HIGH, LEVELS, LOW, NO_FRICTION, STEEP, STEP, Runs
+from scenarios.charts import chart, lines
+from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, NO_FRICTION, STEEP, STEP, Runs
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.maxwell import Maxwell
 from vehicle.linear.response import frequency_response
 from vehicle.lumped.history import History
+from vehicle.rendering.figure import COLOURS
 
 
 def figure_2_5(runs: Runs, path: Path) -> None:
@@ -34,7 +35,7 @@ def figure_2_5(runs: Runs, path: Path) -> None:
                 (axes[column], [np.abs(r) for r in responses], "|H| [m/m]"),
                 (axes[2 + column], [np.degrees(np.angle(r)) for r in responses], "phase [deg]"),
             ):
-                curves = [("body", values[0], COLORS[0], "-"), ("wheel", values[1], COLORS[1], "--")]
+                curves = [("body", values[0], COLOURS[0], "-"), ("wheel", values[1], COLOURS[1], "--")]
                 lines(panel, frequency, curves, xlabel="frequency [Hz]", ylabel=label, title=damper)
                 panel.set_xscale("log")
             axes[column].set_yscale("log")
@@ -49,10 +50,10 @@ def figure_2_6(runs: Runs, path: Path) -> None:
     caption = f"Simulated rough road, RMS {1e3 * HIGH:g} mm, constant velocity PSD from 1/{runs.duration:g} to 100 Hz."
     with chart(path, caption, columns=2) as axes:
         time = STEP * np.arange(road.size)
-        lines(axes[0], time, [(None, road, COLORS[0], "-")], xlabel="time [s]", ylabel="road displacement [m]")
+        lines(axes[0], time, [(None, road, COLOURS[0], "-")], xlabel="time [s]", ylabel="road displacement [m]")
         curves = [
-            ("displacement [m2/Hz]", density, COLORS[0], "-"),
-            ("velocity [(m/s)2/Hz]", density * (2 * np.pi * frequency) ** 2, COLORS[1], "--"),
+            ("displacement [m2/Hz]", density, COLOURS[0], "-"),
+            ("velocity [(m/s)2/Hz]", density * (2 * np.pi * frequency) ** 2, COLOURS[1], "--"),
         ]
         lines(axes[1], frequency, curves, xlabel="frequency [Hz]", ylabel="PSD")
         axes[1].set_xscale("log")
@@ -73,8 +74,8 @@ def figure_2_9(runs: Runs, path: Path) -> None:
                 curves = [
                     (name, (h.displacement, h.velocity, h.acceleration)[row]("mass")[keep], color, style)
                     for name, h, color, style in (
-                        ("smooth", smooth, COLORS[0], "-"),
-                        ("switch", switched, COLORS[1], "--"),
+                        ("smooth", smooth, COLOURS[0], "-"),
+                        ("switch", switched, COLOURS[1], "--"),
                     )
                 ]
                 lines(axes[2 * row + column], smooth.time[keep], curves, xlabel="time [s]", ylabel=label)
@@ -86,8 +87,8 @@ def figure_2_10(runs: Runs, path: Path) -> None:
     with chart(path, "Friction force over velocity, smooth law and switch model; right: near zero.", columns=2) as axes:
         for panel, reach in zip(axes, (5e-3, 5e-5), strict=True):
             for history, label, color, style in (
-                (smooth, "smooth", COLORS[0], "-"),
-                (switched, "switch", COLORS[1], "--"),
+                (smooth, "smooth", COLOURS[0], "-"),
+                (switched, "switch", COLOURS[1], "--"),
             ):
                 v, force = history.sliding_velocity(), history.sliding_force[:, 0]
                 panel.plot(v, force, color=color, linestyle=style, linewidth=1.2, label=label)
@@ -110,7 +111,7 @@ def _sines(
             histories = {label: run(amplitude) for label, run in compared.items()}
             for row, (label, values) in enumerate(quantities):
                 curves = []
-                for (name, history), color, style in zip(histories.items(), COLORS, ("-", "--", ":"), strict=False):
+                for (name, history), color, style in zip(histories.items(), COLOURS, ("-", "--", ":"), strict=False):
                     keep = history.time >= 3.0
                     curves.append((name, values(history)[keep], color, style))
                 time = next(iter(histories.values())).time
@@ -160,7 +161,7 @@ def figure_2_14(runs: Runs, path: Path) -> None:
     """Body acceleration spectra for growing roads."""
     caption = f"Body acceleration of the friction model (2.6), mean over {runs.roads} random roads, five levels."
     with chart(path, caption, size=(9, 6)) as axes:
-        for level, color in zip(LEVELS, COLORS, strict=True):
+        for level, color in zip(LEVELS, COLOURS, strict=True):
             frequency, density = runs.spectrum("no engine", level)
             axes[0].loglog(frequency, density, color=color, linewidth=1.3, label=f"{1e3 * level:g} mm")
         axes[0].set_xlabel("frequency [Hz]")
@@ -177,8 +178,8 @@ def figure_2_15(runs: Runs, path: Path) -> None:
             history = runs.road(level)
             keep = (history.time >= 0.3 * runs.duration) & (history.time <= 0.65 * runs.duration)
             curves = [
-                ("body", history.displacement("body")[keep], COLORS[0], "-"),
-                ("road", history.road[keep], COLORS[1], ":"),
+                ("body", history.displacement("body")[keep], COLOURS[0], "-"),
+                ("road", history.road[keep], COLOURS[1], ":"),
             ]
             title = f"road RMS {1e3 * level:g} mm"
             lines(panel, history.time[keep], curves, xlabel="time [s]", ylabel="displacement [m]", title=title)
@@ -205,8 +206,8 @@ def figure_2_18(runs: Runs, path: Path) -> None:
             keep = history.time >= 3.0
             body = history.acceleration("body")
             curves = [
-                ("engine - body", (history.acceleration("engine") - body)[keep], COLORS[0], "-"),
-                ("wheel - body", (history.acceleration("wheel") - body)[keep], COLORS[1], "--"),
+                ("engine - body", (history.acceleration("engine") - body)[keep], COLOURS[0], "-"),
+                ("wheel - body", (history.acceleration("wheel") - body)[keep], COLOURS[1], "--"),
             ]
             title = f"sine of {1e3 * amplitude:g} mm, 1 Hz"
             lines(
@@ -225,7 +226,7 @@ def figure_2_20(runs: Runs, path: Path) -> None:
             (axes[0], np.abs(stiffness), "|K| [N/m]"),
             (axes[1], np.degrees(np.angle(stiffness)), "loss angle [deg]"),
         ):
-            lines(panel, frequency, [(None, values, COLORS[0], "-")], xlabel="frequency [Hz]", ylabel=label)
+            lines(panel, frequency, [(None, values, COLOURS[0], "-")], xlabel="frequency [Hz]", ylabel=label)
             panel.set_xscale("log")
 
 
@@ -243,7 +244,7 @@ def _roads(runs: Runs, path: Path, caption: str, compared: dict[str, tuple[str, 
     with chart(path, caption, rows=2 if zoom else 1, columns=2, size=(9, 8 if zoom else 5)) as axes:
         for column, level in enumerate((LOW, HIGH)):
             for (label, (family, variant)), color, style in zip(
-                compared.items(), COLORS, ("-", "--", ":"), strict=False
+                compared.items(), COLOURS, ("-", "--", ":"), strict=False
             ):
                 frequency, density = runs.spectrum(family, level, variant)
                 axes[column].loglog(frequency, density, color=color, linestyle=style, linewidth=1.3, label=label)
@@ -269,7 +270,7 @@ def figure_b_1(runs: Runs, path: Path) -> None:
     velocity = np.linspace(-0.015, 0.015, 4001)
     with chart(path, caption, columns=2) as axes:
         for panel, reach in zip(axes, (0.015, 5e-4), strict=True):
-            for steepness, color in zip((1e6, 1e5, 1e4), COLORS, strict=False):
+            for steepness, color in zip((1e6, 1e5, 1e4), COLOURS, strict=False):
                 law = SmoothCoulomb(limit=runs.car.friction.limit, steepness=steepness)
                 v = velocity * reach / 0.015
                 panel.plot(v, law.force(v), color=color, linewidth=1.2, label=f"eps {steepness:.0e} s/m")
@@ -300,7 +301,7 @@ def figure_c_3(runs: Runs, path: Path) -> None:
             # The larger one first, so that it does not hide the other.
             curves = [
                 (label, histories[label].sliding_velocity(), color, "-")
-                for label, color in (("constant damping", COLORS[1]), ("degressive", COLORS[0]))
+                for label, color in (("constant damping", COLOURS[1]), ("degressive", COLOURS[0]))
             ]
             time = histories["degressive"].time
             title = f"road RMS {1e3 * level:g} mm"

@@ -1,0 +1,39 @@
+"""The quarter-car family of source 1: every figure of chapter 2 and the appendices, and its table of results.
+
+python -m scenarios.quarter_car [--output DIR] [--parameters FILE.toml] [--figure NAME] [--quick] [--force]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from scenarios.quarter_car.claims import findings
+from scenarios.quarter_car.figures import FIGURES
+from scenarios.quarter_car.runs import Runs
+from scenarios.study import Findings, lumped_parser, run_lumped_study
+from vehicle.parameters.quarter_car import PUBLISHED, load_quarter_car
+
+
+def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | str:
+    """Draw the figures; the table unless one figure alone was asked for."""
+    for name in [options.figure] if options.figure else FIGURES:
+        FIGURES[name](runs, folder / f"figure_{name.replace('.', '_').lower()}.png")
+    return f"1 figure; {runs.seconds:.0f} s of solving" if options.figure else findings(runs)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Command line; returns the exit code."""
+    parser = lumped_parser("quarter_car")
+    names = f"one of {', '.join(FIGURES)}; no table"
+    parser.add_argument("--figure", choices=list(FIGURES), metavar="NAME", help=names)
+
+    def load(options: argparse.Namespace) -> Runs:
+        return Runs(car=load_quarter_car(options.parameters or PUBLISHED), quick=options.quick)
+
+    return run_lumped_study(parser, load, study, arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
