@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.output_folder import write_whole
+from vehicle.output.folder import write_whole
 from vehicle.rendering.figure import COLOURS, saved_figure
 from vehicle.rendering.frf_plot import BAND, TICKS, wrapped_phase
 

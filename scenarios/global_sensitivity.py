@@ -17,9 +17,10 @@ from scenarios.comfort_observation import RoadInput, RoadMeasure, chosen_engine
 from scenarios.global_sensitivity_figures import draw_morris, draw_scatter, draw_sobol
 from scenarios.output_folder import write_text
 from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.commands.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.commands.options import engine_option, jobs_option, message_options, output_options
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.output_folder import write_json
+from vehicle.output.folder import write_json
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle
@@ -88,15 +89,14 @@ def parser() -> Parser:
     found.add_argument("--road", choices=sorted(ROAD_RMS), default="smooth", help="smooth by default")
     found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
     found.add_argument("--seed", type=int, default=2006, help="seed of the sample; 2006 by default")
-    found.add_argument("--engine", choices=("auto", "reduced", "mujoco"), default="auto", help="auto: reduced")
-    found.add_argument("--jobs", type=int, default=1, metavar="N", help="processes on this machine; 1 by default")
+    engine_option(found, "auto")
+    jobs_option(found)
     found.add_argument("--executor", metavar="WHERE", help="dask://host:port, or module:factory")
-    found.add_argument("--output", type=Path, default=Path("runs/global_sensitivity"), metavar="DIR", help="folder")
+    output_options(found, Path("runs/global_sensitivity"))
     found.add_argument("--quick", action="store_true", help="a few short runs, to see that everything works")
     found.add_argument("--resume", action="store_true", help="go on in that folder; finished runs are kept")
     found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")
-    found.add_argument("--force", action="store_true", help="start anew in that folder")
-    found.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    message_options(found)
     return found
 
 

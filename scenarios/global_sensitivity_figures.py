@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.output_folder import write_whole
+from vehicle.output.folder import write_whole
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle

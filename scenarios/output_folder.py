@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.output_folder import write_whole
-from vehicle.written_files import MARKER, mark, refuse_foreign
+from vehicle.output.folder import write_whole
+from vehicle.output.written_files import MARKER, mark, refuse_foreign
 
 
 def prepare_folder(folder: Path, *, force: bool) -> Path:

@@ -19,7 +19,8 @@ from scenarios.claims import LEGEND, headline, table_lines
 from scenarios.output_folder import prepare_folder, write_text
 from scenarios.slip_definition import definition_lines
 from scenarios.study import main_of
-from vehicle.command_line import Parser, parse_and_run
+from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.options import FORCE_HELP, jobs_option, message_options
 from vehicle.errors import DataError, SimulationError
 
 CAR_SCENARIOS = ("levels", "inertia", "bump", "stribeck", "comfort_sensitivity", "tornado", "tuning")
@@ -85,9 +86,9 @@ def parser() -> Parser:
     )
     found.add_argument("--reuse", action="store_true", help="read scenarios that are finished there, run the others")
     found.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
-    found.add_argument("--jobs", type=int, default=1, metavar="N", help="processes for independent runs; 1 by default")
-    found.add_argument("--force", action="store_true", help="overwrite existing results")
-    found.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    jobs_option(found)
+    found.add_argument("--force", action="store_true", help=FORCE_HELP)
+    message_options(found)
     return found
 
 

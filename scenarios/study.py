@@ -16,9 +16,9 @@ from scenarios.car_runs import CarRuns
 from scenarios.claims import Claim, headline, write_claims
 from scenarios.output_folder import prepare_folder
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.car import ENGINES, Run
-from vehicle.command_line import SET_HELP, Parser, parse_and_run
-from vehicle.errors import ConfigurationError
+from vehicle.car import Run
+from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.options import engine_option, jobs_option, message_options, output_options, vehicle_options
 
 STUDIES = {
     "levels": "Low, mid and high random input: FRFs, slip shares, wheel mode.",
@@ -78,25 +78,25 @@ class Findings:
         return f"{headline([asdict(claim) for claim in self.claims])}{more}; see results.md"
 
 
-def study_parser(name: str, *, quick: str, jobs: str) -> argparse.ArgumentParser:
+def study_parser(name: str, *, quick: str, jobs: str = "") -> argparse.ArgumentParser:
     """Parser with the options every study has.
 
     Args:
         name: of the study; results go to runs/<name> without --output.
-        quick, jobs: what --quick and --jobs mean here.
+        quick: what --quick means here.
+        jobs: a remark on --jobs.
     """
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
-    parser.add_argument("--output", type=Path, default=Path("runs") / name, metavar="DIR", help="folder of the results")
+    output_options(parser, Path("runs") / name)
     parser.add_argument("--quick", action="store_true", help=quick)
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help=jobs)
-    parser.add_argument("--force", action="store_true", help="overwrite an existing folder")
-    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    jobs_option(parser, note=jobs)
+    message_options(parser)
     return parser
 
 
 def lumped_parser(name: str) -> argparse.ArgumentParser:
     """Parser of a study of few masses, with a parameter file of its own."""
-    jobs = "worker processes; these studies batch their runs in one process, so it changes nothing"
+    jobs = "; this study batches its runs in one process, so that it changes nothing"
     parser = study_parser(name, quick="fewer points on the curves", jobs=jobs)
     own = "own parameters, named as the shipped ones"
     parser.add_argument("--parameters", type=Path, metavar="FILE.toml", help=own)
@@ -132,15 +132,9 @@ def run_lumped_study(
 
 def car_parser(name: str) -> argparse.ArgumentParser:
     """Parser with the options every study of the complete car has; results go to runs/<name> without --output."""
-    parser = study_parser(
-        name,
-        quick="short signals; what they cannot judge is left open",
-        jobs="processes for independent runs; %(default)s by default",
-    )
-    add = parser.add_argument
-    add("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
-    add("--set", dest="overrides", action="append", default=[], metavar="PATH=VALUE", help=SET_HELP)
-    add("--engine", choices=ENGINES, default="mujoco", help="what computes the runs; %(default)s by default")
+    parser = study_parser(name, quick="short signals; what they cannot judge is left open")
+    vehicle_options(parser)
+    engine_option(parser, "mujoco")
     return parser
 
 
@@ -161,8 +155,6 @@ def run_car_study(
     """
 
     def job(options: argparse.Namespace) -> None:
-        if options.jobs < 1:
-            raise ConfigurationError(f"--jobs {options.jobs}: must be at least 1")
         started = clock.perf_counter()
         runs = CarRuns(vehicle=options.vehicle, overrides=options.overrides, engine=options.engine, jobs=options.jobs)
         # A wrong parameter is refused before the folder is made.

@@ -26,7 +26,7 @@ from scenarios.tuning_hidden import HIDDEN
 from scenarios.tuning_own import own_measurements
 from scenarios.tuning_parameters import AUTHORS, QUICK, SLIDING, TEXT, parse_parameters
 from vehicle.car import Car, Run
-from vehicle.command_line import ProgressLine
+from vehicle.commands.command_line import ProgressLine
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range

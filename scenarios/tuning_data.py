@@ -16,10 +16,10 @@ from vehicle.car import Run
 from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
-from vehicle.output_folder import write_whole
+from vehicle.output.folder import write_whole
+from vehicle.output.run_files import FRAME
+from vehicle.output.tables import write_frf
 from vehicle.parameters.paths import overrides_of
-from vehicle.studies.shaker import FRAME
-from vehicle.studies.tables import write_frf
 from vehicle.tuning.frf_file import read_frf
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.record_target import RecordTarget

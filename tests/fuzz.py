@@ -24,8 +24,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle import comfort, modes, shaker, sweep
-from vehicle.command_line import FAULT
+from vehicle.commands import comfort, modes, shaker, sweep
+from vehicle.commands.command_line import FAULT
 from vehicle.excitation.random_road import random_road
 from vehicle.parameters.vehicle import FOCUS_FILE
 

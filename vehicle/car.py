@@ -35,7 +35,7 @@ from vehicle.linear.modes import Mode, car_modes
 from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.stability import require_stable
 from vehicle.linear.step_error import require_accurate_step
-from vehicle.names import AXES, WHEELS, acceleration_channels, channel_units
+from vehicle.names import AXES, ENGINES, WHEELS, acceleration_channels, channel_units
 from vehicle.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
@@ -44,8 +44,6 @@ from vehicle.simulation.car_model import CarModel, build_model
 from vehicle.simulation.judgement import require_finite
 from vehicle.simulation.recording import Recording
 from vehicle.simulation.run import Progress, simulate
-
-ENGINES = ("mujoco", "reduced", "auto")
 
 FRF_BAND = (1.0, 50.0)
 """Frequencies of an FRF [Hz]."""

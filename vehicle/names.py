@@ -11,6 +11,9 @@ WHEEL_SIGN = {"fr": 1.0, "fl": -1.0}
 SIDE_OF_WHEEL = {"fr": "right", "fl": "left"}
 WHEEL_OF_OPTION = {"front_right": "fr", "front_left": "fl"}
 
+ENGINES = ("mujoco", "reduced", "auto")
+"""What computes a run: the complete car, its poles, or the poles where they are valid."""
+
 SIDE_POINTS = (
     "wheel_center",
     "tyre_patch",

@@ -15,7 +15,7 @@ from scenarios.study import computed_by
 from vehicle.car import Run
 from vehicle.errors import OutputError
 from vehicle.excitation.bump import BUMP_START_S
-from vehicle.output_folder import write_whole
+from vehicle.output.folder import write_whole
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.rendering.figure import COLOURS
 from vehicle.rendering.film import QUALITY

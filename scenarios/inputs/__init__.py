@@ -1,1 +1,1 @@
-"""The shipped plate signals and the script that makes them."""
+"""The script that makes the shipped plate signals, which lie in `vehicle/inputs`."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from vehicle.excitation.band import LOWEST_FREQUENCY_HZ, SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER, UPPER_BAND_EDGE_HZ
 from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
 from vehicle.excitation.csv_output import write_signal
+from vehicle.excitation.input_files import INPUT_FOLDER
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 
@@ -61,7 +62,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         prog="python -m scenarios.inputs.make_inputs", description="Write the shipped inputs."
     )
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent, help="folder for the CSV files")
+    parser.add_argument("--output", type=Path, default=INPUT_FOLDER, help="folder for the CSV files")
     folder: Path = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
     for name, (signal, comments) in make_inputs().items():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle.analysis.weighting import weighting
-from vehicle.comfort import main
+from vehicle.commands.comfort import main
 
 
 @pytest.fixture

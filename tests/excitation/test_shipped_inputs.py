@@ -70,7 +70,7 @@ def test_a_miss_lists_the_names(tmp_path, monkeypatch):
     with pytest.raises(ConfigurationError) as caught:
         find_input("lov.csv")
     assert str(caught.value) == (
-        "input 'lov.csv' not found: no such file, and none of that name in scenarios/inputs/. Did you mean low.csv? "
+        "input 'lov.csv' not found: no such file, and none of that name is shipped. Did you mean low.csv? "
         "Give the path of a CSV file or one of: bump_1p5mm.csv, bump_7p5mm.csv, high.csv, low.csv, mid.csv"
     )
     assert caught.value.exit_code == 2

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-import vehicle.modes
 from vehicle.car import Car
+from vehicle.commands import modes
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.random_road import random_road
 from vehicle.linear.modes import grows
@@ -50,10 +50,10 @@ def test_its_modes_list_what_grows(car, capsys):
     assert any(mode.damping_ratio == pytest.approx(-1.0) for mode in growing), "a real pole, which modes used to hide"
     assert not any(mode.grows for mode in car.modes())
     arguments = [word for setting in FALLING for word in ("--set", setting)]
-    assert vehicle.modes.main([*arguments, "--json"]) == 0
+    assert modes.main([*arguments, "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert len(found["growing"]) == len(growing)
-    assert vehicle.modes.main(arguments) == 0
+    assert modes.main(arguments) == 0
     assert f"this car does not stand: {', '.join(found['growing'])} grows by itself" in capsys.readouterr().out
 
 

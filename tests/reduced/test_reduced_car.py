@@ -165,7 +165,7 @@ def test_without_numba_it_is_named_and_auto_is_mujoco(car, high_piece, monkeypat
 
     monkeypatch.setattr("builtins.__import__", without)
     try:
-        with pytest.raises(MissingPartError, match="needs numba; install the extra 'fast'"):
+        with pytest.raises(MissingPartError, match="needs numba, which is missing"):
             car.run(piece, engine="reduced")
         monkeypatch.undo()
         monkeypatch.setattr(march, "find_spec", lambda name: None)

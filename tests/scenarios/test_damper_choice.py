@@ -9,9 +9,9 @@ import pytest
 from scenarios.claims import Claim
 from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
+from vehicle.output.written_files import MARKER
 from vehicle.parameters.damper_choice import FITTED, damper_choice_parameters
 from vehicle.parameters.vehicle import load_vehicle
-from vehicle.written_files import MARKER
 
 P = damper_choice_parameters()
 

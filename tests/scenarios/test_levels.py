@@ -19,7 +19,7 @@ from scenarios.levels import (
     quarter_turn,
     slip_claims,
 )
-from vehicle.written_files import MARKER
+from vehicle.output.written_files import MARKER
 
 
 @pytest.fixture(scope="module")

@@ -106,7 +106,7 @@ def test_without_numba_the_python_form_runs_with_a_notice(
     run = simulate(car.model, piece)
     assert run.statistics.callback == "python"
     assert run.statistics.notices == (
-        "compiled callbacks need numba, which is missing (install vehicle[fast]); "
+        "compiled callbacks need numba, which is missing (pip install numba); "
         "the run used the Python form, which is slower and gives the same results",
     )
     for name, values in expected.channels.items():

@@ -270,9 +270,7 @@ def test_without_dask_the_extra_is_named(monkeypatch):
         raise ImportError(name)
 
     monkeypatch.setattr("importlib.import_module", without)
-    with pytest.raises(
-        MissingPartError, match=r"needs Dask; install the extra 'cluster' \(pip install 'vehicle\[cluster\]'\)"
-    ):
+    with pytest.raises(MissingPartError, match=r"needs Dask, of the extra 'cluster' \(pip install distributed\)"):
         executor_factory("dask://host:8786", 1)
 
 

@@ -6,7 +6,7 @@ import csv
 
 import pytest
 
-from vehicle.sweep import every_combination, main, read_table
+from vehicle.commands.sweep import every_combination, main, read_table
 
 
 @pytest.fixture
@@ -112,7 +112,7 @@ def test_failed_rows_are_no_success(signal, tmp_path, capsys):
 
 
 def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):
-    from vehicle.output_folder import folder_lock
+    from vehicle.output.folder import folder_lock
 
     arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
     (tmp_path / ".out.lock").write_text("999999\n", encoding="utf-8")  # of a killed process: nobody holds it

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vehicle.commands.shaker import main
 from vehicle.excitation.csv_output import write_signal
 from vehicle.excitation.random_road import random_road
-from vehicle.shaker import main
 
 
 @dataclass(frozen=True)

@@ -167,7 +167,7 @@ def test_item_39_full_disk(shaker, short_signal, tmp_path, monkeypatch):
     def full(path, *_):
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
-    monkeypatch.setattr("vehicle.studies.shaker.write_frf", full)
+    monkeypatch.setattr("vehicle.output.run_files.write_frf", full)
     outcome = shaker("--input", "short.csv")
     assert outcome.code == 6 and "No space left on device" in outcome.err
     assert not list(tmp_path.glob("runs/*")) and not list(tmp_path.glob("runs/.*"))

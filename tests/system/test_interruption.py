@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 
-from vehicle.command_line import INTERRUPTED, ProgressLine, run_command
+from vehicle.commands.command_line import INTERRUPTED, ProgressLine, run_command
 
 
 def test_a_swallowed_interruption_still_ends_the_job(capsys):

@@ -13,8 +13,8 @@ import pytest
 from scenarios.output_folder import prepare_folder, write_text
 from vehicle.assembly.mjcf_files import write_mjcf
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.output_folder import check_film, folder_lock, output_folder
-from vehicle.written_files import MARKER, discard, foreign, written
+from vehicle.output.folder import check_film, folder_lock, output_folder
+from vehicle.output.written_files import MARKER, discard, foreign, written
 
 ROOT = Path(__file__).resolve().parents[2]
 FILM = b"\x00\x00\x00\x20ftypisom"
@@ -136,7 +136,7 @@ def test_two_runs_in_one_folder(tmp_path):
         put(tmp_path / "run", "b.csv", force=True)
     # A killed process leaves its lock file and its half-written folder behind; neither stops the next run.
     killed = (
-        "import os; from pathlib import Path; from vehicle.output_folder import output_folder\n"
+        "import os; from pathlib import Path; from vehicle.output.folder import output_folder\n"
         "with output_folder(Path('run'), force=True) as made: os.kill(os.getpid(), 9)"
     )
     subprocess.run([sys.executable, "-c", killed], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)})

@@ -11,7 +11,7 @@ import pytest
 from tests.system.conftest import csv_text
 from tests.system.test_bad_inputs import GOOD, ROOT
 from vehicle.car import Car
-from vehicle.command_line import FAULT, run_command
+from vehicle.commands.command_line import FAULT, run_command
 from vehicle.errors import ConfigurationError
 
 NESTED = "[" * 2000 + "]" * 2000
@@ -69,7 +69,7 @@ def test_a_pipe_with_no_writer_is_no_file(option, shaker, short_signal, tmp_path
 
 
 def test_a_table_that_is_a_pipe(short_signal, tmp_path, capsys):
-    from vehicle.sweep import main
+    from vehicle.commands.sweep import main
 
     os.mkfifo(tmp_path / "pipe.csv")
     assert main(["--input", str(short_signal), "--table", str(tmp_path / "pipe.csv")]) == 3

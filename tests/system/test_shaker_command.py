@@ -15,8 +15,8 @@ from vehicle.excitation.csv_output import write_signal
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.names import acceleration_channels, channel_units
+from vehicle.output.written_files import MARKER, written
 from vehicle.parameters.vehicle import load_vehicle
-from vehicle.written_files import MARKER, written
 
 FILES = {"summary.json", "vehicle.toml", "time.npz", "frf.csv", "frf.png", "time.png"}
 
@@ -114,7 +114,7 @@ def test_shipped_inputs_are_found_by_name(shaker):
 
 
 def test_modes_command(capsys):
-    from vehicle.modes import main
+    from vehicle.commands.modes import main
 
     assert main(["--damper", "stuck", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -129,7 +129,7 @@ def test_modes_command(capsys):
 
 def test_published_modes(capsys):
     """Source 1: six rigid body modes below 10 Hz, roll at 6.5 Hz, engine 9 to 20 Hz, right wheel at 28 Hz."""
-    from vehicle.modes import main
+    from vehicle.commands.modes import main
 
     rolls = {}
     for variant in ("published", "improved"):

@@ -5,7 +5,7 @@ import pytest
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.studies.tables import write_frf
+from vehicle.output.tables import write_frf
 from vehicle.tuning.frf_file import read_frf
 
 CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z")

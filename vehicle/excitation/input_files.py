@@ -7,12 +7,12 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 
-INPUT_FOLDER = Path(__file__).resolve().parents[2] / "scenarios" / "inputs"
-"""The shipped inputs; `scenarios` lies beside `vehicle` in the repository and where both are installed."""
+INPUT_FOLDER = Path(__file__).resolve().parents[1] / "inputs"
+"""The shipped inputs, part of the package; `python -m scenarios.inputs.make_inputs` writes them."""
 
 
 def find_input(name: str | Path) -> Path:
-    """Return the file at the path as given, else the file of that name in `scenarios/inputs/`.
+    """Return the file at the path as given, else the shipped one of that name.
 
     Args:
         name: path of a CSV file, or the plain name of a shipped one such as 'low.csv'.
@@ -30,13 +30,12 @@ def find_input(name: str | Path) -> Path:
         return INPUT_FOLDER / given.name
     close = get_close_matches(given.name, names, n=1)
     hint = f" Did you mean {close[0]}?" if close else ""
-    exist = ", ".join(names) if names else "none (python -m scenarios.inputs.make_inputs writes them)"
     raise ConfigurationError(
-        f"input {str(name)!r} not found: no such file, and none of that name in scenarios/inputs/.{hint} "
-        f"Give the path of a CSV file or one of: {exist}"
+        f"input {str(name)!r} not found: no such file, and none of that name is shipped.{hint} "
+        f"Give the path of a CSV file or one of: {', '.join(names)}"
     )
 
 
 def shipped_inputs() -> list[str]:
-    """Names of the CSV files in `scenarios/inputs/`, sorted."""
+    """Names of the shipped CSV files, sorted."""
     return sorted(path.name for path in INPUT_FOLDER.glob("*.csv"))

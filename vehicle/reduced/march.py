@@ -21,7 +21,7 @@ import numpy as np
 from vehicle.compiler_cache import prepare_compiler_cache
 from vehicle.errors import MissingPartError
 
-MISSING = "the reduced engine needs numba; install the extra 'fast' (pip install 'vehicle[fast]')"
+MISSING = "the reduced engine needs numba, which is missing (pip install numba)"
 
 March = Callable[..., None]
 

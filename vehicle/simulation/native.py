@@ -49,7 +49,7 @@ def native_callback(rows: ElementRows) -> NativeCallback | str:
     try:
         importlib.import_module("numba")
     except ImportError:
-        return f"compiled callbacks need numba, which is missing (install vehicle[fast]); {SLOWER}"
+        return f"compiled callbacks need numba, which is missing (pip install numba); {SLOWER}"
     # A broken or unwritable installation of the compiler shows here, in many kinds of errors; none must stop a run.
     try:
         from vehicle.simulation.native_callback import NativeCallback

@@ -91,7 +91,7 @@ def _dask(address: str) -> Callable[[], Executor]:
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise MissingPartError(
-            "--executor dask://...: needs Dask; install the extra 'cluster' (pip install 'vehicle[cluster]')"
+            "--executor dask://...: needs Dask, of the extra 'cluster' (pip install distributed)"
         ) from None
 
     def make() -> Executor:

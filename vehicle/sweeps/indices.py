@@ -193,5 +193,5 @@ def _salib(part: str) -> Any:
         return importlib.import_module(f"SALib.{part}")
     except ImportError:
         raise MissingPartError(
-            "global sensitivity: needs SALib; install the extra 'sensitivity' (pip install 'vehicle[sensitivity]')"
+            "global sensitivity: needs SALib, of the extra 'sensitivity' (pip install SALib)"
         ) from None

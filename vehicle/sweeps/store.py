@@ -8,9 +8,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
-from vehicle.output_folder import folder_lock
+from vehicle.output.folder import folder_lock
+from vehicle.output.written_files import mark, note, refuse_foreign
 from vehicle.sweeps.worker import Result
-from vehicle.written_files import mark, note, refuse_foreign
 
 ROWS = "rows.jsonl"
 

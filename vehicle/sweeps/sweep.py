@@ -14,7 +14,7 @@ from typing import Any
 
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.flexbody.library import PACKAGE_FOLDER
-from vehicle.output_folder import folder_lock
+from vehicle.output.folder import folder_lock
 from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
 from vehicle.sweeps.case import Case, digest
 from vehicle.sweeps.executors import process_pool, workers_of

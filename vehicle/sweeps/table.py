@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.output_folder import write_json, write_whole
+from vehicle.output.folder import write_json, write_whole
 from vehicle.sweeps.case import Case
 from vehicle.sweeps.worker import Result
 

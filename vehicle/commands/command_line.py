@@ -17,12 +17,6 @@ from vehicle.errors import ConfigurationError, OutputError, VehicleError
 
 INTERRUPTED = 130
 
-SET_HELP = (
-    "override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], one component of it has its axis "
-    "behind the path: bushings.tyre.stiffness.z=2e5; may be repeated"
-)
-"""Help of --set, which most commands have."""
-
 OPENGL = ("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0", "glfw", "glx", "egl",
           "osmesa")  # fmt: skip
 """What MuJoCo takes as MUJOCO_GL on Linux; with anything else its import fails."""

@@ -1,9 +1,8 @@
-"""The main job: a signal under one wheel, and everything that a test bench would give."""
+"""Files of a run: summary, parameters as used, time histories, FRFs, plots, film."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,101 +14,97 @@ from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonances
 from vehicle.assembly.body_inertia import rigid_body
-from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Car, Run
+from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.errors import SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES, WHEELS, acceleration_channels
-from vehicle.output_folder import output_folder, write_json, write_whole
+from vehicle.output.folder import write_json, write_whole
+from vehicle.output.tables import write_frf, write_time_csv, write_time_npz
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text
 from vehicle.rendering.plots import plot_frf, plot_time
-from vehicle.studies.tables import write_frf, write_time_csv, write_time_npz
 
 COMFORT_PLACES = ("seat_rail", "seat")
 FRAME = "x to the rear, y to the driver's right, z up; SI units"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ShakerOptions:
-    """What the command adds to car and signal.
-
-    Attributes:
-        output: folder of the run.
-        force: replace an existing folder.
-        time_format: "npz" or "csv".
-        video: writes the film of a run to a path; None without a film.
-        video_name: file name of the film, or a path of its own.
-        inputs: files that were read; a folder that holds one is never replaced.
-        engine: as of `Car.run`.
-        engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
-    """
-
-    output: Path
-    force: bool = False
-    time_format: str = "npz"
-    video: Callable[[Run, Path], None] | None = None
-    video_name: Path | None = None
-    inputs: tuple[Path, ...] = ()
-    engine: str = "mujoco"
-    engine_reason: str = ""
-
-
-def shaker(car: Car, signal: Signal, options: ShakerOptions, progress: Callable[[float], None]) -> dict[str, Any]:
-    """Run a car on a signal and write all files of a run.
+def require_plates(signal: Signal) -> None:
+    """Refuse plates that move alike but for a delay: no FRF tells them apart.
 
     Args:
-        car: the car.
         signal: plate displacement.
-        options: where and what to write.
-        progress: called with the finished fraction.
+
+    Raises:
+        DataError: naming the plates and the delay.
+    """
+    if len(signal.wheels) > 1 and all(signal.rms(wheel) > 0.0 for wheel in signal.wheels):
+        plates = np.array([signal.displacement[wheel] for wheel in signal.wheels])
+        common_motion(signal.timestep, plates, [f"plate {wheel}" for wheel in signal.wheels], FRF_BAND)
+
+
+def write_run(
+    folder: Path,
+    run: Run,
+    *,
+    time_format: str = "npz",
+    engine_reason: str = "",
+    video: tuple[Path, Callable[[Path], None]] | None = None,
+) -> dict[str, Any]:
+    """Write all files of a finished run.
+
+    Args:
+        folder: as of `output_folder`.
+        run: the run.
+        time_format: "npz" or "csv".
+        engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
+        video: name of the film, or a path of its own, and what writes it.
 
     Returns:
         The content of `summary.json`.
 
     Raises:
-        VehicleError: whatever goes wrong; nothing half-written is left behind.
+        VehicleError: a file cannot be made or written.
     """
-    # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
-    car.check(options.engine)
-    if len(signal.wheels) > 1 and all(signal.rms(wheel) > 0.0 for wheel in signal.wheels):
-        plates = np.array([signal.displacement[wheel] for wheel in signal.wheels])
-        common_motion(signal.timestep, plates, [f"plate {wheel}" for wheel in signal.wheels], FRF_BAND)
-    with output_folder(options.output, force=options.force, protect=options.inputs) as folder:
-        try:
-            run = car.run(signal, progress, engine=options.engine)
-        except SimulationError as error:
-            raise _with_saved_state(error, options.output) from None
-        response = run.frf()
-        files = {
-            "summary": "summary.json",
-            "vehicle": "vehicle.toml",
-            "time": f"time.{options.time_format}",
-            "frf": "frf.csv",
-            "frf_plot": "frf.png",
-            "time_plot": "time.png",
-        }
-        header = f"parameters of this run, as used\nframe: {FRAME}"
-        write_whole(folder / "vehicle.toml", lambda path: _write(path, write_text(car.vehicle, header)))
-        writer = write_time_npz if options.time_format == "npz" else write_time_csv
-        write_whole(folder / files["time"], lambda path: writer(path, run.recording, FRAME))
-        write_whole(folder / "frf.csv", lambda path: write_frf(path, response, acceleration_channels(), FRAME))
-        caption = _caption(run, response)
-        write_whole(folder / "frf.png", lambda path: plot_frf(path, run, response, caption))
-        write_whole(folder / "time.png", lambda path: plot_time(path, run))
-        if options.video is not None:
-            name = options.video_name or Path(f"{options.output.name}.mp4")
-            target = folder / name if name.parent == Path() else name
-            make = options.video
-            write_whole(target, lambda path: make(run, path))
-            files["video"] = str(name)
-        summary = summarise(run, response, files)
-        summary["solver"]["engine_reason"] = options.engine_reason or run.engine_reason
-        write_json(folder / "summary.json", summary)
+    response = run.frf()
+    files = {
+        "summary": "summary.json",
+        "vehicle": "vehicle.toml",
+        "time": f"time.{time_format}",
+        "frf": "frf.csv",
+        "frf_plot": "frf.png",
+        "time_plot": "time.png",
+    }
+    header = f"parameters of this run, as used\nframe: {FRAME}"
+    write_whole(folder / "vehicle.toml", lambda path: _write(path, write_text(run.car.vehicle, header)))
+    writer = write_time_npz if time_format == "npz" else write_time_csv
+    write_whole(folder / files["time"], lambda path: writer(path, run.recording, FRAME))
+    write_whole(folder / "frf.csv", lambda path: write_frf(path, response, acceleration_channels(), FRAME))
+    caption = _caption(run, response)
+    write_whole(folder / "frf.png", lambda path: plot_frf(path, run, response, caption))
+    write_whole(folder / "time.png", lambda path: plot_time(path, run))
+    if video is not None:
+        name, make = video
+        write_whole(folder / name if name.parent == Path() else name, make)
+        files["video"] = str(name)
+    summary = summarise(run, response, files)
+    summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
+    write_json(folder / "summary.json", summary)
     return summary
 
 
-def _with_saved_state(error: SimulationError, output: Path) -> SimulationError:
-    """The same error, after its last good state has been saved beside the folder that will not exist."""
+def save_last_state(error: SimulationError, output: Path) -> SimulationError:
+    """Save the last good state of a failed run beside its folder, which will not exist.
+
+    Args:
+        error: with the state, or without one.
+        output: folder of the run.
+
+    Returns:
+        The same error, which names the file too.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
     if error.state is None:
         return error
     state = dict(error.state)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.written_files import discard, mark, note, refuse_foreign
+from vehicle.output.written_files import discard, mark, note, refuse_foreign
 
 
 @contextmanager

@@ -1,0 +1,43 @@
+"""`python -m vehicle` lists the commands; `python -m vehicle modes --damper sliding` runs one of them."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from difflib import get_close_matches
+from importlib import import_module
+
+from vehicle.commands import COMMANDS
+from vehicle.commands.command_line import run_command
+from vehicle.errors import ConfigurationError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """List the commands, or run one.
+
+    Args:
+        arguments: name of a command and its options; those of the process by default.
+
+    Returns:
+        Exit code, as of `run_command`.
+    """
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    if given and given[0] in COMMANDS:
+        code: int = import_module(f"vehicle.commands.{given[0]}").main(given[1:])
+        return code
+    return run_command(lambda: _list(given))
+
+
+def _list(given: Sequence[str]) -> None:
+    """Print a line for each command; refuse a name that is none of them."""
+    if given and given[0] not in ("-h", "--help"):
+        close = get_close_matches(given[0], COMMANDS, n=1)
+        nearest = f"; did you mean {close[0]}?" if close else ""
+        raise ConfigurationError(f"no command {given[0]!r}; allowed are {', '.join(COMMANDS)}{nearest}")
+    print("usage: python -m vehicle COMMAND [options]; --help behind a command lists its options\n")
+    for name in COMMANDS:
+        print(f"  {name:<9} {import_module(f'vehicle.commands.{name}').parser().description}")
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,89 @@
+"""`python -m vehicle.modes`: natural frequencies, damping and description of the modes of the assembled car."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.options import command_parser, message_options, vehicle_options
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
+    vehicle_options(found)
+    found.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers")
+    found.add_argument("--json", action="store_true", help="print JSON")
+    message_options(found)
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return parse_and_run(parser(), _job, arguments)
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.car import Car
+
+    car = Car.load(options.vehicle, options.overrides)
+    found = modes_table(car, options.damper)
+    print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+
+
+def modes_table(car: Any, damper: str) -> dict[str, Any]:
+    """Modes of the car and of its free body, in plain numbers and texts."""
+    body = car.model.superelement
+    trimmed = car.trimmed_body
+    found = car.modes(damper)
+    return {
+        "damper": damper,
+        "inertia_variant": car.vehicle.body.inertia_variant,
+        "modes": [
+            {
+                "frequency_hz": mode.frequency,
+                "damping_ratio": mode.damping_ratio,
+                "description": _named(mode.description, body.mode_names),
+                "energy": mode.energy,
+            }
+            for mode in found
+        ],
+        "growing": [mode.description.removeprefix("grows: ") for mode in found if mode.grows],
+        "free_body": {
+            "frequency_hz": [float(value) for value in trimmed.frequencies * car.vehicle.body.frequency_scale],
+            "description": list(trimmed.mode_names),
+            "with_spring_seats_hz": [float(value) for value in body.frequencies * car.vehicle.body.frequency_scale],
+        },
+    }
+
+
+def _named(description: str, names: tuple[str, ...]) -> str:
+    """The description with the name of the flexible mode behind its number."""
+    head, separator, rest = description.partition("flexible body, mode ")
+    if not separator or head:
+        return description
+    number = rest.split(",")[0]
+    return f"{separator}{number} ({names[int(number) - 1]}){rest[len(number) :]}"
+
+
+def report(found: dict[str, Any]) -> str:
+    """The table as text."""
+    lines = [
+        f"assembled car, dampers {found['damper']}, inertia {found['inertia_variant']}",
+        f"{'Hz':>8} {'damping':>8}  {'description':<52} energy",
+    ]
+    for mode in found["modes"]:
+        shares = sorted(mode["energy"].items(), key=lambda item: -item[1])
+        text = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares if share >= 0.05)
+        lines.append(
+            f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<52} {text}"
+        )
+    if found["growing"]:
+        lines.append(f"this car does not stand: {', '.join(found['growing'])} grows by itself (negative damping above)")
+    free = found["free_body"]
+    lines.append("free trimmed body")
+    for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):
+        lines.append(f"{frequency:8.3f}           {name}")
+    return "\n".join(lines)

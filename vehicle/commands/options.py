@@ -1,0 +1,120 @@
+"""Options that several commands have: stated once, so that they mean the same everywhere."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from vehicle.commands.command_line import Parser
+from vehicle.errors import ConfigurationError
+from vehicle.names import ENGINES, WHEEL_OF_OPTION
+
+EXIT_CODES = (
+    "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
+)
+
+FORCE_HELP = "replace what an earlier run wrote there; any other file stops it"
+
+
+def command_parser(name: str, description: str) -> Parser:
+    """Parser of a command of the package.
+
+    Args:
+        name: of its module in `vehicle.commands`.
+        description: one line, which the list of commands shows too.
+    """
+    return Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
+
+
+def vehicle_options(parser: argparse.ArgumentParser) -> None:
+    """Add --vehicle and --set: which car."""
+    parser.add_argument(
+        "--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default"
+    )
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], one component of it has "
+        "its axis behind the path: bushings.tyre.stiffness.z=2e5; may be repeated",
+    )
+
+
+def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
+    """Add --input, --wheel and --road: which plate moves, and how.
+
+    Args:
+        parser: of the command.
+        several: --input may be repeated; then its value is a list.
+    """
+    parser.add_argument(
+        "--input",
+        action="append" if several else "store",
+        required=True,
+        metavar="FILE",
+        help="CSV file, or the name of a shipped one: low.csv" + ("; may be repeated" if several else ""),
+    )
+    parser.add_argument(
+        "--wheel",
+        choices=sorted(WHEEL_OF_OPTION),
+        help="wheel of a plain displacement column; front_right by default",
+    )
+    parser.add_argument("--road", action="store_true", help="accept levels beyond a shaker: a road, not a measurement")
+
+
+def output_options(parser: argparse.ArgumentParser, folder: Path | None, *, default: str = "") -> None:
+    """Add --output and --force: where the results go.
+
+    Args:
+        parser: of the command.
+        folder: without --output; None where the job chooses it.
+        default: what the help says of it then.
+    """
+    parser.add_argument(
+        "--output", type=Path, default=folder, metavar="DIR", help=f"folder of the results; {default or folder}"
+    )
+    parser.add_argument("--force", action="store_true", help=FORCE_HELP)
+
+
+def engine_option(parser: argparse.ArgumentParser, default: str) -> None:
+    """Add --engine: what computes a run.
+
+    Args:
+        parser: of the command.
+        default: mujoco for a single run, auto for many.
+    """
+    parser.add_argument(
+        "--engine",
+        choices=ENGINES,
+        default=default,
+        help="mujoco, the model of record; reduced: hundreds of times faster, linear but for the dampers, no film; "
+        "auto: reduced where its validity holds, else mujoco; %(default)s by default",
+    )
+
+
+def jobs_option(parser: argparse.ArgumentParser, *, note: str = "") -> None:
+    """Add --jobs: how many runs at once; the results do not depend on it.
+
+    Args:
+        parser: of the command.
+        note: what the help says beside.
+    """
+    text = "processes for independent runs; %(default)s by default" + note
+    parser.add_argument("--jobs", type=_jobs, default=1, metavar="N", help=text)
+
+
+def _jobs(text: str) -> int:
+    """The number of processes; argparse names the option where the text is no number."""
+    number = int(text)
+    if number < 1:
+        raise ConfigurationError(f"--jobs {number}: must be at least 1")
+    return number
+
+
+def message_options(parser: argparse.ArgumentParser, *, quiet: bool = False) -> None:
+    """Add --debug, which every command has, and --quiet, where the results are files."""
+    if quiet:
+        parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")

@@ -1,0 +1,224 @@
+"""`python -m vehicle.shaker`: a measured signal on the shaker, and what the test bench would give."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.commands.options import (
+    command_parser,
+    engine_option,
+    message_options,
+    output_options,
+    signal_options,
+    vehicle_options,
+)
+from vehicle.errors import ConfigurationError
+from vehicle.names import WHEEL_OF_OPTION
+
+if TYPE_CHECKING:
+    from vehicle.excitation.signal import Signal
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser("shaker", "Put a shaker signal under one wheel of the complete car.")
+    signal_options(found)
+    output_options(found, None, default="runs/<input stem> by default")
+    vehicle_options(found)
+    engine_option(found, "mujoco")
+    found.add_argument("--timestep", type=float, metavar="S", help="step of the integration [s]")
+    found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
+    found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
+    found.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
+    found.add_argument(
+        "--video-duration",
+        type=float,
+        default=10.0,
+        metavar="S",
+        help="length of the film [s]; slow motion shows less of the record in it",
+    )
+    found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower")
+    found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
+    found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
+    found.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
+    found.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
+    message_options(found, quiet=True)
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return parse_and_run(parser(), _job, arguments)
+
+
+def _job(options: argparse.Namespace) -> None:
+    # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.excitation.csv_file import read_signal
+    from vehicle.excitation.input_files import find_input
+    from vehicle.output.folder import check_output, output_folder
+
+    source = find_input(options.input)
+    output = options.output or Path("runs") / source.stem
+    inputs = (source,) if options.vehicle is None else (source, options.vehicle)
+    check_output(output, force=options.force, protect=inputs)
+    _check_numbers(options)
+    engine, reason = _engine(options)
+    video_name = None
+    if options.video is not None:
+        from vehicle.rendering.backend import require_film
+
+        video_name = _film_path(options, source, output)
+        require_film()
+    overrides = list(options.overrides)
+    if options.timestep is not None:
+        overrides.append(f"solver.timestep={options.timestep!r}")
+
+    from vehicle.car import Car
+    from vehicle.errors import SimulationError
+    from vehicle.output.run_files import require_plates, save_last_state, write_run
+
+    car = Car.load(options.vehicle, overrides)
+    signal = read_signal(
+        source,
+        wheel=WHEEL_OF_OPTION[options.wheel or "front_right"],
+        interpolate=options.interpolate,
+        resample_hz=options.resample,
+        remove_mean=options.remove_mean,
+        accept_implausible=options.road,
+    )
+    _check_signal(options, source, signal)
+    # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
+    car.check(engine)
+    require_plates(signal)
+    with output_folder(output, force=options.force, protect=inputs) as folder:
+        try:
+            run = car.run(signal, ProgressLine("simulation", enabled=not options.quiet), engine=engine)
+        except SimulationError as error:
+            raise save_last_state(error, output) from None
+
+        def make_film(path: Path) -> None:
+            from vehicle.rendering.film import film
+
+            film(
+                run,
+                path,
+                start=options.video_start,
+                duration=options.video_duration,
+                slow=options.slow_motion,
+                exaggeration=options.exaggeration,
+                progress=ProgressLine("film      ", enabled=not options.quiet),
+            )
+
+        summary = write_run(
+            folder,
+            run,
+            time_format=options.time_format,
+            engine_reason=reason,
+            video=None if video_name is None else (video_name, make_film),
+        )
+    if not options.quiet:
+        print(report(summary, output))
+
+
+def _check_signal(options: argparse.Namespace, source: Path, signal: Signal) -> None:
+    """Refuse a wheel that the file names itself, and an excerpt outside the record."""
+    if options.wheel is not None and len(signal.wheels) > 1:
+        raise ConfigurationError(
+            f"--wheel {options.wheel}: {source} names the wheels of its columns; leave --wheel out"
+        )
+    if options.video_start is not None:
+        latest = signal.duration - options.video_duration / options.slow_motion
+        if not 0.0 <= options.video_start <= latest:
+            raise ConfigurationError(
+                f"--video-start {options.video_start:g}: the excerpt must lie in the record, so give 0 to {latest:g} s"
+            )
+
+
+def _check_numbers(options: argparse.Namespace) -> None:
+    """Refuse numbers of the film and the step that nobody can mean, before anything is simulated."""
+    wanted = (
+        ("--slow-motion", options.slow_motion, 1.0, "at least 1"),
+        ("--video-duration", options.video_duration, 0.1, "at least 0.1 s"),
+        ("--exaggeration", options.exaggeration, 1e-3, "at least 0.001"),
+        ("--video-start", options.video_start, 0.0, "at least 0 s"),
+    )
+    for name, value, lowest, allowed in wanted:
+        if value is not None and not lowest <= value < math.inf:
+            raise ConfigurationError(f"{name} {value:g}: must be a finite number, {allowed}")
+
+
+def _engine(options: argparse.Namespace) -> tuple[str, str]:
+    """The engine that is asked for, and why it is not the one that was named."""
+    needs = "--video" if options.video is not None else "--timestep" if options.timestep is not None else None
+    if needs is None or options.engine == "mujoco":
+        return options.engine, ""
+    why = f"{needs}: the reduced engine " + ("keeps no poses to film" if needs == "--video" else "has its own step")
+    if options.engine == "reduced":
+        raise ConfigurationError(f"{why}; leave --engine reduced out, or {needs}")
+    return "mujoco", why
+
+
+def _film_path(options: argparse.Namespace, source: Path, output: Path) -> Path:
+    """Where the film goes: a plain name lies in the folder of the run."""
+    from vehicle.output.folder import check_film
+
+    name = Path(options.video) if options.video else Path(f"{source.stem}.mp4")
+    if name.suffix != ".mp4":
+        raise ConfigurationError(f"--video {name}: a film is written as .mp4; give FILE.mp4")
+    if name.parent == Path():
+        return name
+    folder = output.resolve()
+    if name.resolve().parent == folder:
+        return Path(name.name)
+    if folder in name.resolve().parents:
+        raise ConfigurationError(f"--video {name}: lies below the folder of the run; give a plain name: {name.name}")
+    check_film(name, force=options.force)
+    return name
+
+
+def report(summary: dict[str, Any], output: Path) -> str:
+    """The summary as a page of text."""
+    share, first = summary["slip_share"], summary["first_slip_s"]
+    saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
+    lines = [
+        f"input       {summary['input']['file']}, RMS {1e3 * summary['input']['rms_m']:.4g} mm, "
+        f"{summary['input']['duration_s']:g} s, wheel {summary['input']['wheel']}",
+        f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for {100 * share['fr']:.2f} % (right) and "
+        f"{100 * share['fl']:.2f} % (left) of the time; first {_time(first['fr'])} (right), "
+        f"{_time(first['fl'])} (left)",
+        f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
+        f"{100 * saturated['fr']:.2f} % and {100 * saturated['fl']:.2f} %; first {_time(ended['fr'])} (right), "
+        f"{_time(ended['fl'])} (left)",
+    ]
+    for channel in (f"knuckle_{summary['input']['wheel']}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
+        strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
+        text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
+        lines.append(f"resonances  {channel}: {text or 'none'} Hz")
+    comfort = summary["comfort"]["seat_rail"]
+    rms = comfort["rms_2_50_hz"]
+    weighted = comfort["iso2631"]["vector_sum"]["weighted_rms"]
+    lines += [
+        f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz "
+        f"(x {rms['x']:.4f}, y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {weighted:.4f} m/s2",
+        f"static      tyre loads {summary['static']['tyre_load_n']['fr']:.0f} N (right) and "
+        f"{summary['static']['tyre_load_n']['fl']:.0f} N (left)",
+        f"solver      {summary['solver']['engine']}, step {1e3 * summary['solver']['timestep_s']:g} ms, "
+        f"{summary['solver']['realtime_factor']:.1f} times real time{_balance(summary['solver'])}",
+    ]
+    lines += [f"warning     {text}" for text in summary["solver"]["warnings"]]
+    lines += [f"note        {text}" for text in summary["notices"]]
+    lines.append(f"files       {output}: {', '.join(summary['files'].values())}")
+    return "\n".join(lines)
+
+
+def _balance(solver: dict[str, Any]) -> str:
+    """Energy residual, where the engine keeps an energy balance."""
+    return "" if solver["energy_residual"] is None else f", energy residual {solver['energy_residual']:.1e}"
+
+
+def _time(value: float | None) -> str:
+    return "never" if value is None else f"at {value:.3f} s"

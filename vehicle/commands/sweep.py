@@ -1,0 +1,189 @@
+"""`python -m vehicle.sweep`: a table of parameter variations and inputs, and a table of comfort and slip back."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from vehicle.commands.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.commands.options import (
+    command_parser,
+    engine_option,
+    jobs_option,
+    message_options,
+    output_options,
+    signal_options,
+    vehicle_options,
+)
+from vehicle.names import WHEEL_OF_OPTION
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser("sweep", "Run the car with varied parameters on one or several inputs.")
+    signal_options(found, several=True)
+    found.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="PATH=V1,V2,...",
+        help="values of a parameter, as damper.coulomb_friction=62.5,125, or of a component of a vector, as "
+        "bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: every combination",
+    )
+    found.add_argument(
+        "--table", type=Path, metavar="FILE.csv", help="columns are parameter paths, rows are variations"
+    )
+    vehicle_options(found)
+    engine_option(found, "auto")
+    found.add_argument(
+        "--skip", type=float, default=2.0, metavar="S", help="seconds left out at the start; 2 by default"
+    )
+    jobs_option(found)
+    found.add_argument(
+        "--executor", metavar="WHERE", help="dask://host:port, or module:factory for an executor of your own"
+    )
+    output_options(found, Path("runs/sweep"))
+    found.add_argument("--resume", action="store_true", help="go on in that folder; finished rows are kept")
+    found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")
+    found.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
+    message_options(found, quiet=True)
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return parse_and_run(parser(), _job, arguments)
+
+
+def _job(options: argparse.Namespace) -> None:
+    # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.errors import ConfigurationError, SimulationError
+    from vehicle.excitation.input_files import find_input
+    from vehicle.parameters.vehicle import load_vehicle
+    from vehicle.sweeps.case import SignalFile, signal_of, table_cases
+    from vehicle.sweeps.executors import executor_factory
+    from vehicle.sweeps.measure import ComfortMeasure
+    from vehicle.sweeps.store import sweep_folder
+    from vehicle.sweeps.sweep import sweep
+
+    if bool(options.vary) == bool(options.table):
+        raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
+    paths, rows = read_table(options.table) if options.table else every_combination(options.vary)
+    load_vehicle(options.vehicle, options.overrides)
+    check_paths(options.vehicle, options.overrides, paths, rows[0])
+    fixed = [tuple(text.split("=", 1)) for text in options.overrides]
+    wheel = WHEEL_OF_OPTION[options.wheel or "front_right"]
+    inputs = [
+        SignalFile(path=find_input(name).resolve(), wheel=wheel, accept_implausible=options.road)
+        for name in options.input
+    ]
+    for source in inputs:
+        duration = signal_of(source).duration
+        if not 0.0 <= options.skip < duration:
+            raise ConfigurationError(
+                f"--skip {options.skip:g} s: allowed is 0 s to less than {source.name}, {duration:g} s"
+            )
+    cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=fixed)
+    make = executor_factory(options.executor, options.jobs)
+    folder = sweep_folder(options.output, resume=options.resume, force=options.force)
+    try:
+        table = sweep(
+            cases,
+            ComfortMeasure(skip=options.skip),
+            executor=make,
+            folder=folder,
+            retry_failed=options.retry_failed,
+            progress=ProgressLine("sweep     ", enabled=not options.quiet),
+        )
+    except KeyboardInterrupt:
+        print(f"{folder}: finished rows are kept; --resume goes on", file=sys.stderr)
+        raise
+    if not options.quiet:
+        print(f"{folder}: {len(cases)} runs, {len(table.failed)} failed; table.csv, sweep.json, rows.jsonl, timing.csv")
+        for case, reason in table.failed[:5]:
+            print(f"failed      {case.label}: {reason}")
+    if table.failed and not options.allow_failed:
+        raise SimulationError(
+            f"{len(table.failed)} of {len(cases)} runs failed; the table is written, with the reason in their rows; "
+            "--allow-failed takes that as success"
+        )
+
+
+def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[str], row: Sequence[str]) -> None:
+    """Refuse a misspelt parameter before anything is computed: it would fail in every row.
+
+    An impossible value is left to its row: another row may be possible.
+
+    Raises:
+        ConfigurationError: a path does not exist, or its value in the first row is none.
+    """
+    from vehicle.errors import ConfigurationError
+    from vehicle.parameters.paths import override
+    from vehicle.parameters.toml_file import read_table as read_toml
+    from vehicle.parameters.vehicle import FOCUS_FILE
+
+    table = override(read_toml(FOCUS_FILE if vehicle is None else vehicle), overrides)
+    try:
+        override(table, [f"{path}={value}" for path, value in zip(paths, row, strict=True)])
+    except ConfigurationError as error:
+        raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
+
+
+def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Paths and rows of `--vary` options, the last one varying fastest.
+
+    Raises:
+        ConfigurationError: an option is not PATH=V1,V2,...
+    """
+    from itertools import product
+
+    from vehicle.errors import ConfigurationError
+
+    paths, values = [], []
+    for text in texts:
+        path, separator, listed = text.partition("=")
+        # A comma within brackets belongs to a vector.
+        items = [item.strip() for item in re.split(r",(?![^\[]*\])", listed)]
+        if not separator or not path.strip() or not all(items):
+            raise ConfigurationError(
+                f"--vary {text}: needed is PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; one component of a "
+                "vector has its axis behind the path: bushings.tyre.stiffness.z=2e5,2.5e5"
+            )
+        if path.strip() in paths:
+            raise ConfigurationError(f"--vary {path.strip()}: given twice; list all its values in one option")
+        paths.append(path.strip())
+        values.append(items)
+    return paths, list(product(*values))
+
+
+def read_table(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Paths and rows of a CSV file of variations.
+
+    Raises:
+        DataError: it cannot be read, has no rows, a column twice, or a row has another number of cells than the header.
+    """
+    from vehicle.errors import DataError
+
+    if not path.is_file():
+        raise DataError(f"--table {path}: cannot be read: no such file, or not a file")
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise DataError(f"--table {path}: cannot be read ({error})") from None
+    if len(lines) < 2:
+        raise DataError(f"--table {path}: needed are a header of parameter paths and at least one row of values")
+    header = [cell.strip() for cell in lines[0]]
+    twice = sorted({cell for cell in header if header.count(cell) > 1})
+    if twice:
+        raise DataError(f"--table {path}: column {', '.join(twice)} stands there more than once; keep one of them")
+    for number, line in enumerate(lines[1:], start=1):
+        if len(line) != len(header) or not all(cell.strip() for cell in line):
+            raise DataError(
+                f"--table {path}, row {number}: {len(line)} cells, the header has {len(header)}; none is empty"
+            )
+    return header, [tuple(cell.strip() for cell in line) for line in lines[1:]]
