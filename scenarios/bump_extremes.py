@@ -37,17 +37,28 @@ def extremes(run: Run, start: float) -> dict[str, tuple[float, float]]:
     return found
 
 
-def extreme_claims(found: dict[str, tuple[float, float]]) -> list[Claim]:
-    """A row for each end of each axis."""
+def extreme_claims(
+    found: dict[str, tuple[float, float]], literal: dict[str, tuple[float, float]], name: str
+) -> list[Claim]:
+    """A row for each end of each axis.
+
+    Args:
+        found: point to lowest and highest acceleration [m/s2].
+        literal: the same with the other reading of the printed amplitude, as evidence for a deviation.
+        name: of the other reading.
+    """
     claims = []
     for point, (figure, _, *ends) in AXES.items():
-        for word, interval, ours in zip(("lowest", "highest"), ends, found[point], strict=True):
+        for word, interval, ours, other in zip(("lowest", "highest"), ends, found[point], literal[point], strict=True):
             claims.append(
                 interval_claim(
                     f"bump 7.5 mm, {word} {point}{'' if point == RELATIVE else ', vertical'} [m/s2]",
                     interval,
                     ours,
-                    f"figure {figure}, whose axis holds model and measurement; with noise, {SHOWN_S:g} s from the bump",
+                    f"figure {figure}, whose axis holds model and measurement; with noise, {SHOWN_S:g} s from the "
+                    f"bump. With the {name} reading {other:.2f}",
+                    # The body was chosen among several with these figures in view (`vehicle.flexbody.fit`).
+                    status="chosen",
                 )
             )
     return claims
