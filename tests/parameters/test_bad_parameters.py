@@ -50,8 +50,8 @@ CASES = {
         "parts.engine.inertia: found [5.0, 5.0, 15.0] kg m2, the two smaller must add up to the largest at least "
         "(short by 5); no mass distribution has such moments",
     ),
-    "25 zero step": ("solver.timestep=0", "solver.timestep: found 0.0 s, must be greater than 0.0"),
-    "25 negative step": ("solver.timestep=-1e-3", "solver.timestep: found -0.001 s, must be greater than 0.0"),
+    "25 zero step": ("solver.timestep=0", "solver.timestep: found 0.0 s, must be at least 1e-06"),
+    "25 negative step": ("solver.timestep=-1e-3", "solver.timestep: found -0.001 s, must be at least 1e-06"),
     "25 step of a second": ("solver.timestep=1", "solver.timestep: found 1.0 s, must be at most 0.005"),
     "26 coincident points": (
         "hardpoints.tie_inner=[0.985, 0.6900001, 0.648]",
@@ -101,7 +101,11 @@ CASES = {
         "bushings.tyre.stiffness=[1e5, 1e5]",
         "bushings.tyre.stiffness: found (100000.0, 100000.0), needed is a list of 3 numbers [N/m]",
     ),
-    "31 number for a vector": ("body.cog=2.157", "body.cog: found 2.157, needed is a list"),
+    "31 number for a vector": (
+        "body.cog=2.157",
+        "--set body.cog=2.157: body.cog is a vector; give all as [x, y, z], or one component with its axis behind the "
+        "path: body.cog.z=2.157",
+    ),
     "31 overflow": (
         "main_spring.stiffness=1e400",
         "main_spring.stiffness: found inf N/m, needed is a finite number (stiffness)",

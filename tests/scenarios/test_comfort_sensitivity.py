@@ -28,6 +28,7 @@ from scenarios.road_signals import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.reduced.march import has_compiler
+from vehicle.written_files import MARKER
 
 needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 
@@ -43,6 +44,7 @@ def results(tmp_path_factory):
 def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):
     content = json.loads((results / "results.json").read_text(encoding="utf-8"))
     assert {path.name for path in results.iterdir()} == {
+        MARKER,
         "results.md",
         "results.json",
         "sweep",

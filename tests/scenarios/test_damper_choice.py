@@ -12,6 +12,7 @@ from scenarios.damper_choice import main
 from scenarios.damper_choice_tradeoff import trade_off
 from vehicle.parameters.damper_choice import FITTED, damper_choice_parameters
 from vehicle.parameters.vehicle import load_vehicle
+from vehicle.written_files import MARKER
 
 P = damper_choice_parameters()
 
@@ -26,6 +27,7 @@ def results(tmp_path_factory):
 def test_every_file_is_there_and_no_temporary_one(results):
     names = {path.name for path in results.iterdir()}
     assert names == {
+        MARKER,
         "results.md",
         "results.json",
         "figure_02_03_quarter_car.png",

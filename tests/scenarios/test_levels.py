@@ -17,6 +17,7 @@ from scenarios.levels_claims import (
     slip_claims,
 )
 from scenarios.levels_figures import CHANNELS, DAMPER, OUTPUTS
+from vehicle.written_files import MARKER
 
 
 @pytest.fixture(scope="module")
@@ -29,6 +30,7 @@ def results(tmp_path_factory):
 def test_short_signals_judge_only_what_they_can(results):
     content = json.loads((results / "results.json").read_text(encoding="utf-8"))
     assert {path.name for path in results.iterdir()} == {
+        MARKER,
         "results.md",
         "results.json",
         "seat_rail_z.png",
