@@ -22,7 +22,7 @@ import numpy.typing as npt
 from vehicle.linear.matrices import CarMatrices
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.element_rows import ElementRows, joint_weights
+from vehicle.simulation.element_rows import ElementRows, damping_factors, joint_weights
 
 Vector = npt.NDArray[np.float64]
 
@@ -48,12 +48,14 @@ class StepRows:
         timestep: h [s].
         mass: M + J' D J without the dampers; (n, n).
         dampers: weight D of the viscous part of the dampers [kg]; (2,).
+        damping: C without the dampers; (n, n).
         decay, gain, slope, average: e, g, s and beta of the branches; (b,).
     """
 
     timestep: float
     mass: Vector
     dampers: Vector
+    damping: Vector
     decay: Vector
     gain: Vector
     slope: Vector
@@ -73,11 +75,13 @@ def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows
     weights = np.zeros(e.row_count)
     weights[e.rows] = rows.impedance
     weights[e.springs] = rows.spring_impedance
+    joints = np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
     present = e.branch_stiffness > 0.0
     return StepRows(
         timestep=timestep,
         mass=matrices.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model)),
         dampers=rows.damper_impedance,
+        damping=matrices.damping + np.diag((damping_factors(model) - 1.0) * joints),
         decay=rows.decay[present],
         gain=rows.branch_gain[present],
         slope=rows.branch_slope[present],
@@ -97,7 +101,7 @@ def step_map(rows: StepRows, matrices: CarMatrices, basis: Vector, *, stuck: boo
     Returns:
         The map.
     """
-    h, mass, damping = rows.timestep, rows.mass.copy(), matrices.damping.copy()
+    h, mass, damping = rows.timestep, rows.mass.copy(), rows.damping.copy()
     if not stuck:
         mass[matrices.dampers, matrices.dampers] += rows.dampers
         damping[matrices.dampers, matrices.dampers] += matrices.viscous

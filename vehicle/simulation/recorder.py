@@ -193,6 +193,7 @@ class Recorder:
         power_in = np.sum((tyre - static) * velocity, axis=1)
         self.lifting = float(static @ (motion.displacement[index] - motion.displacement[0]))
         rate = b["rate"] + 0.5 * self.step * self._row_acceleration(b["solved"])
+        rate[:, e.tyres, 2] += (motion.row_velocity - motion.velocity)[steps]
         loss = np.sum(e.damping * rate**2, axis=(1, 2))
         branch = self._branch_force(b["solved"], b["branch"])
         present = e.branch_stiffness > 0.0
