@@ -19,9 +19,9 @@ import numpy.typing as npt
 from scenarios.output_folder import write_text
 
 Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate"]
-"""`predicted`: nothing was adjusted to it. `fitted`: a number that the source leaves open was fitted to it. `chosen`:
-of several readings of the source the one was taken that agrees with it. `own check`: not a published result.
-`duplicate`: the same statement again, at another place or by another definition."""
+"""`predicted`: nothing was adjusted to it. `fitted`: what the source leaves open was fitted to it. `chosen`: one of
+several readings of the source, or of several bodies, was taken with the row in view. `own check`: not a published
+result. `duplicate`: the same statement again, at another place or by another definition."""
 
 Source = Literal["text", "table", "axis interval", "inferred"]
 """Where the source has it. `axis interval`: between two labels of an axis, which are all that is left of a figure.
@@ -33,10 +33,11 @@ STATUSES: tuple[Status, ...] = get_args(Status)
 
 LEGEND = (
     "Only `predicted` rows, numbers and trends to which nothing was adjusted, count in the headline. `fitted`: "
-    "what the source leaves open was fitted to it; `chosen`: a reading of the source was chosen by it; `own "
-    "check`: not a published result; `duplicate`: the statement of another row again. `source` `axis interval`: "
-    "only the labels of the axes are left of the figure; the extreme of the curve lies in `interval`. `deviation` "
-    "is (ours - published) / published where both are numbers, and from the nearer end of an interval, 0 inside."
+    "what the source leaves open was fitted to it; `chosen`: one of several readings of the source, or of several "
+    "bodies, was taken with it in view; `own check`: not a published result; `duplicate`: the statement of "
+    "another row again. `source` `axis interval`: only the labels of the axes are left of the figure; the extreme "
+    "of the curve lies in `interval`. `deviation` is (ours - published) / published where both are numbers, and "
+    "from the nearer end of an interval, 0 inside."
 )
 
 
@@ -121,11 +122,13 @@ def spread_claim(
         why: which axis and stretches, and the reason of a disagreement.
         status: as of `Claim`.
     """
-    low, middle, high = (float(value) for value in np.percentile(np.asarray(ours), (5.0, 50.0, 95.0)))
+    values = np.asarray(ours)
+    low, middle, high = (float(value) for value in np.percentile(values, (5.0, 50.0, 95.0)))
     text = f"5th to 95th percentile {low:.3g} to {high:.3g}, median {middle:.3g}"
-    inside = bool(low <= interval[0] and interval[1] <= high)
-    why = f"the interval must lie between our percentiles; {why}"
-    return Claim(name, _between(interval), text, None, inside, why, status, "axis interval", interval)
+    within = bool(low <= interval[0] and interval[1] <= high)
+    inside = np.mean((values >= interval[0]) & (values <= interval[1]))
+    why = f"the whole interval must lie between our percentiles; {100.0 * inside:.0f} % of ours are inside it; {why}"
+    return Claim(name, _between(interval), text, None, within, why, status, "axis interval", interval)
 
 
 def headline(rows: Sequence[Mapping[str, Any]]) -> str:

@@ -67,7 +67,8 @@ def level_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
             f"largest |seat rail, vertical| in {WINDOW_S:g} s, {road} road [m/s2]",
             interval,
             levels[road].seat_rail,
-            f"{levels[road].seat_rail.size} windows of the nominal car; {figure}",
+            f"{levels[road].seat_rail.size} windows of the nominal car; {figure}. The body was fitted to it",
+            status="fitted",
         )
         for road, (interval, figure) in LEVELS.items()
     ]

@@ -89,7 +89,8 @@ def draw_variation(
                 look = {"fmt": "none", "color": COLOURS[1], "linewidth": 4.0, "alpha": 0.6}
                 relative.errorbar(list(ends), middle, yerr=half, label="published, interval of the axis", **look)
             if beside or ends:
-                relative.legend()
+                # The corner that neither a rising nor a falling curve nor an end of it reaches.
+                relative.legend(loc="lower right" if curves[road][-1].relative > 1.0 else "lower left")
             relative.set_xlabel(variation.label)
         axes[0, 0].set_ylabel("seat rail, z [m/s²]")
         axes[1, 0].set_ylabel("PSD of the seat rail, z [(m/s²)²/Hz]")

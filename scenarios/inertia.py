@@ -135,8 +135,14 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
 
 
 def roll_peak(response: FrequencyResponse, roll: float) -> float:
-    """Frequency [Hz] of the resonance peak of the first channel that is nearest to the roll mode; NaN without peaks."""
-    peaks = resonance_peaks(response.frequency, np.abs(response.response[0]))
+    """Frequency [Hz] of the resonance peak of the first channel that is nearest to the roll mode; NaN without peaks.
+
+    A line without an estimate is stepped over: on the flank of a peak it would hide the peak.
+    """
+    magnitude = np.abs(response.response[0])
+    known = np.isfinite(magnitude)
+    quality = (values[0][known] for values in (response.coherence, response.random_error))
+    peaks = resonance_peaks(response.frequency[known], magnitude[known], *quality)
     return min((peak.frequency_hz for peak in peaks), key=lambda at: abs(at - roll), default=float("nan"))
 
 

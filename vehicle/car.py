@@ -41,7 +41,7 @@ from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced
 from vehicle.simulation.car_model import CarModel, build_model
-from vehicle.simulation.judgement import require_finite
+from vehicle.simulation.judgement import require_finite, require_memory
 from vehicle.simulation.recording import Recording
 from vehicle.simulation.run import Progress, simulate
 
@@ -174,6 +174,8 @@ class Car:
         for name in channels or ():
             if name not in channel_units():
                 raise ConfigurationError(f"no channel {name!r}; there are {', '.join(channel_units())}")
+        names = channel_units() if channels is None else channels
+        require_memory(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
         if engine == "auto" and not has_compiler():
             reason = "numba, which the reduced engine needs, is not installed"

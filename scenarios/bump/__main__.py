@@ -45,7 +45,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     found = runs([*noisy, *quiet, *varied, *other])
     bumps, still = found[:2], found[2:4]
     by_friction = dict(zip(frictions, found[4 : 4 + len(frictions)], strict=True))
-    values = numbers(bumps, still, by_friction, found[-2:], start=record.start, end=record.end)
+    values = numbers(bumps, still, by_friction, found[-2:], OTHER[reading], start=record.start, end=record.end)
     history_figures(folder, bumps, still, (LOW, HIGH), record.start)
     friction_figure(folder / "friction.png", by_friction, values, record.start)
     ring_down_figure(folder / "ring_down.png", still, (LOW, HIGH), record.end)

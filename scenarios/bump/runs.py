@@ -87,7 +87,8 @@ class BumpNumbers:
         first_slip: friction limit [N] to the first slip [s] after the start of the bump, None for never.
         stick_end: the same above 1 mm/s, where the friction is saturated.
         slip_velocity: that of the parameters [m/s].
-        extremes: point to lowest and highest acceleration after the high bump [m/s2].
+        extremes, other_extremes: point to lowest and highest acceleration after the high bump [m/s2], in both readings.
+        other_reading: name of the other one.
         low_velocity: largest damper velocity in the low bump [m/s].
         low_saturated: time above 1 mm/s in the low bump [s].
         ring_down: ring-down times of both bumps [s], by point.
@@ -99,6 +100,8 @@ class BumpNumbers:
     stick_end: Mapping[float, float | None]
     slip_velocity: float
     extremes: dict[str, tuple[float, float]]
+    other_extremes: dict[str, tuple[float, float]]
+    other_reading: str
     low_velocity: float
     low_saturated: float
     ring_down: Sequence[Mapping[str, float]]
@@ -123,6 +126,7 @@ def numbers(
     still: Sequence[Run],
     by_friction: Mapping[float, Run],
     other: Sequence[Run],
+    other_reading: str,
     *,
     start: float,
     end: float,
@@ -134,6 +138,7 @@ def numbers(
         still: the same without noise.
         by_friction: friction limit [N] to the high bump.
         other: low and high bump in the other reading.
+        other_reading: name of it.
         start, end: of the bump [s].
     """
     low = np.abs(bumps[0]["damper_fr_velocity"])
@@ -145,6 +150,8 @@ def numbers(
         stick_end={friction: slip_after(run, start, SATURATED_VELOCITY) for friction, run in by_friction.items()},
         slip_velocity=slip_velocity,
         extremes=extremes(bumps[1], start),
+        other_extremes=extremes(other[1], start),
+        other_reading=other_reading,
         low_velocity=float(np.max(low)),
         low_saturated=float(np.mean(low > SATURATED_VELOCITY)) * bumps[0].signal.duration,
         ring_down=[ring_down_times(run, end) for run in still],

@@ -93,7 +93,7 @@ class Endless:
 def test_a_sweep_writes_a_reason_where_it_would_write_inf():
     road = RandomRoad(name="road", rms=1e-4, seed=1, duration=1.0, lower_band_edge=1.0)
     result = carry_out(Case(overrides=(), source=road, engine="reduced"), Endless(), program_digest())
-    assert result.reason == "loud: infinite" and not result.values
+    assert result.reason == "SimulationError: loud: infinite; the run left the range of numbers" and not result.values
     falling = tuple((path, value) for path, _, value in (setting.partition("=") for setting in FALLING))
     result = carry_out(Case(overrides=falling, source=road, engine="reduced"), Endless(), program_digest())
     assert result.reason.startswith("ConfigurationError: this car does not stand")

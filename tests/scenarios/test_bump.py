@@ -70,9 +70,9 @@ def test_slip_after_is_told_as_if_the_bump_began_at_five_seconds(bump_run):
 
 def test_every_end_of_an_axis_is_a_row():
     inside = {point: (low[0] + 0.1, high[0] + 0.1) for point, (_, _, low, high) in FIGURE_AXES.items()}
-    assert all(claim.within for claim in extreme_claims(inside))
+    assert all(claim.within for claim in extreme_claims(inside, inside, "literal"))
     still = dict.fromkeys(FIGURE_AXES, (0.01, -0.01))
-    assert [claim.within for claim in extreme_claims(still)] == [False] * 12
+    assert [claim.within for claim in extreme_claims(still, still, "literal")] == [False] * 12
 
 
 def test_ring_down_of_a_known_decay():

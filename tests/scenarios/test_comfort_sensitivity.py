@@ -27,6 +27,7 @@ from scenarios.comfort_sensitivity_tables import curve_table
 from scenarios.road_signals import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.output.written_files import MARKER
 from vehicle.reduced.march import has_compiler
 
 needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
@@ -43,6 +44,7 @@ def results(tmp_path_factory):
 def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):
     content = json.loads((results / "results.json").read_text(encoding="utf-8"))
     assert {path.name for path in results.iterdir()} == {
+        MARKER,
         "results.md",
         "results.json",
         "sweep",
@@ -169,9 +171,10 @@ def test_levels_are_windows_of_every_record_and_the_rough_road_is_that_of_figure
     ratio = ROAD_RMS["rough"] / ROAD_RMS["smooth"]
     np.testing.assert_allclose(levels["rough"].swing, ratio * levels["smooth"].swing, rtol=1e-9)
     assert np.median(levels["smooth"].seat_rail) < np.median(levels["rough"].seat_rail)
-    assert [claim.status for claim in level_claims(levels)] == ["predicted"] * 3
+    assert [claim.status for claim in level_claims(levels)] == ["fitted", "fitted", "predicted"]
     published = {
-        road: RoadLevels(seat_rail=np.linspace(0.3, 5.0, 50), swing=np.linspace(0.1, 0.3, 50)) for road in ROAD_RMS
+        road: RoadLevels(seat_rail=np.linspace(0.3, 5.0, 50), swing=np.linspace(2.4, 7.0, 50) * rms)
+        for road, rms in ROAD_RMS.items()
     }
     assert all(claim.within for claim in level_claims(published))
     louder = {road: RoadLevels(seat_rail=2.0 + one.seat_rail, swing=0.1 * one.swing) for road, one in published.items()}

@@ -60,10 +60,15 @@ def test_roll_rows_follow_the_peaks():
 def exact_response(car):
     """FRF of the seat rail from the matrices, as an estimate would hold it."""
     lines = np.arange(2.0, 9.0, 0.02)
-    return SimpleNamespace(frequency=lines, response=car.matrix_frf(["seat_rail_acc_z"], lines))
+    response = car.matrix_frf(["seat_rail_acc_z"], lines)
+    sure = {"coherence": np.ones(response.shape), "random_error": 1e-6 * np.abs(response)}
+    return SimpleNamespace(frequency=lines, response=response, **sure)
 
 
 def test_the_peak_nearest_to_the_mode_is_taken(car):
     found, roll = exact_response(car), roll_mode(car)
     assert roll_peak(found, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
     assert roll_peak(found, 3.6) < 4.5
+    # One line without an estimate, 0.2 Hz below the top, must not hide it.
+    found.response[0, np.argmin(np.abs(found.frequency - roll.frequency + 0.2))] = np.nan
+    assert roll_peak(found, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)

@@ -13,6 +13,7 @@ from scenarios.quarter_car.__main__ import main
 from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import LOW, Runs, peak
+from vehicle.output.written_files import MARKER
 from vehicle.parameters.quarter_car import load_quarter_car
 
 
@@ -20,8 +21,9 @@ from vehicle.parameters.quarter_car import load_quarter_car
 def test_one_figure_is_written_whole(tmp_path, capsys, name):
     folder = tmp_path / "new" / "runs"
     assert main(["--figure", name, "--quick", "--output", str(folder)]) == 0
-    assert [path.name for path in folder.iterdir()] == [f"figure_{name.replace('.', '_')}.png"]
-    assert next(folder.iterdir()).read_bytes().startswith(b"\x89PNG")
+    figure = f"figure_{name.replace('.', '_')}.png"
+    assert {path.name for path in folder.iterdir()} == {figure, MARKER}
+    assert (folder / figure).read_bytes().startswith(b"\x89PNG")
     assert capsys.readouterr().out.startswith(f"{folder}: 1 figure;")
 
 
@@ -36,11 +38,12 @@ def test_an_unknown_figure_is_refused_with_the_names_there_are(tmp_path, capsys)
     assert not (tmp_path / "x").exists()
 
 
-def test_a_folder_with_files_is_refused_without_force(tmp_path, capsys):
+def test_a_folder_with_foreign_files_is_refused(tmp_path, capsys):
     (tmp_path / "mine.txt").write_text("kept", encoding="utf-8")
     assert main(["--figure", "2.20", "--output", str(tmp_path)]) == 2
     assert "holds files already" in capsys.readouterr().err
-    assert main(["--figure", "2.20", "--output", str(tmp_path), "--force"]) == 0
+    assert main(["--figure", "2.20", "--output", str(tmp_path), "--force"]) == 2
+    assert "mine.txt" in capsys.readouterr().err
     assert (tmp_path / "mine.txt").read_text(encoding="utf-8") == "kept"
 
 

@@ -40,6 +40,10 @@ OF_OCTAVES = 1e-4
 FEWEST_LINES = 5.0
 """Least effective number of driven lines in a stretch, (sum |U|^2)^2 / sum |U|^4; a sine has one to three."""
 
+FEWEST_BY_CHANCE = 3.5
+"""The same for a line between driven ones: of the stretches of a random input half a percent have fewer than five, and
+two in ten thousand fewer than this."""
+
 ROUGHNESS, ROUGH_SHARE = 0.25, 0.05
 """Least part of an input, of its power there and of the mean of the stretch, that is not smooth from line to line. The
 spectrum of a random input is rough; what is smooth is a transient of the input, or leaked, and cannot be told from the
@@ -101,7 +105,7 @@ def silent_lines(
     Returns:
         0 where every input drives the line, else 1 + the number of the cause, shape (m,).
     """
-    found = np.zeros(centres.size, dtype=np.int_)
+    found, chance = np.zeros(centres.size, dtype=np.int_), np.ones(centres.size, dtype=np.bool_)
     for samples, spectrum, step in zip(inputs, spectra, rounding, strict=True):
         power, floor = tapered_power(samples, step or rounding_step(samples))
         for index, centre in enumerate(centres):
@@ -120,6 +124,10 @@ def silent_lines(
             )
             if any(tests) and not found[index]:
                 found[index] = 1 + tests.index(True)
+            only_few = not any(tests[:2] + tests[3:])
+            chance[index] &= only_few and energy.sum() ** 2 >= FEWEST_BY_CHANCE * np.sum(energy**2)
+    driven = np.concatenate([[False], found == 0, [False]])
+    found[chance & driven[:-2] & driven[2:]] = 0
     return found
 
 

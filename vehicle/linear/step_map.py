@@ -23,7 +23,7 @@ from vehicle.linear.first_order import FirstOrder
 from vehicle.linear.matrices import CarMatrices
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.element_rows import ElementRows, joint_weights
+from vehicle.simulation.element_rows import ElementRows, damping_factors, joint_weights
 
 Vector = npt.NDArray[np.float64]
 
@@ -48,11 +48,13 @@ class StepRows:
     Attributes:
         timestep: h [s].
         mass: M + J' D J, with the viscous part of the dampers; (n, n).
+        damping: C, with what a step makes of the damping inside joints; (n, n).
         decay, gain, slope, average: e, g, s and beta of the branches; (b,).
     """
 
     timestep: float
     mass: Vector
+    damping: Vector
     decay: Vector
     gain: Vector
     slope: Vector
@@ -72,12 +74,14 @@ def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows
     weights = np.zeros(e.row_count)
     weights[e.rows] = rows.impedance
     weights[e.springs] = rows.spring_impedance
+    joints = np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
     present = e.branch_stiffness > 0.0
     mass = matrices.system.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model))
     mass[matrices.dampers, matrices.dampers] += rows.damper_impedance
     return StepRows(
         timestep=timestep,
         mass=mass,
+        damping=matrices.system.damping + np.diag((damping_factors(model) - 1.0) * joints),
         decay=rows.decay[present],
         gain=rows.branch_gain[present],
         slope=rows.branch_slope[present],
@@ -102,7 +106,7 @@ def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
     forces = np.hstack(
         [
             -basis.T @ system.stiffness @ basis,
-            -basis.T @ system.damping @ basis - branch.T @ (rate[:, None] * branch),
+            -basis.T @ rows.damping @ basis - branch.T @ (rate[:, None] * branch),
             -branch.T * force,
             (system.slide_rows @ basis).T,
         ]

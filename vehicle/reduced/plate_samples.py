@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
+from scipy.interpolate import CubicSpline
 
 from vehicle.excitation.signal import Signal
 from vehicle.simulation.acceleration import continued
@@ -13,9 +14,34 @@ from vehicle.simulation.acceleration import continued
 Vector = npt.NDArray[np.float64]
 
 
-# A sweep runs hundreds of cars over the same few signals.
-@lru_cache(maxsize=4)
-def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vector:
+LARGEST_TABLE = 64_000_000
+"""Largest table that is kept [byte]: two minutes of both plates at 8 kHz. Longer ones are made piece by piece, so that
+memory does not grow with the steps of a long record."""
+
+
+class LongPlates:
+    """The rows of `plate_samples`, made when they are asked for; arguments as there."""
+
+    def __init__(self, signal: Signal, step: float, steps: int, beyond: int) -> None:
+        self.step, self.steps, self.rows = step, steps, steps + 1 + beyond
+        self.splines = [CubicSpline(signal.time, signal.displacement[wheel]) for wheel in signal.wheels]
+        self.latest = signal.duration
+
+    def __getitem__(self, part: slice) -> Vector:
+        """Rows (z, z') of each driven plate."""
+        index = np.arange(*part.indices(self.rows))
+        inside = index <= self.steps
+        at, last = np.clip(self.step * index[inside], 0.0, self.latest), min(self.step * self.steps, self.latest)
+        after = np.asarray(self.step * (index[~inside] - self.steps), dtype=np.float64)
+        columns = []
+        for spline in self.splines:
+            z, velocity, acceleration = (float(spline(last, order)) for order in range(3))
+            columns.append(np.append(spline(at), continued(z, velocity, acceleration, after)))
+            columns.append(np.append(spline(at, 1), velocity + acceleration * after))
+        return np.stack(columns, axis=1)
+
+
+def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vector | LongPlates:
     """(z, z') of each driven plate [m, m/s], from the spline of the signal; (steps + 1 + beyond, 2 per driven plate).
 
     Args:
@@ -23,13 +49,18 @@ def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vecto
         step: time step [s].
         steps: number of steps.
         beyond: further steps with the last acceleration.
+
+    Returns:
+        The table, or what makes its slices where it would be longer than `LARGEST_TABLE`.
     """
-    motion = signal.plate_motion(step * np.arange(steps + 1))
-    after, columns = step * np.arange(1.0, beyond + 1.0), []
-    for wheel in signal.wheels:
-        z, velocity, last = (values[wheel] for values in (motion.displacement, motion.velocity, motion.acceleration))
-        columns.append(np.append(z, continued(z[-1], velocity[-1], last[-1], after)))
-        columns.append(np.append(velocity, velocity[-1] + last[-1] * after))
-    table = np.stack(columns, axis=1)
+    long = 16 * (steps + 1 + beyond) * len(signal.wheels) > LARGEST_TABLE
+    return (LongPlates if long else _table)(signal, step, steps, beyond)
+
+
+# A sweep runs hundreds of cars over the same few signals.
+@lru_cache(maxsize=4)
+def _table(signal: Signal, step: float, steps: int, beyond: int) -> Vector:
+    """All rows."""
+    table = LongPlates(signal, step, steps, beyond)[:]
     table.setflags(write=False)
     return table

@@ -12,7 +12,7 @@ from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.names import WHEELS, channel_units
 from vehicle.parameters.elements import Damper
 from vehicle.reduced.march import LAW_ROWS, March, compiled_march
-from vehicle.reduced.plate_samples import plate_samples
+from vehicle.reduced.plate_samples import LongPlates, plate_samples
 from vehicle.reduced.pole_model import PoleModel
 from vehicle.reduced.readout import Readout
 from vehicle.reduced.step_factors import StepFactors, step_factors
@@ -175,7 +175,7 @@ class _Run:
     def fill(
         self,
         march: March,
-        plates: Vector,
+        plates: Vector | LongPlates,
         every: int,
         readout: Readout,
         table: Vector,

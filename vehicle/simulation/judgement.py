@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 
-from vehicle.errors import SimulationError
+from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.simulation.recording import Energies, Recording
 
 LARGEST = 1e8
@@ -22,6 +24,22 @@ ENERGY_ROUND_OFF = 1e-7
 BALANCED_RATE = 100.0
 """Rate of the samples [Hz] from which their powers can be integrated: the high input has a residual of 2e-4 from
 samples at 1 kHz and of 1e-3 at this rate."""
+
+
+def require_memory(samples: float, channels: int) -> None:
+    """Refuse a run whose recording would not fit into this machine, before it begins.
+
+    Memory: every sample of every channel, and as much again while it is evaluated, 16 bytes; half the machine at most.
+
+    Raises:
+        ConfigurationError: naming what is needed and what there is.
+    """
+    needed, there = 16.0 * samples * channels, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if needed > 0.5 * there:
+        raise ConfigurationError(
+            f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB, allowed is "
+            f"half the memory of this machine, {0.5 * there / 1e9:.3g} GB; lower the rate, or cut the record into parts"
+        )
 
 
 def require_finite(recording: Recording) -> None:

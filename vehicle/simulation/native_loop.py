@@ -158,7 +158,7 @@ class NativeLoop:
         self.sites = np.array(recorder.sites, dtype=np.int64)
         self.plates = Plates(
             height=np.ascontiguousarray(heights),
-            velocity=np.ascontiguousarray(motion.velocity),
+            velocity=np.ascontiguousarray(motion.row_velocity),
             acceleration=np.ascontiguousarray(motion.acceleration),
             mocap_position=data.mocap_pos,
             row_velocity=state.plate_velocity,

@@ -10,17 +10,23 @@ import numpy.typing as npt
 from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS
 from vehicle.simulation.acceleration import continued
+from vehicle.simulation.step_weights import FOURTH_ORDER
 
 Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PlateArrays:
-    """Displacement [m], velocity [m/s] and acceleration [m/s2] of the plates; (steps, 2) in the order of WHEELS."""
+    """Displacement [m], velocity [m/s] and acceleration [m/s2] of the plates; (steps, 2) in the order of WHEELS.
+
+    `row_velocity` (1 - delta2/12) velocity is what the tyre rows are given: averaged over three steps like the rest of
+    their force, where the central difference alone would be weaker by w2 h2/12, 3 % of the damping at 100 Hz and 1 ms.
+    """
 
     displacement: Vector
     velocity: Vector
     acceleration: Vector
+    row_velocity: Vector
 
     @classmethod
     def of(cls, signal: Signal, times: Vector, beyond: int = 0) -> PlateArrays:
@@ -48,4 +54,6 @@ class PlateArrays:
             displacement = np.vstack([displacement, further])
             velocity = np.vstack([velocity, velocity[-1] + acceleration[-1] * after[:, None]])
             acceleration = np.vstack([acceleration, np.tile(acceleration[-1], (beyond, 1))])
-        return cls(displacement=displacement, velocity=velocity, acceleration=acceleration)
+        row_velocity = velocity.copy()
+        row_velocity[1:-1] -= FOURTH_ORDER * np.diff(velocity, 2, axis=0)
+        return cls(displacement=displacement, velocity=velocity, acceleration=acceleration, row_velocity=row_velocity)

@@ -193,7 +193,10 @@ class Recorder:
         power_in = np.sum((tyre - static) * velocity, axis=1)
         self.lifting = float(static @ (motion.displacement[index] - motion.displacement[0]))
         rate = b["rate"] + 0.5 * self.step * self._row_acceleration(b["solved"])
-        loss = np.sum(e.damping * rate**2, axis=(1, 2))
+        # The damping of a tyre answers the averaged velocity of its plate and works along the true one.
+        true_rate = rate.copy()
+        true_rate[:, e.tyres, 2] += (motion.row_velocity - motion.velocity)[steps]
+        loss = np.sum(e.damping * rate * true_rate, axis=(1, 2))
         branch = self._branch_force(b["solved"], b["branch"])
         present = e.branch_stiffness > 0.0
         dashpots = (e.branch_stiffness * e.branch_time)[present]

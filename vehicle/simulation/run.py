@@ -81,7 +81,7 @@ def simulate(
 
     def move(index: int) -> None:
         data.mocap_pos[plates, 2] = heights[index]
-        rows.plate_velocity[:, 2] = motion.velocity[index]
+        rows.plate_velocity[:, 2] = motion.row_velocity[index]
         rows.plate_acceleration[:, 2] = motion.acceleration[index]
 
     started = clock.perf_counter()

@@ -104,6 +104,7 @@ class FrfTarget:
         return self._rows(log_ratio(self.data.response, self.estimated(run)))
 
     def _rows(self, logarithm: Complex) -> Vector:
-        scaled = logarithm / self.deviation
+        known = np.isfinite(logarithm) & np.isfinite(self.deviation) & (self.deviation > 0.0)
+        scaled = np.divide(logarithm, self.deviation, out=np.full(known.shape, np.nan + 0j), where=known)
         rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)
         return np.where(np.isfinite(rows), rows, 0.0)

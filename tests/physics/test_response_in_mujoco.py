@@ -1,0 +1,47 @@
+"""The response to a periodic motion of a plate, from MuJoCo at the default step, against the matrices."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.analysis.periodic_response import periodic_response
+from vehicle.car import Car
+from vehicle.excitation.signal import Signal
+
+PERIOD, PERIODS, RATE = 4.0, 4, 4000.0
+
+
+def periodic_motion():
+    """Lines from 1 to 100 Hz, faded in over a second; small enough to be linear."""
+    count = round(PERIOD * RATE)
+    lines = np.arange(4, 401)
+    spectrum = np.zeros(count // 2 + 1, dtype=complex)
+    spectrum[lines] = np.exp(2j * np.pi * np.random.default_rng(1).random(lines.size)) / np.maximum(
+        lines / PERIOD, 10.0
+    )
+    wave = np.fft.irfft(spectrum)
+    time = np.arange(PERIODS * count + 1) / RATE
+    fade = np.clip(time, 0.0, 1.0)
+    motion = np.resize(1e-5 * wave / np.std(wave), time.size) * fade**3 * (10.0 - 15.0 * fade + 6.0 * fade**2)
+    return Signal(time=time, displacement={"fr": motion})
+
+
+# What is left is the centred damping of tyres and dampers, second order: 0.1 to 0.2 %. With the central difference as
+# velocity of the plate in the tyre rows the knuckle would be 0.8 % (stuck) and 1.0 % (sliding) off.
+LIMITS = {"stuck": (1e4, 1.5e-3), "sliding": (0.0, 2.5e-3)}
+
+
+@pytest.mark.parametrize("damper", LIMITS)
+def test_response_up_to_100_hz(damper):
+    friction, limit = LIMITS[damper]
+    car = Car.load(None, [f"damper.coulomb_friction={friction}"])
+    channels = ["knuckle_fr_acc_z", "seat_rail_acc_z", "engine_acc_z", "suspension_mount_fr_acc_z", "body_front_acc_z"]
+    run = car.run(periodic_motion(), channels=[*channels, "plate_fr_displacement"])
+    responses = np.array([run[name][:-1] for name in channels])
+    plate = run["plate_fr_displacement"][:-1]
+    found = periodic_response(1e-3, plate, responses, period_s=PERIOD, skip_periods=PERIODS - 1, band=(1.0, 100.0))
+    exact = car.matrix_frf(channels, found.frequency, damper=damper)
+    error = np.sqrt(np.sum(np.abs(found.response - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
+    assert found.frequency[-1] > 99.0
+    assert np.all(error < limit), error

@@ -1,0 +1,38 @@
+"""Long records: plates are made piece by piece, and what cannot be held is refused before it is computed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError
+from vehicle.excitation.random_road import random_road
+from vehicle.reduced import plate_samples
+from vehicle.simulation.judgement import require_memory
+
+pytest.importorskip("numba", reason="the reduced engine needs it")
+
+
+def test_pieces_give_the_same_run(car, monkeypatch):
+    road = random_road(rms=5e-4, seed=2, duration=3.0)
+    channels = ["seat_rail_acc_z", "damper_fr_velocity", "plate_fr_displacement", "plate_fl_displacement"]
+    whole = car.run(road, engine="reduced", channels=channels)
+    monkeypatch.setattr(plate_samples, "LARGEST_TABLE", 0)
+    pieces = car.run(road, engine="reduced", channels=channels)
+    assert isinstance(plate_samples.plate_samples(road, 1e-3, 10, 2), plate_samples.LongPlates)
+    for name in channels:
+        np.testing.assert_array_equal(whole[name], pieces[name])
+
+
+def test_a_recording_that_does_not_fit_is_refused(monkeypatch):
+    monkeypatch.setattr("os.sysconf", {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 1000}.__getitem__)  # 4 MB
+    with pytest.raises(
+        ConfigurationError, match=r"^solver\.record_rate: 10 channels of 2e\+04 samples need 0\.0032 GB"
+    ):
+        require_memory(20_000, 10)
+    require_memory(10_000, 10)
+    car = Car.load()
+    with pytest.raises(ConfigurationError, match=r"solver\.record_rate: .* GB; lower the rate"):
+        car.run(random_road(rms=5e-4, seed=2, duration=6.0), engine="reduced")
+    assert "matrices" not in vars(car), "refused before anything is computed"
