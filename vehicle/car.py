@@ -27,7 +27,7 @@ from vehicle.analysis.local_rational import local_rational_responses
 from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
-from vehicle.flexbody.library import find_superelement
+from vehicle.flexbody.library import body_model
 from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices, car_matrices
@@ -91,8 +91,8 @@ class Car:
 
     @cached_property
     def trimmed_body(self) -> Superelement:
-        """The superelement of the free trimmed body, as its file has it."""
-        return find_superelement(self.vehicle.body.superelement, self.folder)
+        """The superelement of the free trimmed body: of its file, or computed from a design on these hardpoints."""
+        return body_model(self.vehicle, self.folder)
 
     @cached_property
     def model(self) -> CarModel:

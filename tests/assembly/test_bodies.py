@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from vehicle.assembly.body_inertia import rigid_body
+from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.names import WHEEL_SIGN, WHEELS
 from vehicle.parameters.parts import CENTER_PARTS, SIDE_PARTS
 from vehicle.parameters.vehicle import load_vehicle

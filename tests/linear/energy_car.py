@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from vehicle.assembly.body_inertia import rigid_body
 from vehicle.assembly.connections import connections
+from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.names import WHEEL_SIGN, WHEELS
 
 COMPLEX_STEP, REAL_STEP = 1e-30, 1e-5

@@ -110,11 +110,7 @@ def mirror_symmetric():
 
 
 def test_a_symmetric_car_answers_left_as_right():
-    from tests.assembly.test_another_car import moved_body
-
-    vehicle = mirror_symmetric()
-    car = Car(vehicle)
-    car.__dict__["trimmed_body"] = moved_body(Car.load().trimmed_body, vehicle.hardpoints.all_points())
+    car = Car(mirror_symmetric())
     road = random_road(rms=5.25e-4, seed=4, duration=2.0)
     z = road.displacement["fr"]
     right = car.run(Signal(time=road.time, displacement={"fr": z}))

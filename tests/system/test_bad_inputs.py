@@ -92,7 +92,8 @@ def test_bad_parameters(shaker, short_signal, tmp_path, setting, piece):
 def test_item_27_bad_superelement_beside_the_vehicle_file(shaker, short_signal, tmp_path):
     text = (ROOT / "vehicle/flexbody/trimmed_body.toml").read_text()
     (tmp_path / "trimmed_body.toml").write_text(text.replace("mode_count = 9", "mode_count = 8"))
-    (tmp_path / "car.toml").write_text((ROOT / "vehicle/parameters/focus.toml").read_text())
+    focus = (ROOT / "vehicle/parameters/focus.toml").read_text()
+    (tmp_path / "car.toml").write_text(focus.replace("body_design.toml", "trimmed_body.toml"))
     outcome = shaker("--input", "short.csv", "--vehicle", "car.toml")
     assert outcome.code == 3 and "mode_count" in outcome.err
 
@@ -100,7 +101,7 @@ def test_item_27_bad_superelement_beside_the_vehicle_file(shaker, short_signal, 
 def test_item_33_link_out_of_the_folder(shaker, short_signal, tmp_path):
     folder = tmp_path / "cars"
     folder.mkdir()
-    (folder / "trimmed_body.toml").symlink_to(ROOT / "vehicle/flexbody/trimmed_body.toml")
+    (folder / "body_design.toml").symlink_to(ROOT / "vehicle/flexbody/body_design.toml")
     (folder / "car.toml").write_text((ROOT / "vehicle/parameters/focus.toml").read_text())
     outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml")
     assert outcome.code == 2 and "is a link that leads out of" in outcome.err

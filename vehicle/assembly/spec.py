@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.assembly.body_inertia import rigid_body
 from vehicle.assembly.connections import Connection, connections
 from vehicle.flexbody.attached_mass import with_attached_masses
+from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, require_nodes
 from vehicle.names import BODY_OUTPUTS, WHEELS, body_nodes
 from vehicle.parameters.hardpoints import mirrored
@@ -70,7 +70,8 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
     points = {name: np.array(point) for name, point in vehicle.hardpoints.all_points().items()}
     require_nodes(trimmed_body, {name: points[name] for name in body_nodes()})
     seats = {f"strut_top_{wheel}": vehicle.body.spring_seat_mass for wheel in WHEELS}
-    superelement = with_attached_masses(trimmed_body, seats) if vehicle.body.spring_seat_mass > 0.0 else trimmed_body
+    carries = vehicle.body.flexible and vehicle.body.spring_seat_mass > 0.0
+    superelement = with_attached_masses(trimmed_body, seats) if carries else trimmed_body
     spec = _empty_spec(vehicle)
     builder = _Builder(spec, vehicle, superelement, points)
     builder.add_body()

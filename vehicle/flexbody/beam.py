@@ -53,7 +53,8 @@ def local_stiffness(length: float, section: BeamSection) -> FloatArray:
     """
     k = np.zeros((12, 12))
     for start, stiffness in ((0, section.axial), (3, section.torsion)):
-        k[np.ix_([start, start + 6], [start, start + 6])] = stiffness / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        k[start, start] = k[start + 6, start + 6] = stiffness / length
+        k[start, start + 6] = k[start + 6, start] = -stiffness / length
     planes = (  # deflection, rotation of both nodes; the sign couples the rotation to the slope of the deflection
         ([1, 5, 7, 11], section.bending_z, 1.0),  # rz = +d uy / dx
         ([2, 4, 8, 10], section.bending_y, -1.0),  # ry = -d uz / dx
@@ -66,7 +67,7 @@ def local_stiffness(length: float, section: BeamSection) -> FloatArray:
             [-12.0, -s, 12.0, -s],
             [s, 2.0 * q, -s, 4.0 * q],
         ]
-        k[np.ix_(dofs, dofs)] = stiffness / length**3 * np.array(bending)
+        k[np.array(dofs)[:, None], dofs] = stiffness / length**3 * np.array(bending)
     return k
 
 
@@ -90,11 +91,17 @@ def local_axes(start: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.
         raise ConfigurationError(f"beam from {list(np.asarray(start))} to the same point: its ends must differ.")
     x = along / length
     up = np.asarray(reference, dtype=float)
-    if np.linalg.norm(np.cross(x, up)) < _PARALLEL * np.linalg.norm(up):
-        up = np.array([1.0, 0.0, 0.0])
-    y = np.cross(up, x)
+    y = _cross(up, x)
+    if np.linalg.norm(y) < _PARALLEL * np.linalg.norm(up):
+        y = _cross(np.array([1.0, 0.0, 0.0]), x)
     y /= np.linalg.norm(y)
-    return np.stack([x, y, np.cross(x, y)])  # (3, 3)
+    return np.stack([x, y, _cross(x, y)])  # (3, 3)
+
+
+def _cross(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Vector product of two vectors; a tenth of the time of the general one, for hundreds of beams a body."""
+    (a, b, c), (x, y, z) = first.tolist(), second.tolist()
+    return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
 
 
 def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> FloatArray:
@@ -108,7 +115,10 @@ def beam_stiffness(start: ArrayLike, end: ArrayLike, section: BeamSection) -> Fl
     Returns:
         Stiffness [N/m, N, N m], shape (12, 12).
     """
-    turn = np.kron(np.eye(4), local_axes(start, end))  # (12, 12)
+    turn = np.zeros((12, 12))
+    axes = local_axes(start, end)
+    for block in range(0, 12, 3):
+        turn[block : block + 3, block : block + 3] = axes
     length = float(np.linalg.norm(np.asarray(end, dtype=float) - np.asarray(start, dtype=float)))
     return np.asarray(turn.T @ local_stiffness(length, section) @ turn)
 
@@ -125,6 +135,6 @@ def frame_stiffness(positions: FloatArray, beams: list[tuple[int, int, BeamSecti
     """
     stiffness = np.zeros((6 * len(positions), 6 * len(positions)))
     for first, second, section in beams:
-        dofs = np.r_[6 * first : 6 * first + 6, 6 * second : 6 * second + 6]
-        stiffness[np.ix_(dofs, dofs)] += beam_stiffness(positions[first], positions[second], section)
+        dofs = np.concatenate([np.arange(6 * first, 6 * first + 6), np.arange(6 * second, 6 * second + 6)])
+        stiffness[dofs[:, None], dofs] += beam_stiffness(positions[first], positions[second], section)
     return stiffness

@@ -1,31 +1,32 @@
-"""The trimmed body as a space frame: geometry, sections and masses in, modes out."""
+"""The trimmed body as a space frame: a design on the hardpoints and with the masses of a vehicle, modes out."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
+from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import FloatArray, frame_stiffness
+from vehicle.flexbody.body_design import BodyDesign
+from vehicle.flexbody.mode_names import mode_names
 from vehicle.flexbody.modes import condense_rotations, free_free_modes
 from vehicle.flexbody.node_masses import body_masses
-from vehicle.flexbody.sections import SECTIONS
-from vehicle.flexbody.wireframe import MEMBERS, member_ends, node_positions
+from vehicle.flexbody.superelement import Superelement
+from vehicle.parameters.body import TrimmedBody
+from vehicle.parameters.hardpoints import COINCIDENT_M, Hardpoints
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BodyFrame:
     """Matrices of the frame; the stiffness is linear in one factor for each member group."""
 
-    nodes: tuple[str, ...]
-    """node names"""
-    positions: FloatArray
-    """[m], shape (n, 3)"""
-    node_mass: FloatArray
-    """[kg], shape (n,)"""
-    edges: FloatArray
-    """wireframe lines as node indices, shape (m, 2)"""
+    design: BodyDesign
+    """what it was made from"""
+    skeleton: Superelement
+    """nodes, masses and lines of it, without modes"""
     fixed_stiffness: FloatArray
     """what no factor scales [N/m, N, N m], shape (6 n, 6 n)"""
     group_stiffness: Mapping[str, FloatArray]
@@ -45,30 +46,127 @@ class BodyFrame:
         for group, matrix in self.group_stiffness.items():
             stiffness += factors[group] * matrix
         condensed, _ = condense_rotations(stiffness)
-        return free_free_modes(condensed, self.node_mass, self.positions, count)
+        return free_free_modes(condensed, self.skeleton.node_mass, self.skeleton.positions, count)
+
+    def superelement(self, factors: Mapping[str, float] | None = None) -> Superelement:
+        """The modal superelement of the frame; factors of the member groups: by default those of the design."""
+        rest, count = self.skeleton, int(self.design.mode_count)
+        frequencies, shapes = self.modes(self.design.factors if factors is None else factors, count)
+        return replace(
+            rest,
+            frequencies=frequencies,
+            damping_ratio=np.full(count, self.design.damping_ratio),
+            shapes=shapes,
+            mode_names=mode_names(shapes, rest.nodes, rest.positions, rest.node_mass),
+        )
 
 
-def trimmed_body_frame() -> BodyFrame:
-    """The frame of the estate car of `wireframe.py` with the sections of `sections.py` and the masses of the thesis."""
-    points = node_positions()
-    nodes = tuple(points)
-    positions = np.array(list(points.values()))
-    index = {name: i for i, name in enumerate(nodes)}
-    fixed = np.zeros((6 * len(nodes), 6 * len(nodes)))
-    groups: dict[str, FloatArray] = {}
-    edges: list[tuple[int, int]] = []
-    for group in MEMBERS:
-        ends = [(index[first], index[second]) for first, second in member_ends(group)]
-        section = SECTIONS[group]
-        groups[group] = frame_stiffness(positions, [(a, b, section.scaled) for a, b in ends])
-        fixed += frame_stiffness(positions, [(a, b, section.fixed) for a, b in ends])
-        if section.fixed.axial > 0.0:  # panel struts are no lines of the picture
-            edges += ends
-    return BodyFrame(
-        nodes=nodes,
-        positions=positions,
-        node_mass=body_masses(nodes, positions),
-        edges=np.array(edges),
-        fixed_stiffness=fixed,
-        group_stiffness=groups,
+def skeleton(design: BodyDesign, hardpoints: Hardpoints) -> Superelement:
+    """The body of a design on a car without modes, its masses as guessed: all of a rigid body, the start of a frame.
+
+    Args:
+        design: members, joints of the shell, attachments.
+        hardpoints: interface and output points.
+
+    Raises:
+        ConfigurationError: a name of the design leads nowhere.
+    """
+    placed = design.placed(hardpoints)
+    entries = {node: design.nodes[name] for name, made in placed.items() for node in made}
+    points = {node: np.array(place) for made in placed.values() for node, place in made.items()}
+    index = {name: i for i, name in enumerate(points)}
+    tubes = [group for group, members in design.members.items() if members.area is None]  # struts stand for panels
+    lines = [ends for group in tubes for ends in design.member_ends(group, placed)]
+    return Superelement(
+        name=design.name,
+        nodes=tuple(points),
+        positions=np.array(list(points.values())),
+        edges=np.array([(index[a], index[b]) for a, b in lines]),
+        node_mass=np.array([entry.mass for entry in entries.values()]),
+        frequencies=np.zeros(0),
+        damping_ratio=np.zeros(0),
+        shapes=np.zeros((0, len(points), 3)),
+        mode_names=(),
+        attachment_stiffness={
+            node: np.array(entry.attachment) for node, entry in entries.items() if entry.attachment is not None
+        },
+        provenance=design.provenance,
     )
+
+
+def body_frame(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) -> BodyFrame:
+    """The frame of a design on the hardpoints of a car, with its mass, centre of gravity and inertia.
+
+    Args:
+        design: of the body.
+        hardpoints: interface and output points of the car.
+        body: mass properties of the car.
+
+    Returns:
+        The frame.
+
+    Raises:
+        ConfigurationError: as of `skeleton`; a node without a tube, or a member without length; fewer elastic modes
+            than wanted; no positive node masses with the mass properties.
+    """
+    rest, placed = skeleton(design, hardpoints), design.placed(hardpoints)
+    count, positions = len(rest.nodes), rest.positions
+    if design.mode_count > 3 * count - 6:
+        raise ConfigurationError(
+            f"mode_count: found {design.mode_count:g}, but {count} nodes have {3 * count - 6} elastic modes"
+        )
+    loose = [name for i, name in enumerate(rest.nodes) if i not in rest.edges]
+    if loose:
+        raise ConfigurationError(
+            f"nodes: no tube ends at {', '.join(loose)}, which could turn freely; add members with width and wall"
+        )
+    fixed = np.zeros((6 * count, 6 * count))
+    groups: dict[str, FloatArray] = {}
+    for group, members in design.members.items():
+        ends = [(rest.node_index(a), rest.node_index(b)) for a, b in design.member_ends(group, placed)]
+        for a, b in ends:
+            if (distance := float(np.linalg.norm(positions[a] - positions[b]))) < COINCIDENT_M:
+                raise ConfigurationError(
+                    f"members.{group}: {rest.nodes[a]} at {positions[a].tolist()} m and {rest.nodes[b]} are "
+                    f"{distance:.3g} m apart; a member needs {COINCIDENT_M:g} m and more. Move the hardpoint, or the "
+                    "place of a node in the body design"
+                )
+        scaled, stays = members.sections(design.youngs_modulus, design.shear_modulus)
+        groups[group] = frame_stiffness(positions, [(a, b, scaled) for a, b in ends])
+        if stays.axial > 0.0:
+            fixed += frame_stiffness(positions, [(a, b, stays) for a, b in ends])
+    freedom = np.array([design.nodes[name].freedom for name, made in placed.items() for _ in made])
+    masses = body_masses(rest.node_mass, freedom, positions, body)
+    return BodyFrame(
+        design=design, skeleton=replace(rest, node_mass=masses), fixed_stiffness=fixed, group_stiffness=groups
+    )
+
+
+def design_superelement(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) -> Superelement:
+    """The modal superelement of a design on a car, computed once for the same points and masses.
+
+    Args:
+        design: of the body.
+        hardpoints: of the car.
+        body: mass properties of the car.
+
+    Raises:
+        ConfigurationError: as of `body_frame`.
+    """
+    # A sweep of what the frame does not know asks for the same body thousands of times: that is left out of the key.
+    known = replace(
+        body,
+        inertia_variant="improved",
+        ixx_published=body.ixx_improved,
+        ixy=0.0,
+        iyz=0.0,
+        attachment_flexibility=True,
+        frequency_scale=1.0,
+        spring_seat_mass=0.0,
+    )
+    return _built(design, hardpoints, known)
+
+
+@lru_cache(maxsize=32)
+def _built(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) -> Superelement:
+    return body_frame(design, hardpoints, body).superelement()

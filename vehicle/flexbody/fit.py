@@ -28,7 +28,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.body_frame import BodyFrame
 from vehicle.flexbody.mode_names import global_patterns, modal_assurance
-from vehicle.flexbody.sections import SECTIONS
+from vehicle.flexbody.superelement import Superelement
 from vehicle.flexbody.symmetry import mirror_nodes, parity
 
 FIRST_HZ, LAST_HZ = 19.0, 43.0
@@ -56,16 +56,6 @@ _MOUNTS = ("hydromount", "linear_mount", "bottom_")
 _INTERFACES = ("arm_", "strut_top", "tie_", "stab_", "rear_support", "seat", *_MOUNTS)
 
 
-def fitted_groups() -> tuple[str, ...]:
-    """Member groups with a fitted factor."""
-    return tuple(group for group, section in SECTIONS.items() if section.fitted)
-
-
-def stored_factors() -> dict[str, float]:
-    """The factors of `sections.py`, group -> factor [1]."""
-    return {group: section.factor for group, section in SECTIONS.items()}
-
-
 def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> FloatArray:
     """What the fit minimises, as one vector [1]; the first three are first, last and torsion frequency.
 
@@ -74,14 +64,15 @@ def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> 
         factors: factor of every member group [1].
         weight: weight of first, last and torsion frequency [1/Hz]; everything else has weight of order one.
     """
+    body = frame.skeleton
     frequencies, shapes = frame.modes(factors, MODE_COUNT + 1)
     kept = shapes[:MODE_COUNT]
-    likeness = parity(shapes, frame.positions, frame.node_mass)
-    twist = modal_assurance(kept, global_patterns(frame.positions, frame.node_mass)["torsion"], frame.node_mass)
+    likeness = parity(shapes, body.positions, body.node_mass)
+    twist = modal_assurance(kept, global_patterns(body.positions, body.node_mass)["torsion"], body.node_mass)
     torsion = int(twist.argmax())
     first = int((likeness > 0.0).argmax())
     missed = frequencies[[first, MODE_COUNT - 1, torsion]] - (FIRST_HZ, LAST_HZ, TORSION_HZ)
-    tower = np.abs(kept[:, frame.nodes.index("strut_top_fr"), 2])
+    tower = np.abs(kept[:, body.node_index("strut_top_fr"), 2])
     return np.concatenate(
         [
             weight * missed,
@@ -92,22 +83,20 @@ def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> 
             [400.0 * (tower[torsion] - _TORSION_AMPLITUDE)],
             150.0 * np.maximum(0.0, np.delete(tower - _TOWER, torsion)),
             4.0 * np.maximum(0.0, _PARITY - np.abs(likeness[:MODE_COUNT])),
-            0.6 / _FACTOR * np.log([factors[group] for group in fitted_groups()]),
-            _excess_motion(frame, kept),
+            0.6 / _FACTOR * np.log([factors[group] for group in frame.design.fitted_groups]),
+            _excess_motion(body, kept),
         ]
     )
 
 
-def _excess_motion(frame: BodyFrame, shapes: FloatArray) -> FloatArray:
+def _excess_motion(body: Superelement, shapes: FloatArray) -> FloatArray:
     """Penalties [1] for a loud seat rail, nodes that move far more than the body around them, and lopsided pairs."""
     amplitude = np.linalg.norm(shapes, axis=2)  # (modes, n)
-    facing = mirror_nodes(frame.positions)
-    interface = np.array([name.startswith(_INTERFACES) for name in frame.nodes])
-    rail, other = (
-        np.abs(shapes[:, frame.nodes.index(name)]) for name in ("seat_rail", "seat_rail_right")
-    )  # (modes, 3)
-    right = np.flatnonzero((facing >= 0) & (frame.positions[:, 1] > 0.0))
-    energy = frame.node_mass * amplitude**2
+    facing = mirror_nodes(body.positions)
+    interface = np.array([name.startswith(_INTERFACES) for name in body.nodes])
+    rail, other = (np.abs(shapes[:, body.node_index(name)]) for name in ("seat_rail", "seat_rail_right"))  # (modes, 3)
+    right = np.flatnonzero((facing >= 0) & (body.positions[:, 1] > 0.0))
+    energy = body.node_mass * amplitude**2
     sides = amplitude[:, right], amplitude[:, facing[right]]
     difference = 2.0 * np.abs(sides[0] - sides[1]) / np.maximum(sides[0] + sides[1], 0.02)  # 0.01 counts as little
     return np.concatenate(
@@ -137,7 +126,7 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
     Raises:
         ConfigurationError: the frequencies cannot be met within 0.1 Hz from this start.
     """
-    groups = fitted_groups()
+    groups = frame.design.fitted_groups
 
     def factors(logarithms: FloatArray) -> dict[str, float]:
         return {**start, **dict(zip(groups, np.exp(logarithms).tolist(), strict=True))}

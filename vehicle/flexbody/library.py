@@ -1,50 +1,99 @@
-"""Finds the superelement that a vehicle file names: beside that file, or among those of the package."""
+"""The elastic model of a vehicle's body: computed from a design on its hardpoints, or imported as a superelement."""
 
 from __future__ import annotations
 
+import re
 from functools import lru_cache
 from importlib import resources
 from pathlib import Path
 
+import numpy as np
+
 from vehicle.errors import ConfigurationError
+from vehicle.flexbody.body_design import BodyDesign, read_design
+from vehicle.flexbody.body_frame import design_superelement, skeleton
+from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement
 from vehicle.flexbody.superelement_file import read_superelement
+from vehicle.names import body_nodes
+from vehicle.parameters.vehicle import Vehicle
 
 PACKAGE_FOLDER = Path(str(resources.files("vehicle.flexbody")))
+_DESIGN = re.compile(r"""^format *= *["']body design""", re.MULTILINE)
 
 
-def find_superelement(name: str, folder: Path | None = None) -> Superelement:
-    """Read a superelement by file name.
+def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
+    """The superelement of a vehicle's free trimmed body; one without modes where it is rigid.
 
     Args:
-        name: file name without folders; parameter validation allows letters, digits, '_', '.', '-' only.
-        folder: folder of the vehicle file, searched first.
+        vehicle: parameters; `body.superelement` names a body design or a modal superelement.
+        folder: folder of the vehicle file, searched before the package.
 
     Returns:
-        The superelement.
+        The body. A design stands on the hardpoints and has the mass properties of the vehicle; of a rigid body
+        only the local stiffness of attachments is taken, and without a file its nodes are the bare hardpoints.
 
     Raises:
-        ConfigurationError: no such file in either folder, or a link that leads out of it.
-        DataError: the file is bad.
+        ConfigurationError: no such file and the vehicle needs one; a bad design, or one that does not fit the vehicle.
+        DataError: the superelement is bad.
     """
-    folders = [place for place in (folder, PACKAGE_FOLDER) if place is not None]
-    for place in folders:
-        file = place / name
-        if file.is_file():
-            if file.resolve().parent != place.resolve():
-                raise ConfigurationError(
-                    f"body.superelement: {name} is a link that leads out of {place}; put the file itself there"
-                )
-            status = file.stat()
-            return _read_once(file, status.st_mtime_ns, status.st_size)
-    known = sorted(file.name for file in PACKAGE_FOLDER.glob("*.toml"))
-    raise ConfigurationError(
-        f"body.superelement: no file {name!r} beside the vehicle file nor in the package, which has {', '.join(known)}"
-    )
+    body, points = vehicle.body, vehicle.hardpoints
+    file = None if body.superelement is None else _find(body.superelement, folder)
+    if file is None:
+        if body.superelement is not None and (body.flexible or body.attachment_flexibility):
+            known = ", ".join(sorted(found.name for found in PACKAGE_FOLDER.glob("*.toml")))
+            raise ConfigurationError(
+                f"body.superelement: no file {body.superelement!r} beside the vehicle file nor in the package, which "
+                f"has {known}; a rigid body (body.flexible = false, body.attachment_flexibility = false) needs none"
+            )
+        return _bare(vehicle)
+    status = file.stat()
+    source = _read_once(file, status.st_mtime_ns, status.st_size)
+    if isinstance(source, Superelement):
+        return source if body.flexible else source.without_modes()
+    try:
+        if not body.flexible:
+            return skeleton(source, points)
+        rigid_body(body)  # says better what is wrong with an inertia
+        return design_superelement(source, points, body)
+    except ConfigurationError as error:
+        text = str(error)
+        raise ConfigurationError(text if text.startswith("body.") else f"{file.name}: {text}") from None
 
 
-# A sweep builds thousands of cars on one body; a superelement cannot be changed once it is read.
+def _find(name: str, folder: Path | None) -> Path | None:
+    """A file by its name, which parameter validation keeps free of folders; None where there is none."""
+    for place in (folder, PACKAGE_FOLDER):
+        if place is None or not (place / name).is_file():
+            continue
+        if (place / name).resolve().parent != place.resolve():
+            raise ConfigurationError(
+                f"body.superelement: {name} is a link that leads out of {place}; put the file itself there"
+            )
+        return place / name
+    return None
+
+
+# A sweep builds thousands of cars on one body; neither kind can be changed once it is read.
 @lru_cache(maxsize=8)
-def _read_once(file: Path, modified: int, size: int) -> Superelement:
-    """Read a superelement again only where its file has changed."""
-    return read_superelement(file)
+def _read_once(file: Path, modified: int, size: int) -> BodyDesign | Superelement:
+    """Read a file again only where it has changed."""
+    is_design = _DESIGN.search(file.read_text(encoding="utf-8", errors="replace"))
+    return read_design(file) if is_design else read_superelement(file)
+
+
+def _bare(vehicle: Vehicle) -> Superelement:
+    """A rigid body without a file: its nodes are hardpoints, and its mass, which nothing asks for, is spread evenly."""
+    points, nodes = vehicle.hardpoints.all_points(), body_nodes()
+    return Superelement(
+        name="rigid_body",
+        nodes=nodes,
+        positions=np.array([points[name] for name in nodes]),
+        edges=np.zeros((0, 2)),
+        node_mass=np.full(len(nodes), vehicle.body.mass / len(nodes)),
+        frequencies=np.zeros(0),
+        damping_ratio=np.zeros(0),
+        shapes=np.zeros((0, len(nodes), 3)),
+        mode_names=(),
+        provenance="Rigid body on the hardpoints of the vehicle, attachments rigid.",
+    )

@@ -4,10 +4,13 @@ These numbers do not determine 43 masses. A guess of where a trimmed estate carr
 seats, dash) is changed as little as possible, in relative entropy, which keeps every mass positive; nodes that springs
 and mounts act on get little freedom, so that no interface becomes a lone heavy lump.
 
-The masses are those of a body that is symmetric about y = 0: Ixy = Iyz = 0 instead of the published 82 and -50 kg m2.
-The thesis measured the rigid-body properties separately from the modes and published no mode shape. Lumped at 43 nodes
-those products need one side of the car some tens of kilograms heavier at the bottom and lighter at the top, and the
-modes of such a body are lopsided as no car's are. The rigid inertia of the complete car keeps the published products.
+The masses are those of a body that is symmetric about y = 0, with its products Ixy and Iyz about the centre of gravity
+zero whatever the vehicle file says (published: 82 and -50 kg m2). The thesis measured the rigid-body properties
+separately from the modes and published no mode shape. Lumped at 43 nodes those products need one side of the car some
+tens of kilograms heavier at the bottom and lighter at the top, and the modes of such a body are lopsided as no car's
+are. And their Ixx is `ixx_improved` in both variants: no set of positive masses has the published 1000 kg m2, which
+breaks the triangle inequality; 1200 is what the thesis itself suggests. The rigid inertia of the complete car keeps
+the published products, and the Ixx of its variant.
 """
 
 from __future__ import annotations
@@ -17,56 +20,9 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.inertia import about_cog, inertia_tensor, second_moments
-from vehicle.flexbody.wireframe import side_names
+from vehicle.parameters.body import TrimmedBody
 
-# Published: Bommer 2006, section 3.1.2, with Ixx improved from 1000 to 1200 as the thesis itself suggests: no set of
-# positive masses has the published Ixx.
-BODY_MASS = 813.0
-"""[kg]"""
-BODY_COG = (2.157, 0.0, 1.011)
-"""[m]"""
-BODY_INERTIA_ABOUT_ORIGIN = inertia_tensor(ixx=1200.0, iyy=5268.0, izz=4600.0, ixy=0.0, izx=1800.0, iyz=0.0)
-"""[kg m2], shape (3, 3); of the symmetric body, so without the published Ixy = 82.03 and Iyz = -50.04"""
-
-# pair or node: (guess [kg], freedom to change [1]); all assumed
-_PAIRS: dict[str, tuple[float, float]] = {
-    "arm_front": (4.0, 0.15),
-    "arm_rear": (5.0, 0.15),
-    "strut_top": (14.0, 0.3),
-    "tie_inner": (2.0, 0.15),
-    "stab_body": (2.0, 0.15),
-    "rear_support": (14.0, 0.3),
-    "rail_front": (9.0, 0.15),
-    "cowl": (40.0, 0.4),
-    "sill_front": (34.0, 0.4),
-    "sill_middle": (36.0, 0.4),
-    "sill_rear": (34.0, 0.4),
-    "a_pillar_top": (13.0, 0.4),
-    "b_pillar_top": (15.0, 0.4),
-    "b_pillar_belt": (46.0, 0.4),
-    "c_pillar_belt": (26.0, 0.4),
-    "d_pillar_belt": (9.0, 0.2),
-    "rear_end": (9.0, 0.2),
-}
-_CENTRE: dict[str, tuple[float, float]] = {
-    "hydromount": (3.0, 0.15),
-    "linear_mount": (3.0, 0.15),
-    "bottom_body": (14.0, 0.3),
-    "seat_rail": (46.0, 0.3),  # with the seat as heavy as its counterpart
-    "seat": (7.0, 0.1),
-    "seat_rail_right": (53.0, 0.3),
-    "roof_left_rear": (4.0, 0.2),
-    "roof_right_rear": (4.0, 0.2),
-    "body_front": (8.0, 0.2),
-}
 _MAX_STEPS = 50
-
-
-def prior_masses(nodes: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
-    """Guessed mass [kg] and freedom [1] of each node, both of shape (n,)."""
-    prior = {name: guess for pair, guess in _PAIRS.items() for name in side_names(pair)} | _CENTRE
-    table = np.array([prior[name] for name in nodes])
-    return table[:, 0], table[:, 1]
 
 
 def matched_masses(
@@ -121,8 +77,9 @@ def matched_masses(
             direction = -np.linalg.solve((rows * (masses * freedom)) @ rows.T, gap)
         except np.linalg.LinAlgError:
             break  # masses have run to zero, for the same reason
-        step = 1.0
-        while dual(multiplier + step * direction) > dual(multiplier) + 1e-4 * step * float(gap @ direction):
+        step, now = 1.0, dual(multiplier)
+        blur = 1e-12 * abs(now)  # round-off of the dual: near the minimum its differences say nothing
+        while dual(multiplier + step * direction) > now + 1e-4 * step * float(gap @ direction) + blur:
             step /= 2.0
             if step < 1e-9:
                 break
@@ -134,9 +91,30 @@ def matched_masses(
     )
 
 
-def body_masses(nodes: tuple[str, ...], positions: FloatArray) -> FloatArray:
-    """Node masses of the trimmed body [kg], shape (n,): the assumed guess matched to the published properties."""
-    guess, freedom = prior_masses(nodes)
-    cog = np.array(BODY_COG)
-    inertia = about_cog(BODY_INERTIA_ABOUT_ORIGIN, BODY_MASS, cog)
-    return matched_masses(guess, freedom, positions, mass=BODY_MASS, cog=cog, inertia_about_cog=inertia)
+def body_masses(guess: FloatArray, freedom: FloatArray, positions: FloatArray, body: TrimmedBody) -> FloatArray:
+    """Node masses of the trimmed body of a vehicle: the guess matched to its mass properties, made symmetric.
+
+    Args:
+        guess: prior masses [kg], shape (n,).
+        freedom: weight of each node's relative change [1], shape (n,).
+        positions: node positions [m], shape (n, 3).
+        body: mass properties of the vehicle.
+
+    Returns:
+        Masses [kg], shape (n,).
+
+    Raises:
+        ConfigurationError: as of `matched_masses`, with the parameters of the vehicle.
+    """
+    origin = inertia_tensor(ixx=body.ixx_improved, iyy=body.iyy, izz=body.izz, ixy=0.0, izx=body.izx, iyz=0.0)
+    cog = np.array(body.cog)
+    inertia = about_cog(origin, body.mass, cog)
+    inertia[1, [0, 2]] = inertia[[0, 2], 1] = 0.0
+    try:
+        return matched_masses(guess, freedom, positions, mass=body.mass, cog=cog, inertia_about_cog=inertia)
+    except ConfigurationError as error:
+        raise ConfigurationError(
+            f"body.mass ({body.mass:g}), body.cog {list(body.cog)}, body.ixx_improved ({body.ixx_improved:g}), "
+            f"body.iyy ({body.iyy:g}), body.izz ({body.izz:g}), body.izx ({body.izx:g}): {error} Or take a rigid body "
+            "(body.flexible = false) or another body.superelement"
+        ) from None

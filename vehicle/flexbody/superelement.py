@@ -8,7 +8,7 @@ behind it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -43,7 +43,7 @@ class Superelement:
     node_mass: FloatArray
     """lumped translational masses [kg], shape (n,)"""
     frequencies: FloatArray
-    """natural frequencies of the free body, ascending [Hz], shape (modes,)"""
+    """natural frequencies of the free body, ascending [Hz], shape (modes,); none of a rigid body"""
     damping_ratio: FloatArray
     """share of critical damping of each mode [1], shape (modes,)"""
     shapes: FloatArray
@@ -54,6 +54,8 @@ class Superelement:
     """one name for each mode"""
     provenance: str
     """where the numbers come from, in words"""
+    hardpoint_tolerance: float = 1e-3
+    """largest distance of a node from the hardpoint that it is measured for [m]"""
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -108,14 +110,19 @@ class Superelement:
         """Mode shapes at one node: displacement = shape @ q [kg^-1/2], shape (3, modes)."""
         return np.asarray(self.shapes[:, self.node_index(node), :].T)
 
+    def without_modes(self) -> Superelement:
+        """The same body, rigid."""
+        none = np.zeros(0)
+        shapes = np.zeros((0, len(self.nodes), 3))
+        return replace(self, frequencies=none, damping_ratio=none, shapes=shapes, mode_names=())
 
-def require_nodes(superelement: Superelement, places: Mapping[str, FloatArray], tolerance: float = 1e-3) -> None:
+
+def require_nodes(superelement: Superelement, places: Mapping[str, FloatArray]) -> None:
     """Refuse a body model without the nodes that the car is fixed to, or with one of them in another place.
 
     Args:
-        superelement: the body model.
+        superelement: the body model; says how far a node may be from its hardpoint.
         places: node name -> hardpoint position in the vehicle frame [m], shape (3,).
-        tolerance: largest distance between node and hardpoint [m].
 
     Raises:
         DataError: names the missing node, or the distance and both positions.
@@ -127,6 +134,9 @@ def require_nodes(superelement: Superelement, places: Mapping[str, FloatArray], 
             f"missing; the car is fixed to it. Its nodes are: {', '.join(superelement.nodes)}. "
             "Add the node to the body model."
         )
+    if not superelement.frequencies.size:
+        return  # what is rigid is fixed wherever the hardpoint is
+    tolerance = superelement.hardpoint_tolerance
     for name, place in places.items():
         node = superelement.positions[superelement.node_index(name)]
         distance = float(np.linalg.norm(node - np.asarray(place, dtype=float)))
@@ -134,5 +144,6 @@ def require_nodes(superelement: Superelement, places: Mapping[str, FloatArray], 
             raise DataError(
                 f"superelement {superelement.name!r}: node {name!r} at {node.tolist()} m is {distance * 1e3:.4g} mm "
                 f"away from its hardpoint {np.asarray(place).tolist()} m; {tolerance * 1e3:g} mm is allowed. "
-                "Move the hardpoint or use a body model measured at it."
+                "Move the hardpoint or use a body model measured at it, or one that is computed from the hardpoints "
+                "(body.superelement = body_design.toml)."
             )

@@ -17,6 +17,7 @@ NORMALISATION = 1e-6
 _LARGEST_BODY = 30.0  # m; a road vehicle in millimetres is thousands
 _SMALLEST_BODY = 0.05  # m; a road vehicle in kilometres is below
 _HIGHEST_DAMPING = 0.3  # trimmed bodies have 0.01 to 0.08; ten times that is no vibration any more
+_LARGEST_TOLERANCE = 0.05  # m; half the distance of the two interface nodes that are nearest to each other in a car
 _HIGHEST_FIRST_MODE = 90.0  # Hz; trimmed bodies begin between 15 and 60 Hz, which is 94 rad/s and more
 
 
@@ -29,7 +30,8 @@ def check_superelement(body: Superelement) -> None:
     _check_counts(body)
     _check_values(body)
     _check_units(body)
-    _check_modes(body)
+    if body.frequencies.size:
+        _check_modes(body)
 
 
 def _refuse(body: Superelement, text: str) -> None:
@@ -38,8 +40,8 @@ def _refuse(body: Superelement, text: str) -> None:
 
 def _check_counts(body: Superelement) -> None:
     nodes, modes = len(body.nodes), body.frequencies.size
-    if nodes < 3 or modes < 1:
-        _refuse(body, f"size: {nodes} nodes and {modes} modes; at least 3 nodes and 1 mode are needed.")
+    if nodes < 3:
+        _refuse(body, f"size: {nodes} nodes; at least 3 are needed.")
     wanted = {
         "positions": (nodes, 3),
         "node_mass": (nodes,),
@@ -86,7 +88,13 @@ def _check_values(body: Superelement) -> None:
             f"node_mass of {body.nodes[worst]!r}: {body.node_mass[worst]:g} kg; masses must not be negative and "
             "their sum must be positive.",
         )
-    if body.frequencies.min() <= 0.0:
+    if not 0.0 < body.hardpoint_tolerance <= _LARGEST_TOLERANCE:
+        _refuse(
+            body,
+            f"hardpoint_tolerance: {body.hardpoint_tolerance:g} m; allowed is above 0, up to {_LARGEST_TOLERANCE:g} m: "
+            "a node farther away is another point of the body.",
+        )
+    if np.any(body.frequencies <= 0.0):
         worst = int(body.frequencies.argmin())
         _refuse(
             body,
@@ -117,7 +125,7 @@ def _check_units(body: Superelement) -> None:
         _refuse(body, f"positions: the body is {extent:g} m long, at most {_LARGEST_BODY:g} m; looks like mm. Give m.")
     if extent < _SMALLEST_BODY:
         _refuse(body, f"positions: the body is {extent:g} m long, at least {_SMALLEST_BODY:g} m. Give metres.")
-    first = float(body.frequencies[0])
+    first = float(body.frequencies[0]) if body.frequencies.size else 0.0
     if first > _HIGHEST_FIRST_MODE:
         _refuse(
             body,

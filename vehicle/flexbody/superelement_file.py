@@ -17,11 +17,11 @@ from vehicle.flexbody.superelement import Superelement
 
 _FORMAT = "modal superelement 1"
 _KEYS = {
-    "": ("format", "name", "provenance", "node_count", "mode_count", "edges", "node", "mode"),
+    "": ("format", "name", "provenance", "node_count", "mode_count", "hardpoint_tolerance_m", "edges", "node", "mode"),
     "node": ("name", "position_m", "mass_kg", "attachment_stiffness_n_per_m"),
     "mode": ("name", "frequency_hz", "damping_ratio", "shape_per_sqrt_kg"),
 }
-_OPTIONAL = ("edges", "attachment_stiffness_n_per_m")
+_OPTIONAL = ("hardpoint_tolerance_m", "edges", "attachment_stiffness_n_per_m")
 
 
 def read_superelement(path: Path) -> Superelement:
@@ -29,8 +29,8 @@ def read_superelement(path: Path) -> Superelement:
 
     Args:
         path: TOML file; top level `format`, `name`, `provenance`, `node_count`, `mode_count`, `edges` (pairs of node
-            names), a `[[node]]` table for each node and a `[[mode]]` table for each mode, `shape_per_sqrt_kg` with one
-            row per node in the order of the nodes.
+            names), `hardpoint_tolerance_m` (0.001 where it is left out), a `[[node]]` table for each node and a
+            `[[mode]]` table for each mode, `shape_per_sqrt_kg` with one row per node in the order of the nodes.
 
     Returns:
         The checked superelement.
@@ -58,7 +58,12 @@ def _superelement(content: dict[str, Any]) -> Superelement:
         raise DataError(f"format is {found!r}; {_FORMAT!r} is the one that can be read.")
     _check_keys(content, "", "top level")
     nodes, modes = (_tables(content, kind) for kind in ("node", "mode"))
+    if not modes:
+        raise DataError("mode_count is 0; at least 1 mode is needed. A rigid body is body.flexible = false.")
     names = tuple(str(node["name"]) for node in nodes)
+    tolerance = _numbers(content.get("hardpoint_tolerance_m", 1e-3), "hardpoint_tolerance_m")
+    if tolerance.shape != ():
+        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, needed is one number.")
     index = {name: i for i, name in enumerate(names)}
     edges = []
     for edge in content.get("edges", []):
@@ -88,6 +93,7 @@ def _superelement(content: dict[str, Any]) -> Superelement:
         },
         mode_names=tuple(str(mode["name"]) for mode in modes),
         provenance=str(content["provenance"]),
+        hardpoint_tolerance=float(tolerance),
     )
 
 
@@ -167,6 +173,7 @@ def _lines(body: Superelement) -> Iterable[str]:
     yield f"provenance = {text(body.provenance)}"
     yield f"node_count = {len(body.nodes)}"
     yield f"mode_count = {len(body.frequencies)}"
+    yield f"hardpoint_tolerance_m = {text(body.hardpoint_tolerance)}"
     yield "edges = ["
     yield from (f"  {text([body.nodes[a], body.nodes[b]])}," for a, b in body.edges.tolist())
     yield "]"

@@ -13,10 +13,10 @@ from vehicle.analysis.dependence import common_motion
 from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonances
-from vehicle.assembly.body_inertia import rigid_body
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.errors import SimulationError
 from vehicle.excitation.signal import Signal
+from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.names import AXES, WHEELS, acceleration_channels
 from vehicle.output.folder import write_json, write_whole
 from vehicle.output.tables import write_frf, write_time_csv, write_time_npz

@@ -1,9 +1,10 @@
-"""The trimmed body: rigid-body properties and the name of its modal superelement."""
+"""The trimmed body: rigid-body properties and the file of its elastic model."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vehicle.errors import ConfigurationError
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.quantity import quantity, validate
 
@@ -29,7 +30,9 @@ class TrimmedBody:
     ixy: float = quantity("kg m2", "integral of x y")
     izx: float = quantity("kg m2", "integral of z x")
     iyz: float = quantity("kg m2", "integral of y z")
-    superelement: str = quantity("-", "modal model: file name beside the vehicle file, or of the package")
+    superelement: str | None = quantity(
+        "-", "body design or modal superelement: file beside the vehicle file, or of the package", default=None
+    )
     flexible: bool = True
     attachment_flexibility: bool = True
     frequency_scale: float = quantity(
@@ -49,6 +52,11 @@ class TrimmedBody:
 
     def __post_init__(self) -> None:
         validate(self)
+        if self.flexible and self.superelement is None:
+            raise ConfigurationError(
+                "TrimmedBody.superelement: missing; a flexible body needs a body design or a modal superelement, as "
+                "body_design.toml of the package; a rigid one (flexible = false) needs none"
+            )
 
     @property
     def ixx(self) -> float:

@@ -18,10 +18,14 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
     off: list[tuple[bool, str, str]] = [
         (damper.friction_law != "stribeck", "damper.stribeck_", "damper.friction_law = stribeck"),
         (damper.viscous_law != "degressive", "damper.degressive_", "damper.viscous_law = degressive"),
-        (body.inertia_variant != "improved", "body.ixx_improved", "body.inertia_variant = improved"),
+        # The frame of a flexible body has this Ixx in both variants.
+        (
+            body.inertia_variant != "improved" and not body.flexible,
+            "body.ixx_improved",
+            "body.inertia_variant = improved",
+        ),
         (body.inertia_variant != "published", "body.ixx_published", "body.inertia_variant = published"),
         (not body.flexible, "body.frequency_scale", "body.flexible = true"),
-        (not body.flexible, "body.attachment_flexibility", "body.flexible = true"),
         (
             branch.maxwell_stiffness * branch.maxwell_damping == 0.0,
             "bushings.hydromount.maxwell_",

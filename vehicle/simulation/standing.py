@@ -34,7 +34,7 @@ def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
     Raises:
         ConfigurationError: naming the mode and the parameters.
     """
-    scale, first = vehicle.body.frequency_scale, float(body.frequencies[0])
+    scale, first = vehicle.body.frequency_scale, float(np.min(body.frequencies, initial=np.inf))
     if vehicle.body.flexible and first * scale < LOWEST_BODY_MODE:
         raise ConfigurationError(
             f"body.frequency_scale: found {scale:g} -, which puts the first mode of the body ({first:g} Hz in "
