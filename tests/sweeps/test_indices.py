@@ -96,5 +96,5 @@ def test_without_salib_the_extra_is_named(monkeypatch):
         raise ImportError(name)
 
     monkeypatch.setattr(importlib, "import_module", without)
-    with pytest.raises(MissingPartError, match=r"needs SALib; install the extra 'sensitivity'"):
+    with pytest.raises(MissingPartError, match=r"needs SALib, of the extra 'sensitivity'"):
         indices.sobol_sample(UNIT, 8)
