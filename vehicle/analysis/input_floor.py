@@ -51,7 +51,7 @@ transient of the car."""
 
 CAUSES = (
     "the input lies below the floor of its own rounding and leakage",
-    "the input is a hundredth of that of the lines beside them, at the edge of its band",
+    "the input has less than 3 % of the power of the lines beside them, at the edge of its band",
     "fewer than five lines of the input are driven, as by a sine: they cannot tell an FRF from a transient",
     "the input is 1e-4 and less of what it is within an octave: it leaks from there",
     "the spectrum of the input is smooth, as of a bump: it cannot be told from the car's own transient; drive it with "
