@@ -148,7 +148,7 @@ def lines(
         panel.plot(x, values, color=colour, linestyle=style, linewidth=1.4, label=label)
     panel.set(xlabel=xlabel, ylabel=ylabel, title=title)
     if any(label for label, *_ in curves):
-        panel.legend()
+        panel.legend(loc="upper right")
 
 
 def rows_of(figure: Any, count: int, columns: int, **options: Any) -> Any:

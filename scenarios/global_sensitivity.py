@@ -7,30 +7,45 @@ from __future__ import annotations
 
 import argparse
 import sys
+import textwrap
 import time as clock
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
-from scenarios.comfort_observation import RoadInput, RoadMeasure, chosen_engine
-from scenarios.global_sensitivity_figures import draw_morris, draw_scatter, draw_sobol
+from scenarios.comfort_observation import chosen_engine
 from scenarios.output_folder import write_text
-from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.commands.command_line import Parser, ProgressLine, parse_and_run
 from vehicle.commands.options import engine_option, jobs_option, message_options, output_options
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.output.folder import write_json
+from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.output.folder import write_json, write_whole
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle
+from vehicle.rendering.figure import COLOURS, saved_figure
 from vehicle.sweeps.case import Case, table_cases
 from vehicle.sweeps.executors import executor_factory
-from vehicle.sweeps.indices import morris_effects, morris_sample, sobol_indices, sobol_sample
+from vehicle.sweeps.indices import (
+    MorrisEffects,
+    SobolIndices,
+    morris_effects,
+    morris_sample,
+    sobol_indices,
+    sobol_sample,
+)
+from vehicle.sweeps.road import RoadInput, RoadMeasure
 from vehicle.sweeps.sample import sample
 from vehicle.sweeps.store import sweep_folder
 from vehicle.sweeps.sweep import sweep
 from vehicle.sweeps.table import SweepTable
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 HALF = "half to one and a half times the final set of the source"
 TENTH = "+-20 %: another spring is a development decision of that size"
@@ -45,10 +60,7 @@ RANGES = (
         reason="what the source varied (figure 4.12)",
     ),
     Range(
-        path="bushings.suspension_mount.damping.z",
-        low=0.0,
-        high=2000.0,
-        reason="what the source varied (figure 4.8)",
+        path="bushings.suspension_mount.damping.z", low=0.0, high=2000.0, reason="what the source varied (figure 4.8)"
     ),
     Range(path="main_spring.stiffness", low=2.0e4, high=3.0e4, reason=TENTH),
     Range(path="stabilizer.torsional_stiffness", low=2.5e3, high=7.5e3, reason=HALF),
@@ -225,6 +237,81 @@ def _ranges_text() -> str:
         f"| {one.path} | {one.low:g} | {one.high:g} | {unit_of(Vehicle, one.path)} | {one.reason} |" for one in RANGES
     ]
     return "\n".join(lines)
+
+
+def draw_sobol(path: Path, found: SobolIndices, caption: str) -> None:
+    """Bars of first-order and total indices with their 95 % intervals, the largest on top."""
+    order = np.argsort(found.total)
+    place = np.arange(len(order))
+
+    def draw(temporary: Path) -> None:
+        with saved_figure(temporary, (9.0, 5.6)) as figure:
+            axes = figure.add_subplot()
+            for values, errors, shift, label, colour in (
+                (found.first, found.first_error, -0.2, "S1, alone", COLOURS[0]),
+                (found.total, found.total_error, 0.2, "ST, with all interactions", COLOURS[3]),
+            ):
+                axes.barh(place - shift, values[order], 0.38, xerr=errors[order], label=label, color=colour, capsize=2)
+            axes.set_yticks(place, [_short(found.paths[i]) for i in order])
+            axes.set_xlabel("share of the variance of the comfort value [-]")
+            axes.axvline(0.0, color="#444444", linewidth=0.8)
+            axes.grid(axis="x", alpha=0.3)
+            axes.legend(loc="lower right")
+            _caption(figure, caption + "; whiskers: 95 % intervals (bootstrap)")
+
+    write_whole(path, draw)
+
+
+def draw_morris(path: Path, found: MorrisEffects, caption: str) -> None:
+    """Scatter of the elementary effects over their mean size."""
+
+    def draw(temporary: Path) -> None:
+        with saved_figure(temporary, (9.0, 5.6)) as figure:
+            axes = figure.add_subplot()
+            axes.errorbar(
+                found.mean_size, found.scatter, xerr=found.mean_size_error, fmt="o", color=COLOURS[0], capsize=2
+            )
+            for name, x, y in zip(found.paths, found.mean_size, found.scatter, strict=True):
+                axes.annotate(_short(name), (x, y), xytext=(6, 4), textcoords="offset points", fontsize=8)
+            axes.set_xlabel("mu*, mean size of the effect over the whole range [m/s2]")
+            axes.set_ylabel("sigma, scatter of the effect: interaction and curvature [m/s2]")
+            axes.margins(0.15)
+            axes.grid(alpha=0.3)
+            _caption(figure, caption + "; whiskers: 95 % intervals (bootstrap)")
+
+    write_whole(path, draw)
+
+
+def draw_scatter(
+    path: Path, ranges: Sequence[Range], points: npt.NDArray[np.float64], comfort: npt.NDArray[np.float64], caption: str
+) -> None:
+    """Comfort value of every run over each parameter."""
+
+    def draw(temporary: Path) -> None:
+        columns = 5
+        rows = -(-len(ranges) // columns)
+        with saved_figure(temporary, (13.0, 2.8 * rows + 0.6)) as figure:
+            panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
+            for index, one in enumerate(ranges):
+                axes = panels[index // columns][index % columns]
+                axes.plot(points[:, index], comfort, ".", markersize=3, color=COLOURS[0])
+                axes.set_xlabel(f"{_short(one.path)} [{unit_of(Vehicle, one.path)}]", fontsize=7)
+                axes.tick_params(labelsize=7)
+                axes.grid(alpha=0.3)
+            for row in panels:
+                row[0].set_ylabel("comfort value [m/s2]", fontsize=8)
+            _caption(figure, caption)
+
+    write_whole(path, draw)
+
+
+def _short(path: str) -> str:
+    return path.removeprefix("bushings.")
+
+
+def _caption(figure: Figure, text: str) -> None:
+    """Caption below everything, as the layout's own label."""
+    figure.supxlabel(textwrap.fill(text, 120), fontsize=7, color="#444444", x=0.01, ha="left")
 
 
 if __name__ == "__main__":

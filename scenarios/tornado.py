@@ -9,17 +9,22 @@ from __future__ import annotations
 import argparse
 import sys
 import time as clock
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import numpy as np
+
 from scenarios.car_runs import CarRuns
-from scenarios.comfort_command import comfort_parser, records_of
-from scenarios.comfort_sensitivity_runs import ComfortRuns
-from scenarios.comfort_setting import setting
+from scenarios.charts import figure_file
+from scenarios.claims import DUPLICATE, Claim
+from scenarios.comfort_observation import Question
+from scenarios.comfort_runs import Changes, ComfortRuns, Point, Variation, comfort_parser, records_of, setting
+from scenarios.comfort_sensitivity.figures import number
 from scenarios.study import QUICK_NOTE, Findings, run_car_study
-from scenarios.tornado_bars import all_bars, tornado_questions
-from scenarios.tornado_claims import bar_table, tornado_claims
-from scenarios.tornado_figures import draw_tornado
+from vehicle.analysis.comfort import COMFORT_BAND
+from vehicle.excitation.exact_road import ROAD_RMS
+from vehicle.rendering.figure import COLOURS
 
 
 def study(comfort: ComfortRuns, folder: Path, *, quick: bool) -> Findings:
@@ -56,6 +61,213 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return study(ComfortRuns(runs, records_of(options), folder / "sweep"), folder, quick=options.quick)
+
+
+SHARE = 0.2
+"""Change of each parameter, down and up."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Parameter:
+    """A parameter of the chart.
+
+    Attributes:
+        label: with its unit.
+        path: of the parameter.
+        ends: its two values, where they are not the nominal one -20 and +20 %.
+        reason: why not.
+        power: the value follows (1 -+ 20 %) to this power.
+    """
+
+    label: str
+    path: str
+    ends: tuple[float, float] | None = None
+    reason: str = ""
+    power: float = 1.0
+
+
+PARAMETERS = (
+    Parameter(label="Coulomb friction Fd [N]", path="damper.coulomb_friction"),
+    Parameter(label="damper constant D [N s/m]", path="damper.viscous"),
+    Parameter(label="suspension mount stiffness, z [N/m]", path="bushings.suspension_mount.stiffness.z"),
+    Parameter(
+        label="suspension mount damping, z [N s/m]",
+        path="bushings.suspension_mount.damping.z",
+        ends=(0.0, 500.0),
+        reason="nominal 0, so from there to the first step of source 1",
+    ),
+    Parameter(label="main spring [N/m]", path="main_spring.stiffness"),
+    Parameter(label="tyre stiffness, z [N/m]", path="bushings.tyre.stiffness.z"),
+    Parameter(label="stabilizer [N m/rad]", path="stabilizer.torsional_stiffness"),
+    Parameter(
+        label="body stiffness, as factor on its frequencies [-]",
+        path="body.frequency_scale",
+        power=0.5,
+        reason="stiffness -20 and +20 %, frequencies with its square root",
+    ),
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bar:
+    """A parameter and what its two ends make of comfort.
+
+    Attributes:
+        label: with its unit.
+        nominal, low, high: values of the parameter.
+        reason: why the ends are not -20 and +20 %.
+        at_low, at_high: by road; NaN error of a single record.
+    """
+
+    label: str
+    nominal: float
+    low: float
+    high: float
+    reason: str
+    at_low: Mapping[str, Point]
+    at_high: Mapping[str, Point]
+
+    def swing(self, road: str) -> float:
+        """Largest minus smallest relative comfort value, the nominal car included [-]."""
+        found = (self.at_low[road].relative, self.at_high[road].relative, 1.0)
+        return max(found) - min(found)
+
+
+def ends(comfort: ComfortRuns, parameter: Parameter) -> dict[float, Changes]:
+    """The two cars of a parameter by its value, low end first."""
+    vehicle = comfort.runs.car().vehicle
+    pair = parameter.ends or tuple(
+        _variation(parameter).nominal(vehicle) * factor**parameter.power for factor in (1.0 - SHARE, 1.0 + SHARE)
+    )
+    return {value: _variation(parameter).changes(vehicle, value) for value in pair}
+
+
+def tornado_questions(comfort: ComfortRuns) -> list[Question]:
+    """All runs of the chart."""
+    cars: list[Changes] = [(), *(car for parameter in PARAMETERS for car in ends(comfort, parameter).values())]
+    return [question for car in cars for road in ROAD_RMS for question in comfort.questions(car, road)]
+
+
+def all_bars(comfort: ComfortRuns) -> list[Bar]:
+    """Bars of all parameters, the largest swing on either road first."""
+    vehicle = comfort.runs.car().vehicle
+    bars = []
+    for parameter in PARAMETERS:
+        (low, low_car), (high, high_car) = ends(comfort, parameter).items()
+        bars.append(
+            Bar(
+                label=parameter.label,
+                nominal=_variation(parameter).nominal(vehicle),
+                low=low,
+                high=high,
+                reason=parameter.reason,
+                at_low={road: comfort.point(low, low_car, road, ()) for road in ROAD_RMS},
+                at_high={road: comfort.point(high, high_car, road, ()) for road in ROAD_RMS},
+            )
+        )
+    return sorted(bars, key=lambda bar: -max(bar.swing(road) for road in ROAD_RMS))
+
+
+def _variation(parameter: Parameter) -> Variation:
+    return Variation(name="", label=parameter.label, path=parameter.path, values=())
+
+
+WAYS = (
+    ("Coulomb friction", "lower friction, more comfort", True),
+    ("suspension mount damping", "more damping, more comfort", False),
+    ("suspension mount stiffness", "stiffer mount, more comfort", False),
+)
+"""Conclusions of section 4.4: parameter, statement, whether the comfort value rises with the parameter."""
+
+
+def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
+    """The conclusions of section 4.4 at the ends of the bars."""
+    claims = []
+    for name, statement, rising in WAYS:
+        bar = next(bar for bar in bars if bar.label.startswith(name))
+        pairs = {road: (bar.at_low[road].relative, bar.at_high[road].relative) for road in ROAD_RMS}
+        claims.append(
+            DUPLICATE.statement(
+                f"comfort and {name}, both roads",
+                statement,
+                ", ".join(f"{road} {100.0 * low:.1f} to {100.0 * high:.1f} %" for road, (low, high) in pairs.items()),
+                all((high > low) == rising for low, high in pairs.values()),
+                f"relative comfort value from {bar.low:g} to {bar.high:g}",
+            )
+        )
+    return claims
+
+
+def bar_table(bars: Sequence[Bar]) -> str:
+    """The bars as a Markdown table."""
+    head = " | ".join(f"{road}: comfort value at the low, high end [%] | swing [points]" for road in ROAD_RMS)
+    lines = [f"| parameter | nominal | low, high end | {head} |", "|" + "---|" * (3 + 2 * len(ROAD_RMS))]
+    for bar in bars:
+        cells = [
+            f"{_percent(bar.at_low[road].relative, bar.at_low[road].relative_error)}, "
+            f"{_percent(bar.at_high[road].relative, bar.at_high[road].relative_error)} | {100.0 * bar.swing(road):.1f}"
+            for road in ROAD_RMS
+        ]
+        note = f" ({bar.reason})" if bar.reason else ""
+        lines.append(f"| {bar.label}{note} | {bar.nominal:g} | {bar.low:g}, {bar.high:g} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def _percent(relative: float, error: float) -> str:
+    return f"{100.0 * relative:.2f} ± {number(100.0 * error)}"
+
+
+LOW_COLOUR, HIGH_COLOUR = COLOURS[0], COLOURS[3]
+
+
+def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
+    """Write the chart: a row for each parameter, a column for each road, the largest swing on top.
+
+    Args:
+        path: PNG file.
+        comfort: what made the bars.
+        bars: sorted.
+    """
+    levels = " and ".join(f"{1e3 * rms:g} mm RMS ({road})" for road, rms in ROAD_RMS.items())
+    caption = (
+        f"Change of the comfort value (RMS of the seat rail, x, y and z, unfiltered, {COMFORT_BAND[0]:g} to "
+        f"{COMFORT_BAND[1]:g} Hz) against the nominal car on the same records. Roads of {levels} under the right front "
+        f"wheel, {comfort.records.text()}, engine {comfort.engine}. Whiskers: two standard errors of the ratio over "
+        "the records. Numbers: values of the parameter, -20 and +20 % of the nominal one but for mount damping (from "
+        "its nominal 0) and body stiffness (frequencies with its square root). Order: largest swing on either road"
+    )
+    height = np.arange(len(bars))[::-1]
+    with figure_file(
+        path, (11.0, 1.8 + 0.62 * len(bars)), "Comfort sensitivities of the car (beyond source 1)", caption
+    ) as figure:
+        axes = figure.subplots(1, len(ROAD_RMS), sharex=True, sharey=True)
+        for axis, road in zip(axes, ROAD_RMS, strict=True):
+            for label, colour, shift, found, values in (
+                ("low end", LOW_COLOUR, 0.19, [bar.at_low[road] for bar in bars], [bar.low for bar in bars]),
+                ("high end", HIGH_COLOUR, -0.19, [bar.at_high[road] for bar in bars], [bar.high for bar in bars]),
+            ):
+                change = np.array([100.0 * (one.relative - 1.0) for one in found])
+                error = 200.0 * np.nan_to_num([one.relative_error for one in found])
+                axis.barh(
+                    height + shift, change, 0.36, xerr=error, color=colour, label=label, ecolor="#222222", capsize=2
+                )
+                for y, x, spread, value in zip(height + shift, change, error, values, strict=True):
+                    away = 3 if x >= 0.0 else -3
+                    axis.annotate(
+                        f"{value:.4g}",
+                        (x + np.sign(away) * spread, y),
+                        xytext=(away, 0),
+                        textcoords="offset points",
+                        ha="left" if x >= 0.0 else "right",
+                        va="center",
+                        fontsize=7,
+                    )
+            axis.axvline(0.0, color="#222222", linewidth=0.8)
+            axis.set(title=f"{road} road", xlabel="change of the comfort value [%]")
+            axis.grid(visible=False, axis="y")
+            axis.margins(x=0.16)
+        axes[0].set_yticks(height, [bar.label for bar in bars])
+        axes[1].legend(loc="lower right")
 
 
 if __name__ == "__main__":

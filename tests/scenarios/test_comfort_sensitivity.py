@@ -6,29 +6,31 @@ import json
 import numpy as np
 import pytest
 
-from scenarios import comfort_sensitivity_beyond as beyond
 from scenarios.car_runs import CarRuns
-from scenarios.comfort_command import comfort_parser, records_of
-from scenarios.comfort_levels import RoadLevels, level_claims, road_levels
-from scenarios.comfort_observation import Observation, Question, RoadInput, RoadMeasure, chosen_engine, observe
-from scenarios.comfort_sensitivity import SURE, main
-from scenarios.comfort_sensitivity_claims import PUBLISHED, is_monotone, order_claims, size_claims, slip_claims
-from scenarios.comfort_sensitivity_runs import (
+from scenarios.comfort_observation import Observation, Question, chosen_engine, observe
+from scenarios.comfort_runs import ComfortRuns, Point, Records, comfort_parser, point, records_of, standard_error
+from scenarios.comfort_sensitivity import __main__ as beyond
+from scenarios.comfort_sensitivity.__main__ import SURE, main
+from scenarios.comfort_sensitivity.claims import (
     FRICTION,
     MOUNT_DAMPING,
+    PUBLISHED,
     SOURCE,
-    ComfortRuns,
-    Point,
-    Records,
-    point,
-    standard_error,
+    RoadLevels,
+    is_monotone,
+    level_claims,
+    order_claims,
+    road_levels,
+    size_claims,
+    slip_claims,
 )
-from scenarios.comfort_sensitivity_tables import curve_table
-from scenarios.road_signals import ROAD_EDGE_HZ, ROAD_RMS
+from scenarios.comfort_sensitivity.figures import curve_table
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.output.written_files import MARKER
 from vehicle.reduced.march import has_compiler
+from vehicle.sweeps.road import RoadInput, RoadMeasure
 
 needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 

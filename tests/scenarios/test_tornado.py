@@ -6,10 +6,8 @@ import json
 import pytest
 
 from scenarios.car_runs import CarRuns
-from scenarios.comfort_sensitivity_runs import ComfortRuns, Records
-from scenarios.tornado import main
-from scenarios.tornado_bars import PARAMETERS, Bar, ends
-from scenarios.tornado_claims import bar_table, tornado_claims
+from scenarios.comfort_runs import ComfortRuns, Records
+from scenarios.tornado import PARAMETERS, Bar, bar_table, ends, main, tornado_claims
 from tests.scenarios.test_comfort_sensitivity import made, needs_reduced
 
 

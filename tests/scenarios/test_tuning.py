@@ -5,10 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from scenarios.tuning import main
-from scenarios.tuning_claims import demonstration_claims, fit_notes, frozen_note, own_claims
-from scenarios.tuning_hidden import HIDDEN
-from scenarios.tuning_parameters import AUTHORS, QUICK, parse_parameters
+from scenarios.tuning.__main__ import main
+from scenarios.tuning.claims import demonstration_claims, fit_notes, frozen_note, own_claims
+from scenarios.tuning.data import AUTHORS, HIDDEN, QUICK, parse_parameters
 from tests.tuning.two_masses import TRUE, MeasuredMasses
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Car

@@ -7,8 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from scenarios.claims import OWN_CHECK, Claim
-from scenarios.tuning_data import NOISE, Measurement
-from scenarios.tuning_parameters import SLIDING
+from scenarios.tuning.data import NOISE, SLIDING, Measurement
 from vehicle.tuning.full_steps import SMALL, FullSteps
 from vehicle.tuning.identifiability import WIDEST
 from vehicle.tuning.result import TuningResult

@@ -19,12 +19,23 @@ from typing import Any
 
 from scenarios.car_runs import CarRuns, Case
 from scenarios.study import Findings, car_parser, run_car_study
-from scenarios.tuning_claims import data_note, demonstration_claims, fit_notes, fit_numbers, frozen_note, own_claims
-from scenarios.tuning_data import BAND, CHANNELS, NOISE, SPACING, Measurement, make_measurements
-from scenarios.tuning_figures import correlation_figure, level_figure, parameter_figure, record_figure
-from scenarios.tuning_hidden import HIDDEN
-from scenarios.tuning_own import own_measurements
-from scenarios.tuning_parameters import AUTHORS, QUICK, SLIDING, TEXT, parse_parameters
+from scenarios.tuning.claims import data_note, demonstration_claims, fit_notes, fit_numbers, frozen_note, own_claims
+from scenarios.tuning.data import (
+    AUTHORS,
+    BAND,
+    CHANNELS,
+    HIDDEN,
+    NOISE,
+    QUICK,
+    SLIDING,
+    SPACING,
+    TEXT,
+    Measurement,
+    make_measurements,
+    own_measurements,
+    parse_parameters,
+)
+from scenarios.tuning.figures import correlation_figure, level_figure, parameter_figure, record_figure
 from vehicle.car import Car, Run
 from vehicle.commands.command_line import ProgressLine
 from vehicle.errors import ConfigurationError

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,16 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.car_runs import CarRuns, Case
-from scenarios.tuning_hidden import HIDDEN
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
+from vehicle.errors import ConfigurationError
 from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
 from vehicle.output.folder import write_whole
 from vehicle.output.run_files import FRAME
 from vehicle.output.tables import write_frf
-from vehicle.parameters.paths import overrides_of
+from vehicle.parameters.paths import overrides_of, value_of
+from vehicle.parameters.ranges import Range
+from vehicle.parameters.vehicle import Vehicle
 from vehicle.tuning.frf_file import read_frf
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.record_target import RecordTarget
@@ -128,3 +131,108 @@ def _record(name: str, run: Run, noise: np.random.Generator) -> RecordTarget:
         level = NOISE * float(np.sqrt(np.mean(values[inside] ** 2)))
         histories[channel] = values + level * noise.standard_normal(values.size)
     return RecordTarget(name=name, signal=run.signal, time=run.time, histories=histories, window=BUMP_WINDOW)
+
+
+HIDDEN = {
+    "bushings.suspension_mount.stiffness.x": 2.85e6,
+    "bushings.suspension_mount.stiffness.y": 3.2e6,
+    "bushings.suspension_mount.stiffness.z": 6.8e5,
+    "stabilizer.torsional_stiffness": 4.7e3,
+    "main_spring.stiffness": 2.62e4,
+    "bushings.linear_mount.stiffness.z": 5.2e5,
+    "bushings.torque_arm_engine.stiffness.x": 4.8e5,
+    "damper.viscous": 2150.0,
+    "damper.coulomb_friction": 118.0,
+    "bushings.torque_arm_body.stiffness.z": 1.1e5,
+}
+"""The final set of appendix F, each value a few percent beside it."""
+
+AUTHORS = (
+    # Section 3.1.3.2: stiffness of the suspension mount, measured at its driving point.
+    Range(path="bushings.suspension_mount.stiffness.x", low=1e6, high=9e6, start=3.0e6),
+    Range(path="bushings.suspension_mount.stiffness.y", low=1e6, high=9e6, start=3.0e6),
+    Range(path="bushings.suspension_mount.stiffness.z", low=2e5, high=3e6, start=8.2e5),
+    # Section 3.2.1.1: estimate; main spring: supplier.
+    Range(path="stabilizer.torsional_stiffness", low=5e2, high=2e4, start=3e3),
+    Range(path="main_spring.stiffness", low=1e4, high=6e4, start=2.5e4),
+    # Section 3.2.1.3: engine mounts, measured with a hammer.
+    Range(path="bushings.linear_mount.stiffness.z", low=1e5, high=2e6, start=6e5),
+    Range(path="bushings.torque_arm_engine.stiffness.x", low=1e5, high=2e6, start=6.5e5),
+    # Section 3.1.3.2: damper of the quarter car.
+    Range(path="damper.viscous", low=3e2, high=8e3, start=1500.0),
+    Range(path="damper.coulomb_friction", low=15.0, high=400.0, start=75.0),
+    # Appendix F prints it with an exponent that nobody can read: do the data tell?
+    Range(path="bushings.torque_arm_body.stiffness.z", low=1.2e4, high=1.2e6, start=1.3e5),
+)
+"""Section "starting values before tuning" of source 1; the bounds are ours and far from start and result."""
+
+SLIDING = ("damper.viscous", "damper.coulomb_friction")
+"""What a damper that sticks does not show: the authors tuned them on bumps (section 3.2.2)."""
+
+QUICK = ("bushings.suspension_mount.stiffness.z", "damper.coulomb_friction")
+"""Fitted with --quick; the others stay at the values of the vehicle file, which the data then have too."""
+
+TEXT = "PATH=LOWER:UPPER or PATH=LOWER:UPPER:START"
+
+
+def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...]:
+    """Parameters of the option --fit; without a start they begin at the value of the vehicle.
+
+    Raises:
+        ConfigurationError: a text, a path or a bound is wrong.
+    """
+    found = []
+    for text in texts:
+        path, separator, numbers = text.partition("=")
+        try:
+            values = [float(number) for number in numbers.split(":")]
+        except ValueError:
+            values = []
+        if not separator or len(values) not in (2, 3):
+            raise ConfigurationError(f"--fit {text}: needed is {TEXT}, as in damper.viscous=500:5000:1500")
+        begin = value_of(vehicle, path)
+        start = values[2] if len(values) > 2 else begin
+        found.append(Range(path=path, low=values[0], high=values[1], start=start))
+    return tuple(found)
+
+
+STUCK = "low"
+"""Level at which the dampers stay stuck, so that the car is linear."""
+
+
+def own_measurements(options: argparse.Namespace) -> list[Measurement]:
+    """Targets of the options --frf and --level.
+
+    Raises:
+        ConfigurationError: not one level for each file, a band that is none, or a signal that does not exist.
+        DataError: a file holds bad data.
+    """
+    if len(options.frf) != len(options.level):
+        raise ConfigurationError(
+            f"found {len(options.frf)} --frf and {len(options.level)} --level; each file of FRFs needs its level: "
+            f"{STUCK!r}, or the displacement signal it was measured with"
+        )
+    band = _band(options.band)
+    channels = tuple(options.channel) or CHANNELS
+    found = []
+    for file, level in zip(options.frf, options.level, strict=True):
+        name = level if "." in level else f"{level}.csv"
+        signal = read_signal(find_input(name))
+        target = FrfTarget(
+            name=file.stem,
+            data=read_frf(file).select(channels, band=band, spacing=options.spacing),
+            signal=None if level == STUCK else signal,
+            window=options.window,
+        )
+        found.append(Measurement(target=target, signal=signal))
+    return found
+
+
+def _band(text: str) -> tuple[float, float]:
+    try:
+        low, high = (float(part) for part in text.split(":"))
+    except ValueError:
+        low, high = 1.0, 0.0
+    if not 0.0 < low < high:
+        raise ConfigurationError(f"--band {text}: needed is LOW:HIGH in Hz, as in 3:45")
+    return low, high

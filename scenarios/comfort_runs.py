@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
-from scenarios.comfort_observation import Observation, Question, RoadInput, chosen_engine, observe
-from scenarios.road_signals import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from scenarios.comfort_observation import Observation, Question, chosen_engine, observe
+from scenarios.study import car_parser
 from vehicle.car import Run
+from vehicle.errors import ConfigurationError
+from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
+from vehicle.excitation.slip_set import sets_text
 from vehicle.parameters.paths import value_of
 from vehicle.parameters.vehicle import Vehicle
+from vehicle.sweeps.road import RoadInput
 
 Changes = tuple[str, ...]
 """Overrides of one car, as "damper.coulomb_friction=62.5"."""
@@ -45,47 +50,6 @@ class Variation:
     def changes(self, vehicle: Vehicle, value: float) -> Changes:
         """Overrides that give the parameter a value; none for the value it has."""
         return () if value == self.nominal(vehicle) else (f"{self.path}={value!r}",)
-
-
-FRICTION = Variation(
-    name="coulomb_friction",
-    label="Coulomb friction Fd [N]",
-    path="damper.coulomb_friction",
-    values=(62.5, 93.75, 125.0, 187.5, 250.0),
-    figures="4.1 to 4.4",
-)
-
-MOUNT_DAMPING = Variation(
-    name="mount_damping",
-    label="suspension mount damping, z [N s/m]",
-    path="bushings.suspension_mount.damping.z",
-    values=(0.0, 500.0, 1000.0, 2000.0),
-    figures="4.5 to 4.8",
-)
-
-MOUNT_STIFFNESS = Variation(
-    name="mount_stiffness",
-    label="suspension mount stiffness, z [N/m]",
-    path="bushings.suspension_mount.stiffness.z",
-    values=(3.5e5, 5.25e5, 7.0e5, 10.5e5, 14.0e5),
-    figures="4.9 to 4.12",
-)
-
-BODY = Variation(
-    name="body_stiffness",
-    label="factor on the frequencies of the body modes [-]",
-    path="body.frequency_scale",
-    values=(0.8, 0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15, 1.2, 1.25),
-)
-
-SOURCE = (FRICTION, MOUNT_DAMPING, MOUNT_STIFFNESS)
-"""Variations of source 1: 14 points on 2 roads, 28 runs, the nominal car counted once for each parameter."""
-
-DEGRESSIVE: Changes = ("damper.viscous_law=degressive",)
-"""The damper that the source has for the quarter car only (appendix C.2)."""
-
-RIGID_BODY: Changes = ("body.flexible=false",)
-"""Leaves out the flexible modes of the body, whose shapes are assumed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -265,3 +229,63 @@ class ComfortRuns:
         """Points of a variation on both roads, relative to the car with `base` alone."""
         cars = self.cars(variation, base)
         return {road: [self.point(value, car, road, base) for value, car in cars.items()] for road in ROAD_RMS}
+
+
+RECORDS = 4
+"""Records of 60 s: with them the comfort value is known within 1 % even as that of a road with Gaussian amplitudes."""
+
+QUICK = Records(count=2, duration=8.0, lead=3.0)
+"""Records with --quick."""
+
+
+def comfort_parser(name: str) -> argparse.ArgumentParser:
+    """Parser of a study; the reduced engine by default.
+
+    Args:
+        name: module name.
+    """
+    parser = car_parser(name)
+    parser.set_defaults(engine="auto")
+    parser.add_argument(
+        "--records", type=int, metavar="N", help=f"records of road for every point, 60 s each; {RECORDS} by default"
+    )
+    return parser
+
+
+def records_of(options: argparse.Namespace) -> Records:
+    """The records that the options ask for.
+
+    Raises:
+        ConfigurationError: fewer than one.
+    """
+    if options.records is not None and options.records < 1:
+        raise ConfigurationError(f"--records {options.records}: must be at least 1; a single one tells no error")
+    base = QUICK if options.quick else Records(count=RECORDS)
+    return base if options.records is None else Records(count=options.records, duration=base.duration, lead=base.lead)
+
+
+def setting(comfort: ComfortRuns) -> list[str]:
+    """Paragraphs for `results.md`."""
+    runs, found = comfort.runs, {road: comfort.point(0.0, (), road, ()) for road in ROAD_RMS}
+    car = "the car of source 1" if runs.vehicle is None else runs.vehicle.name
+    changes = f", changed: {', '.join(runs.overrides)}" if runs.overrides else ""
+    levels = ", ".join(
+        f"{road} {1e3 * rms:g} mm RMS (velocity PSD {velocity_density(rms):.3g} (m/s)²/Hz)"
+        for road, rms in ROAD_RMS.items()
+    )
+    errors = ", ".join(
+        f"{road} {100.0 * one.comfort_error / one.comfort:.2f} % over the records, "
+        f"{100.0 * one.gaussian_error / one.comfort:.2f} % as a Gaussian road"
+        for road, one in found.items()
+    )
+    return [
+        f"Made with {car}{changes}; engine {comfort.engine}. Roads: {levels}, {ROAD_EDGE_HZ:g} to 50 Hz, lines of "
+        f"exact level and random phase, {comfort.records.text()}; every car runs on the same records.",
+        f"Standard error of the comfort value of the nominal car: {errors} (1/2 sqrt(int S² df / T) / int S df, which "
+        "would hold if the amplitudes of the lines were random too). ± behind a number is one standard error over the "
+        "records; that of a ratio is over the ratios of the single records.",
+        f"Slip shares: time with the right damper above {1e3 * runs.car().vehicle.damper.slip_velocity:g} mm/s, above "
+        "1 mm/s, and the left one. Lowest load: of the tyre on the shaker.",
+        sets_text(),
+        "The tyre is a linear spring, as in the source: where its load is negative it pulls.",
+    ]

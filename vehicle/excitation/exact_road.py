@@ -18,9 +18,6 @@ from vehicle.excitation.slip_set import CHOSEN
 ROAD_RMS = {"smooth": 0.0075, "rough": 0.043}
 """RMS of the displacement [m] (source 1, chapter 4)."""
 
-PUBLISHED_SLIP = {"smooth": 0.313, "rough": 0.794}
-"""Share of the time in slip of the right damper (source 1, chapter 4)."""
-
 ROAD_EDGE_HZ = CHOSEN.road_edge_hz
 """Lower band edge f1 of both roads [Hz]. One number for two shares: 30.0 % and 81.4 % remain against 31.3 % and 79.4 %;
 0.031 Hz would meet the smooth road and 0.021 Hz the rough one. A record of 30 s, which the source shows with a swing of

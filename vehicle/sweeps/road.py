@@ -1,0 +1,90 @@
+"""Records of road as inputs of a sweep, and what is read off a run on one."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from vehicle.analysis.comfort import comfort_value, rms_standard_error
+from vehicle.analysis.slip import slip_share
+from vehicle.car import SATURATED_VELOCITY, Run
+from vehicle.excitation.exact_road import RATE_HZ, road
+from vehicle.excitation.signal import Signal
+
+SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoadInput:
+    """A record of road as the input of a sweep; arguments as of `exact_road.road`."""
+
+    name: str
+    rms: float
+    seed: int
+    duration: float
+    lead: float
+    lower_band_edge: float
+
+    def signal(self) -> Signal:
+        """Generate the road."""
+        return road(
+            rms=self.rms, seed=self.seed, duration=self.duration, lead=self.lead, lower_band_edge=self.lower_band_edge
+        )
+
+    def identity(self) -> dict[str, object]:
+        """What the runs depend on."""
+        return {"sha256": hashlib.sha256(self.signal().displacement["fr"].tobytes()).hexdigest(), **asdict(self)}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoadMeasure:
+    """Turns a run on a road into the numbers of an `Observation`.
+
+    Attributes:
+        lead: seconds at the beginning that are left out.
+    """
+
+    lead: float
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are needed."""
+        return (*SEAT_RAIL, "damper_fr_velocity", "damper_fl_velocity", "tyre_fr_force_z")
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name of each number to its unit."""
+        return {
+            "comfort": "m/s2",
+            "gaussian_error": "m/s2",
+            "slip": "-",
+            "slip_left": "-",
+            "saturated": "-",
+            "lowest_load": "N",
+            "pulling": "-",
+        }
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """The numbers of a run."""
+        # The record ends with the sample that begins its next period.
+        record = slice(round(self.lead * RATE_HZ) + 1, None)
+        step = run.recording.timestep
+        xyz = np.array([run[channel][record] for channel in SEAT_RAIL])
+        found = comfort_value(step, xyz)
+        squares = np.array([found.x, found.y, found.z]) ** 2
+        right, left = (run[f"damper_{wheel}_velocity"][record] for wheel in ("fr", "fl"))
+        load = run["tyre_fr_force_z"][record]
+        limit = run.car.vehicle.damper.slip_velocity
+        return {
+            "comfort": found.overall,
+            # The axes share the road, so their errors add up.
+            "gaussian_error": float(squares @ rms_standard_error(step, xyz)) / found.overall,
+            "slip": slip_share(right, limit),
+            "slip_left": slip_share(left, limit),
+            "saturated": slip_share(right, SATURATED_VELOCITY),
+            "lowest_load": float(np.min(load)),
+            "pulling": float(np.mean(load < 0.0)),
+        }
