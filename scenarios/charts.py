@@ -116,13 +116,9 @@ def figure_file(path: Path, size: tuple[float, float], title: str, caption: str)
             if title:
                 figure.suptitle(title, fontsize=12)
             figure.supxlabel(textwrap.fill(caption, width=int(14.5 * size[0])), fontsize=8.5, color=INK)
-        write_whole(path, lambda temporary: _move(draft, temporary))
+        write_whole(path, lambda temporary: draft.replace(temporary))
     finally:
         draft.unlink(missing_ok=True)
-
-
-def _move(source: Path, target: Path) -> None:
-    source.replace(target)
 
 
 @contextmanager

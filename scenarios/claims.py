@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -141,35 +141,50 @@ def headline(rows: Sequence[Mapping[str, Any]]) -> str:
     return f"{sum(predicted)} of {len(predicted)} predicted rows agree; beside them {', '.join(others)}"
 
 
-def table_lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table of a heading and rows of cells."""
+    lines = [f"| {' | '.join(cells)} |" for cells in (columns, *rows)]
+    return "\n".join([lines[0], "|" + "---|" * len(columns), *lines[1:]])
+
+
+def claim_table(rows: Sequence[Mapping[str, Any]]) -> str:
     """The rows as a Markdown table."""
     columns = ("name", "published", "ours", "deviation", "within", "status", "source", "interval", "why")
-    lines = [f"| {' | '.join(columns)} |", "|" + "---|" * len(columns)]
-    for row in rows:
-        cells = (_cell(name, row[name]).replace("|", "\\|") for name in columns)
-        lines.append(f"| {' | '.join(cells)} |")
-    return lines
+    return markdown(columns, [[_cell(name, row[name]).replace("|", "\\|") for name in columns] for row in rows])
 
 
-def write_claims(
-    folder: Path, title: str, claims: Sequence[Claim], notes: Sequence[str], data: Mapping[str, Any]
-) -> None:
-    """Write `results.md` and `results.json`.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Findings:
+    """Result of a study.
 
-    Args:
-        folder: where to.
+    Attributes:
         title: first line of the text.
-        claims: the rows.
+        claims: published statements beside ours.
+        unjudged: statements that short signals cannot judge: name, and why; None where they judge all.
         notes: paragraphs below the table.
-        data: further numbers for the JSON file, under their own keys.
+        data: further numbers for `results.json`, under their own keys.
     """
-    rows = [asdict(claim) for claim in claims]
-    lines = [f"# {title}", "", f"{headline(rows)}.", "", LEGEND, "", *table_lines(rows)]
-    for note in notes:
-        lines += ["", note]
-    write_text(folder / "results.md", "\n".join(lines) + "\n")
-    content = {"title": title, "rows": rows, "notes": list(notes), **data}
-    write_text(folder / "results.json", json.dumps(_plain(content), indent=1, allow_nan=False) + "\n")
+
+    title: str
+    claims: Sequence[Claim]
+    unjudged: Mapping[str, str] | None = field(default_factory=dict)
+    notes: Sequence[str] = ()
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+    def write(self, folder: Path) -> str:
+        """Write `results.md` and `results.json`, without the rows that are not judged; returns the line to print."""
+        left = self.unjudged or {}
+        rows = [asdict(claim) for claim in self.claims if claim.name not in left]
+        counts = headline(rows)
+        notes = [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
+        write_text(
+            folder / "results.md",
+            "\n\n".join([f"# {self.title}", f"{counts}.", LEGEND, claim_table(rows), *notes]) + "\n",
+        )
+        open_rows = {} if self.unjudged is None else {"not_judged": dict(left)}
+        content = {"title": self.title, "rows": rows, "notes": notes, **open_rows, **self.data}
+        write_text(folder / "results.json", json.dumps(_plain(content), indent=1, allow_nan=False) + "\n")
+        return f"{counts}{f', {len(left)} not judged' if left else ''}; see results.md"
 
 
 def _between(interval: Interval) -> str:

@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_observation import Observation, Question, chosen_engine, observe
-from scenarios.study import car_parser
 from vehicle.car import Run
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
@@ -238,18 +237,12 @@ QUICK = Records(count=2, duration=8.0, lead=3.0)
 """Records with --quick."""
 
 
-def comfort_parser(name: str) -> argparse.ArgumentParser:
-    """Parser of a study; the reduced engine by default.
-
-    Args:
-        name: module name.
-    """
-    parser = car_parser(name)
+def comfort_options(parser: argparse.ArgumentParser) -> None:
+    """Add --records to the options of a study; the reduced engine by default."""
     parser.set_defaults(engine="auto")
     parser.add_argument(
         "--records", type=int, metavar="N", help=f"records of road for every point, 60 s each; {RECORDS} by default"
     )
-    return parser
 
 
 def records_of(options: argparse.Namespace) -> Records:

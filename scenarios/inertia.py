@@ -14,9 +14,9 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns, Case
 from scenarios.charts import LEVEL_COLOURS, draw_frf, measured_curve
-from scenarios.claims import COMPARED, FITTED, INFERRED, PREDICTED, Claim
+from scenarios.claims import COMPARED, FITTED, INFERRED, PREDICTED, Claim, Findings
 from scenarios.levels import TOO_SHORT, level_signal
-from scenarios.study import Findings, car_parser, computed_by, estimator_text, run_car_study, setting
+from scenarios.study import car_study, computed_by, estimator_text, setting
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonance_peaks
 from vehicle.car import Car, Run
@@ -59,9 +59,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    return run_car_study(car_parser("inertia"), study, arguments)
+main = car_study("inertia", study)
 
 
 ROLL, MEASURED_ROLL = 6.5, 5.8

@@ -16,9 +16,9 @@ import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns, Case
 from scenarios.charts import LEVEL_COLOURS, FrfCurve, draw_frf, measured_curve
-from scenarios.claims import FITTED, PREDICTED, Claim, Kind, interval_claim
+from scenarios.claims import FITTED, PREDICTED, Claim, Findings, Kind, interval_claim
 from scenarios.inputs.make_inputs import LEVELS, SEED
-from scenarios.study import Findings, car_parser, computed_by, estimator_text, run_car_study, setting
+from scenarios.study import car_study, computed_by, estimator_text, setting
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
 from vehicle.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER
@@ -71,9 +71,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    return run_car_study(car_parser("levels"), study, arguments)
+main = car_study("levels", study)
 
 
 Vector = npt.NDArray[np.float64]

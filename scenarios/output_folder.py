@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
 from vehicle.output.folder import write_whole
@@ -44,17 +43,4 @@ def write_text(path: Path, text: str) -> None:
     Raises:
         OutputError: the file cannot be written.
     """
-    write_whole(path, lambda temporary: _put(temporary, text))
-
-
-def write_figure(path: Path, figure: Any) -> None:
-    """Save a matplotlib figure as PNG in the same way.
-
-    Raises:
-        OutputError: the file cannot be written.
-    """
-    write_whole(path, lambda temporary: figure.savefig(temporary, format="png", dpi=110))
-
-
-def _put(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
+    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.bump.claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
-from scenarios.claims import LEGEND, headline, table_lines
+from scenarios.claims import LEGEND, claim_table, headline
 from scenarios.comfort_sensitivity.claims import PUBLISHED_SLIP as PUBLISHED_ROAD_SLIP
 from scenarios.levels import PUBLISHED_SLIP, SLIP_TOLERANCE
 from scenarios.output_folder import prepare_folder, write_text
@@ -184,7 +184,7 @@ def write(
     for scenario, content in results.items():
         own = content["rows"]
         lines += ["", f"## {content['title']}", "", f"`python -m scenarios.{scenario}`: {headline(own)}.", ""]
-        lines += table_lines(own)
+        lines.append(claim_table(own))
         for note in content.get("notes", ()):
             lines += ["", str(note)]
     write_text(folder / "results.md", "\n".join(lines) + "\n")

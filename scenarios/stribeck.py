@@ -17,8 +17,8 @@ import numpy.typing as npt
 from scenarios.bump.runs import FULL, HIGH, QUICK, relative_acceleration
 from scenarios.car_runs import CarRuns, Case
 from scenarios.charts import figure_file
-from scenarios.claims import OWN_CHECK, PREDICTED, Claim
-from scenarios.study import Findings, car_parser, computed_by, run_car_study, setting
+from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings
+from scenarios.study import car_study, computed_by, setting
 from vehicle.analysis.slip_peaks import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, bump
@@ -76,9 +76,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    return run_car_study(car_parser("stribeck"), study, arguments)
+main = car_study("stribeck", study)
 
 
 FORCE_TOLERANCE = 0.012

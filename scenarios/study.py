@@ -1,19 +1,19 @@
-"""What all studies share: their list, options and findings, and how these are run, written down and printed."""
+"""What all studies share: their list and options, how they are run, and what they say they were made with."""
 
 from __future__ import annotations
 
 import argparse
 import importlib
 import time as clock
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from scenarios.car_runs import CarRuns
-from scenarios.claims import Claim, headline, write_claims
+from scenarios.claims import Findings
 from scenarios.output_folder import prepare_folder
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
@@ -38,7 +38,9 @@ STUDIES = {
 
 QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
 
-Parameters = TypeVar("Parameters")
+Subject = TypeVar("Subject")
+
+AddOptions = Callable[[argparse.ArgumentParser], None]
 
 
 def main_of(name: str) -> Callable[[list[str] | None], int]:
@@ -48,34 +50,6 @@ def main_of(name: str) -> Callable[[list[str] | None], int]:
         module = importlib.import_module(f"scenarios.{name}.__main__")
     command: Callable[[list[str] | None], int] = module.main
     return command
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Findings:
-    """Result of a study.
-
-    Attributes:
-        title: first line of the text.
-        claims: published statements beside ours.
-        unjudged: statements that short signals cannot judge: name, and why; None where they judge all.
-        notes: paragraphs below the table.
-        data: further numbers for `results.json`.
-    """
-
-    title: str
-    claims: Sequence[Claim]
-    unjudged: Mapping[str, str] | None = field(default_factory=dict)
-    notes: Sequence[str] = ()
-    data: Mapping[str, Any] = field(default_factory=dict)
-
-    def write(self, folder: Path) -> str:
-        """Write `results.md` and `results.json`; returns the line to print."""
-        unjudged = self.unjudged or {}
-        left = [f"Not judged here: {name}: {why}." for name, why in unjudged.items()]
-        data = self.data if self.unjudged is None else {"not_judged": dict(unjudged), **self.data}
-        write_claims(folder, self.title, self.claims, [*left, *self.notes], data)
-        more = f", {len(unjudged)} not judged" if unjudged else ""
-        return f"{headline([asdict(claim) for claim in self.claims])}{more}; see results.md"
 
 
 def study_parser(name: str, *, quick: str, jobs: str = "") -> argparse.ArgumentParser:
@@ -94,76 +68,73 @@ def study_parser(name: str, *, quick: str, jobs: str = "") -> argparse.ArgumentP
     return parser
 
 
-def lumped_parser(name: str) -> argparse.ArgumentParser:
-    """Parser of a study of few masses, with a parameter file of its own."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Study(Generic[Subject]):
+    """A study as a command: its options, what it works on, what it finds.
+
+    Attributes:
+        parser: its options.
+        load: makes what it works on; what is wrong there is refused before the folder is made.
+        study: computes, draws into the folder and returns the findings, or the line to print if there are none.
+    """
+
+    parser: argparse.ArgumentParser
+    load: Callable[[argparse.Namespace], Subject]
+    study: Callable[[Subject, Path, argparse.Namespace], Findings | str]
+
+    def __call__(self, arguments: list[str] | None = None) -> int:
+        """Run the study, write its results, and turn errors into one message and an exit code.
+
+        Args:
+            arguments: without the program name; those of the process by default.
+
+        Returns:
+            Exit code, as of `run_command`.
+        """
+
+        def job(options: argparse.Namespace) -> None:
+            started = clock.perf_counter()
+            subject = self.load(options)
+            folder = prepare_folder(options.output, force=options.force)
+            found = self.study(subject, folder, options)
+            line = found if isinstance(found, str) else found.write(folder)
+            print(f"{folder}: {line}; {clock.perf_counter() - started:.0f} s")
+
+        return parse_and_run(self.parser, job, arguments)
+
+
+def lumped_study(
+    name: str,
+    load: Callable[[argparse.Namespace], Subject],
+    study: Callable[[Subject, Path, argparse.Namespace], Findings | str],
+    *options: AddOptions,
+) -> Study[Subject]:
+    """A study of few masses, with a parameter file of its own; arguments as of `Study`, and what adds more options."""
     jobs = "; this study batches its runs in one process, so that it changes nothing"
     parser = study_parser(name, quick="fewer points on the curves", jobs=jobs)
     own = "own parameters, named as the shipped ones"
     parser.add_argument("--parameters", type=Path, metavar="FILE.toml", help=own)
-    return parser
+    for add in options:
+        add(parser)
+    return Study(parser=parser, load=load, study=study)
 
 
-def run_lumped_study(
-    parser: argparse.ArgumentParser,
-    load: Callable[[argparse.Namespace], Parameters],
-    study: Callable[[Parameters, Path, argparse.Namespace], Findings | str],
-    arguments: list[str] | None,
-) -> int:
-    """Run a study of few masses, write its results, and turn errors into one message and an exit code.
-
-    Args:
-        parser: of `lumped_parser`.
-        load: reads the parameters; a wrong one is refused before the folder is made.
-        study: computes, draws into the folder and returns the findings, or the line to print if there are none.
-        arguments: without the program name; those of the process by default.
-
-    Returns:
-        Exit code, as of `run_command`.
-    """
-
-    def job(options: argparse.Namespace) -> None:
-        parameters = load(options)
-        folder = prepare_folder(options.output, force=options.force)
-        found = study(parameters, folder, options)
-        print(f"{folder}: {found if isinstance(found, str) else found.write(folder)}")
-
-    return parse_and_run(parser, job, arguments)
-
-
-def car_parser(name: str) -> argparse.ArgumentParser:
-    """Parser with the options every study of the complete car has; results go to runs/<name> without --output."""
+def car_study(
+    name: str, study: Callable[[CarRuns, Path, argparse.Namespace], Findings], *options: AddOptions
+) -> Study[CarRuns]:
+    """A study of the complete car; arguments as of `Study`, and what adds more options."""
     parser = study_parser(name, quick="short signals; what they cannot judge is left open")
     vehicle_options(parser)
     engine_option(parser, "mujoco")
-    return parser
+    for add in options:
+        add(parser)
+    return Study(parser=parser, load=_car_runs, study=study)
 
 
-def run_car_study(
-    parser: argparse.ArgumentParser,
-    study: Callable[[CarRuns, Path, argparse.Namespace], Findings],
-    arguments: list[str] | None,
-) -> int:
-    """Run a study of the complete car, as `run_lumped_study` does.
-
-    Args:
-        parser: of `car_parser`.
-        study: computes, draws into the folder and returns the findings.
-        arguments: without the program name; those of the process by default.
-
-    Returns:
-        Exit code, as of `run_command`.
-    """
-
-    def job(options: argparse.Namespace) -> None:
-        started = clock.perf_counter()
-        runs = CarRuns(vehicle=options.vehicle, overrides=options.overrides, engine=options.engine, jobs=options.jobs)
-        # A wrong parameter is refused before the folder is made.
-        runs.car()
-        folder = prepare_folder(options.output, force=options.force)
-        line = study(runs, folder, options).write(folder)
-        print(f"{folder}: {line}; {clock.perf_counter() - started:.0f} s")
-
-    return parse_and_run(parser, job, arguments)
+def _car_runs(options: argparse.Namespace) -> CarRuns:
+    runs = CarRuns(vehicle=options.vehicle, overrides=options.overrides, engine=options.engine, jobs=options.jobs)
+    runs.car()
+    return runs
 
 
 def computed_by(run: Run) -> str:

@@ -17,11 +17,11 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
-from scenarios.claims import DUPLICATE, Claim
+from scenarios.claims import DUPLICATE, Claim, Findings
 from scenarios.comfort_observation import Question
-from scenarios.comfort_runs import Changes, ComfortRuns, Point, Variation, comfort_parser, records_of, setting
+from scenarios.comfort_runs import Changes, ComfortRuns, Point, Variation, comfort_options, records_of, setting
 from scenarios.comfort_sensitivity.figures import number
-from scenarios.study import QUICK_NOTE, Findings, run_car_study
+from scenarios.study import QUICK_NOTE, car_study
 from vehicle.analysis.comfort import COMFORT_BAND
 from vehicle.excitation.exact_road import ROAD_RMS
 from vehicle.rendering.figure import COLOURS
@@ -53,14 +53,11 @@ def study(comfort: ComfortRuns, folder: Path, *, quick: bool) -> Findings:
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    parser = comfort_parser("tornado")
-    return run_car_study(parser, _study, arguments)
-
-
 def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return study(ComfortRuns(runs, records_of(options), folder / "sweep"), folder, quick=options.quick)
+
+
+main = car_study("tornado", _study, comfort_options)
 
 
 SHARE = 0.2

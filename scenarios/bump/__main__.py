@@ -13,7 +13,8 @@ from scenarios.bump.claims import bump_claims, slip_table
 from scenarios.bump.figures import friction_figure, history_figures, ring_down_figure, side_by_side
 from scenarios.bump.runs import FRICTIONS, FULL, HIGH, LOW, OTHER, QUICK, QUICK_FRICTIONS, bump_signal, numbers
 from scenarios.car_runs import CarRuns, Case
-from scenarios.study import Findings, car_parser, run_car_study, setting
+from scenarios.claims import Findings
+from scenarios.study import car_study, setting
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.bump import Reading
 
@@ -69,14 +70,15 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    parser = car_parser("bump")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Options of this study alone."""
     meaning = "A of the printed formula as peak height, or taken literally (peak 2 A)"
     parser.add_argument("--reading", choices=sorted(OTHER), default="height", help=meaning)
     film = "film of both bumps side by side, in step"
     parser.add_argument("--video", nargs="?", const="bumps.mp4", metavar="FILE.mp4", help=film)
-    return run_car_study(parser, study, arguments)
+
+
+main = car_study("bump", study, add_options)
 
 
 if __name__ == "__main__":

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.car_runs import CarRuns
-from scenarios.claims import Claim
+from scenarios.claims import Claim, Findings
 from scenarios.comfort_observation import Question
-from scenarios.comfort_runs import QUICK, Changes, ComfortRuns, Curves, comfort_parser, records_of, setting
+from scenarios.comfort_runs import QUICK, Changes, ComfortRuns, Curves, comfort_options, records_of, setting
 from scenarios.comfort_sensitivity.claims import (
     BODY,
     DEGRESSIVE,
@@ -34,7 +34,7 @@ from scenarios.comfort_sensitivity.claims import (
     slip_claims,
 )
 from scenarios.comfort_sensitivity.figures import curve_table, draw_band_edge, draw_variation, edge_table, plain
-from scenarios.study import QUICK_NOTE, Findings, run_car_study
+from scenarios.study import QUICK_NOTE, car_study
 from vehicle.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.reduced.march import has_compiler
 
@@ -98,16 +98,17 @@ def all_claims(comfort: ComfortRuns, curves: Mapping[str, Curves], rigid: Mappin
     return [*slip_claims(nominal, slip_velocity), *order_claims(curves), *size_claims(curves, rigid)]
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    parser = comfort_parser("comfort_sensitivity")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Options of this study alone."""
     parser.add_argument("--source-only", action="store_true", help="only the three parameters of source 1")
-    return run_car_study(parser, _study, arguments)
 
 
 def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     comfort = ComfortRuns(runs, records_of(options), folder / "sweep")
     return study(comfort, folder, quick=options.quick, source_only=options.source_only)
+
+
+main = car_study("comfort_sensitivity", _study, comfort_options, add_options)
 
 
 EDGES_HZ = (0.015, 0.02, 0.025, ROAD_EDGE_HZ, 0.035, 0.05, 0.1)

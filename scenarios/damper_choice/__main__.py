@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.claims import Findings
 from scenarios.damper_choice.claims import (
     half_optimum_claims,
     half_response_claims,
@@ -40,7 +41,7 @@ from scenarios.damper_choice.runs import (
     road_holding,
     trade_off,
 )
-from scenarios.study import Findings, lumped_parser, run_lumped_study
+from scenarios.study import lumped_study
 from vehicle.lumped.damper_fit import HALF_FREE, QUARTER_FREE, fit_half_car, fit_quarter_car
 from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
 from vehicle.parameters.toml_file import as_table
@@ -227,15 +228,17 @@ def _refit(parameters: DamperChoiceParameters) -> dict[str, Any]:
     return result
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    parser = lumped_parser("damper_choice")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Options of this study alone."""
     parser.add_argument("--refit", action="store_true", help="repeat the fit of the parameters and write it beside")
 
-    def load(options: argparse.Namespace) -> DamperChoiceParameters:
-        return damper_choice_parameters(options.parameters or FITTED)
 
-    return run_lumped_study(parser, load, study, arguments)
+def load(options: argparse.Namespace) -> DamperChoiceParameters:
+    """The parameters."""
+    return damper_choice_parameters(options.parameters or FITTED)
+
+
+main = lumped_study("damper_choice", load, study, add_options)
 
 
 if __name__ == "__main__":

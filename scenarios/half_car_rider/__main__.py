@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from scenarios.claims import Findings
 from scenarios.half_car_rider.base_case import base_case_claims, base_case_table
 from scenarios.half_car_rider.claims import dose_claims, matrix_claim, speed_claims, travel_claims
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, driven, outcome, parameter_study, passive
-from scenarios.study import Findings, lumped_parser, run_lumped_study
+from scenarios.study import lumped_study
 from vehicle.lumped.half_car_simulation import PASSIVE
 from vehicle.lumped.semi_active import LAWS
 from vehicle.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
@@ -133,13 +134,12 @@ def _row(one: Outcome) -> dict[str, Any]:
     }
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
+def load(options: argparse.Namespace) -> HalfCarRiderParameters:
+    """The parameters."""
+    return half_car_rider_parameters(options.parameters or PUBLISHED)
 
-    def load(options: argparse.Namespace) -> HalfCarRiderParameters:
-        return half_car_rider_parameters(options.parameters or PUBLISHED)
 
-    return run_lumped_study(lumped_parser("half_car_rider"), load, study, arguments)
+main = lumped_study("half_car_rider", load, study)
 
 
 if __name__ == "__main__":

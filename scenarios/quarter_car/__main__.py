@@ -9,10 +9,11 @@ import argparse
 import sys
 from pathlib import Path
 
+from scenarios.claims import Findings
 from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import Runs
-from scenarios.study import Findings, lumped_parser, run_lumped_study
+from scenarios.study import lumped_study
 from vehicle.parameters.quarter_car import PUBLISHED, load_quarter_car
 
 
@@ -23,16 +24,18 @@ def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | s
     return f"1 figure; {runs.seconds:.0f} s of solving" if options.figure else findings(runs)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    parser = lumped_parser("quarter_car")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Options of this study alone."""
     names = f"one of {', '.join(FIGURES)}; no table"
     parser.add_argument("--figure", choices=list(FIGURES), metavar="NAME", help=names)
 
-    def load(options: argparse.Namespace) -> Runs:
-        return Runs(car=load_quarter_car(options.parameters or PUBLISHED), quick=options.quick)
 
-    return run_lumped_study(parser, load, study, arguments)
+def load(options: argparse.Namespace) -> Runs:
+    """The parameters and what was computed with them."""
+    return Runs(car=load_quarter_car(options.parameters or PUBLISHED), quick=options.quick)
+
+
+main = lumped_study("quarter_car", load, study, add_options)
 
 
 if __name__ == "__main__":

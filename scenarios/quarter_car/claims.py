@@ -6,10 +6,9 @@ import itertools
 
 import numpy as np
 
-from scenarios.claims import DUPLICATE, INFERRED, PREDICTED, TABLE, Claim
+from scenarios.claims import DUPLICATE, INFERRED, PREDICTED, TABLE, Claim, Findings
 from scenarios.quarter_car.in_mujoco import in_mujoco_claims
 from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, NO_FRICTION, SEED, Array, Runs, peak, rms
-from scenarios.study import Findings
 from vehicle.laws.maxwell import Maxwell
 from vehicle.linear.natural_modes import natural_modes
 from vehicle.linear.response import frequency_response

@@ -18,7 +18,8 @@ from types import MappingProxyType
 from typing import Any
 
 from scenarios.car_runs import CarRuns, Case
-from scenarios.study import Findings, car_parser, run_car_study
+from scenarios.claims import Findings
+from scenarios.study import car_study
 from scenarios.tuning.claims import data_note, demonstration_claims, fit_notes, fit_numbers, frozen_note, own_claims
 from scenarios.tuning.data import (
     AUTHORS,
@@ -218,9 +219,8 @@ def _draw(folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequ
     correlation_figure(folder / "correlation.png", result)
 
 
-def parser() -> argparse.ArgumentParser:
-    """Options of the command."""
-    found = car_parser("tuning")
+def add_options(found: argparse.ArgumentParser) -> None:
+    """Options of this study alone."""
     found.add_argument("--frf", type=Path, action="append", default=[], metavar="FILE.csv", help="own FRFs; repeatable")
     found.add_argument(
         "--level",
@@ -235,12 +235,6 @@ def parser() -> argparse.ArgumentParser:
     found.add_argument("--band", default=f"{BAND[0]:g}:{BAND[1]:g}", metavar="LOW:HIGH", help="fitted frequencies [Hz]")
     found.add_argument("--spacing", type=float, default=SPACING, metavar="HZ", help="distance of the frequencies [Hz]")
     found.add_argument("--window", type=float, metavar="S", help="the FRFs were averaged over Hann windows this long")
-    return found
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Command line; returns the exit code."""
-    return run_car_study(parser(), _study, arguments)
 
 
 LONGEST_STEP = 5e-4
@@ -255,6 +249,9 @@ def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings
     if options.level or options.fit or options.channel:
         raise ConfigurationError("--level, --fit and --channel belong to --frf; give a file of FRFs")
     return study(runs, folder, quick=options.quick)
+
+
+main = car_study("tuning", _study, add_options)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,8 @@ import pytest
 
 from scenarios import car_runs
 from scenarios.car_runs import CarRuns, Case, Task
-from scenarios.claims import PREDICTED
-from scenarios.study import Findings, car_parser, run_car_study
+from scenarios.claims import PREDICTED, Findings
+from scenarios.study import car_study
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.bump import bump
 from vehicle.excitation.signal import Signal
@@ -78,7 +78,7 @@ def findings(runs, folder, options):
 
 def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, capsys):
     folder = tmp_path / "out"
-    assert run_car_study(car_parser("example"), findings, ["--output", str(folder)]) == 0
+    assert car_study("example", findings)(["--output", str(folder)]) == 0
     text = (folder / "results.md").read_text(encoding="utf-8")
     assert "Not judged here: another: too short." in text
     assert "a note" in text
@@ -96,7 +96,7 @@ def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, cap
 )
 def test_wrong_options_are_refused_before_the_folder_is_made(arguments, words, tmp_path, capsys):
     folder = tmp_path / "out"
-    assert run_car_study(car_parser("example"), findings, [*arguments, "--output", str(folder)]) == 2
+    assert car_study("example", findings)([*arguments, "--output", str(folder)]) == 2
     assert words in capsys.readouterr().err
     assert not folder.exists()
 

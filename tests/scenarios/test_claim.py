@@ -15,15 +15,15 @@ from scenarios.claims import (
     STATUSES,
     TABLE,
     Claim,
+    Findings,
     Kind,
     Status,
     headline,
     interval_claim,
     spread_claim,
-    write_claims,
 )
 from scenarios.output_folder import prepare_folder, write_text
-from scenarios.study import STUDIES, Findings, lumped_parser, main_of, run_lumped_study
+from scenarios.study import STUDIES, lumped_study, main_of, study_parser
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
 
 HOME = Path(scenarios.__file__).parent
@@ -70,7 +70,7 @@ def test_files_hold_rows_notes_and_data(tmp_path):
         made("fitted", False),
         interval_claim("c", (95.0, float("inf")), 90.0, "v"),
     ]
-    write_claims(tmp_path, "Title", rows, ["A note."], {"extra": [1.0, float("inf")]})
+    Findings(title="Title", claims=rows, notes=["A note."], data={"extra": [1.0, float("inf")]}).write(tmp_path)
     text = (tmp_path / "results.md").read_text(encoding="utf-8")
     assert "\n1 of 2 predicted rows agree; beside them 1 fitted (0 agree)," in text
     assert "| a \\| b | 2 | 2.1 | +5.0 % | yes | predicted | table |  | w |" in text
@@ -117,7 +117,7 @@ def failing(error):
 
 
 def run(study, folder, *more):
-    return run_lumped_study(lumped_parser("x"), lambda options: None, study, ["--output", str(folder), *more])
+    return lumped_study("x", lambda options: None, study)(["--output", str(folder), *more])
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_debug_shows_the_traceback(tmp_path, capsys):
 
 
 def test_default_folder_is_named_after_the_study():
-    assert str(lumped_parser("half_car_rider").parse_args([]).output) == "runs/half_car_rider"
+    assert str(study_parser("half_car_rider", quick="").parse_args([]).output) == "runs/half_car_rider"
 
 
 def test_the_list_holds_every_study_and_no_other(capsys):

@@ -8,7 +8,7 @@ import pytest
 
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_observation import Observation, Question, chosen_engine, observe
-from scenarios.comfort_runs import ComfortRuns, Point, Records, comfort_parser, point, records_of, standard_error
+from scenarios.comfort_runs import ComfortRuns, Point, Records, point, records_of, standard_error
 from scenarios.comfort_sensitivity import __main__ as beyond
 from scenarios.comfort_sensitivity.__main__ import SURE, main
 from scenarios.comfort_sensitivity.claims import (
@@ -209,7 +209,7 @@ def test_one_component_of_a_bushing_varies(tmp_path):
 
 
 def test_the_options_choose_records_and_engine():
-    parser = comfort_parser("comfort_sensitivity")
+    parser = main.parser
     assert parser.parse_args([]).engine == "auto"
     assert records_of(parser.parse_args(["--records", "7"])).count == 7
     assert records_of(parser.parse_args(["--quick"])).duration < 60.0
