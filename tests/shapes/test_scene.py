@@ -8,8 +8,7 @@ import trimesh
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from vehicle.errors import ConfigurationError
-from vehicle.shapes import SHELL, Shape, car_shapes
+from vehicle.shapes import SHELL, Part, Shape, car_shapes, part_shapes
 
 OPEN = {"body_shell", "body_lining", "body_trim", "body_lamps_front", "body_lamps_rear", "body_plates", "body_glass"}
 """sheets by nature: panels, panes and fields of colour on the paint"""
@@ -207,12 +206,11 @@ def test_the_spring_clears_the_tyre(shapes: dict[str, Shape]) -> None:
     assert below[:, 1].max() < middle - 0.195 / 2 + 0.002
 
 
-def test_dimensions_change_what_they_name(points: dict[str, np.ndarray]) -> None:
-    base = car_shapes(points)
-    wide = car_shapes(points, {"brake_disc_radius": 0.15})
-    assert wide["brake_disc_fr"].mesh.extents[0] == pytest.approx(0.30, abs=1e-3)
-    assert base["brake_disc_fr"].mesh.extents[0] == pytest.approx(0.258, abs=1e-3)
-    assert wide["tyre_fr"].mesh.volume == base["tyre_fr"].mesh.volume
+def test_sizes_change_what_they_name(points: dict[str, np.ndarray]) -> None:
+    hub = {"wheel_center": points["wheel_center_fr"]}
+    for sizes, width in (({}, 0.258), ({"brake_disc_radius": 0.15}, 0.30)):
+        disc = part_shapes([Part(name="disc", role="brake_disc", points=hub, sizes=sizes)])["disc"]
+        assert disc.mesh.extents[0] == pytest.approx(width, abs=1e-3)
 
 
 def test_the_same_points_give_the_same_bytes(points: dict[str, np.ndarray]) -> None:
@@ -222,38 +220,38 @@ def test_the_same_points_give_the_same_bytes(points: dict[str, np.ndarray]) -> N
         assert first[name].mesh.export(file_type="stl") == second[name].mesh.export(file_type="stl"), name
 
 
-def test_a_missing_hardpoint_is_named(points: dict[str, np.ndarray]) -> None:
-    del points["tie_outer_fl"], points["seat"]
-    with pytest.raises(ConfigurationError) as caught:
-        car_shapes(points)
-    assert str(caught.value) == (
-        "shapes: hardpoints missing: tie_outer_fl, seat; side points end in _fr and _fl. Add them to the vehicle file."
-    )
+@pytest.mark.parametrize(("role", "count"), [("anti_roll_link", 1), ("anti_roll_link", 2), ("lower_arm", 4)])
+def test_a_part_without_a_role_or_a_point_of_it_is_rods_between_its_points(role: str, count: int) -> None:
+    generator = np.random.default_rng(count)
+    places = {f"point_{number}": generator.uniform(0.3, 1.0, 3) for number in range(count)}
+    part = Part(name="link", role=role, points=places, suffix="_rl", carrier="rear_subframe", left=True)
+    shapes = part_shapes([part])
+    assert list(shapes) == ["link_rl"]
+    assert shapes["link_rl"].part == "link_rl"
+    mesh = shapes["link_rl"].mesh
+    assert mesh.is_watertight
+    assert (volumes(mesh) > 0).all()
+    assert len(volumes(mesh)) == {1: 1, 2: 3, 4: 8}[count]  # a ball at each point, and the rods
+    assert all(gap(mesh, place) < 0.016 for place in places.values())
 
 
-@pytest.mark.parametrize(("value", "shown"), [((0.1, np.nan, 0.2), "[0.1, nan, 0.2]"), ((1.0, 2.0), "[1.0, 2.0]")])
-def test_a_bad_hardpoint_is_named_with_its_value(
-    points: dict[str, np.ndarray], value: tuple[float, ...], shown: str
+def test_parts_of_one_role_on_one_corner_keep_apart_and_their_bolts_go_with_the_carrier(
+    points: dict[str, np.ndarray],
 ) -> None:
-    points["seat"] = np.array(value)
-    with pytest.raises(ConfigurationError) as caught:
-        car_shapes(points)
-    assert str(caught.value) == (
-        f"shapes: hardpoint seat is {shown}; allowed are three finite numbers x, y, z [m]. Mend it in the vehicle file."
-    )
+    arm = {name: points[f"{name}_fr"] for name in ("lower_ball", "arm_front", "arm_rear")}
+    above = {name: place + np.array([0, 0, 0.3]) for name, place in arm.items()}
+    parts = [
+        Part(name=name, role="lower_arm", points=where, suffix="_rr", carrier="rear_subframe")
+        for name, where in (("lower_wishbone", arm), ("upper_wishbone", above))
+    ]
+    shapes = part_shapes(parts)
+    names = [f"{part}_wishbone{piece}_rr" for part in ("lower", "upper") for piece in ("", "_rubber", "_bolts")]
+    assert list(shapes) == names
+    assert [shapes[name].part for name in names[:3]] == [names[0], names[0], "rear_subframe"]
+    strut = {name: points[f"{name}_fr"] for name in ("damper_bottom", "spring_lower", "strut_top")}
+    twin = [Part(name=name, role="damper_tube", points=strut, suffix="_rr") for name in ("main", "helper")]
+    assert list(part_shapes(twin)) == ["main_rr", "spring_seat_lower_rr", "helper_rr", "helper_spring_seat_lower_rr"]
 
 
-@pytest.mark.parametrize(
-    ("dimensions", "message"),
-    [
-        ({"wheels": 3.0}, "shapes: unknown dimension 'wheels'; the known ones are tyre_section_width,"),
-        (
-            {"rim_diameter": -0.4},
-            "shapes: dimension rim_diameter is -0.4; allowed is a finite number above 0.",
-        ),
-    ],
-)
-def test_a_bad_dimension_is_refused(points: dict[str, np.ndarray], dimensions: dict[str, float], message: str) -> None:
-    with pytest.raises(ConfigurationError) as caught:
-        car_shapes(points, dimensions)
-    assert str(caught.value).startswith(message)
+def test_a_part_without_points_is_not_drawn() -> None:
+    assert part_shapes([Part(name="thing", role="link", points={})]) == {}

@@ -7,14 +7,12 @@ the wheel arches onto the wheels, the roof onto its output point.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle.shapes.curve import spline
-from vehicle.shapes.hardpoint import Points, right_handed
-from vehicle.shapes.shape import Array
+from vehicle.shapes.shape import Array, Points, Sizes
+from vehicle.shapes.surface import spline
 
 REFERENCE_X = (0.0, 0.85, 3.465, 4.45)  # [m] front, front axle, rear axle, rear
 REFERENCE_H = (0.0, 0.295, 1.45)  # [m] road, wheel centre, roof above the rear seats' left end
@@ -41,78 +39,38 @@ STATION = np.linspace(0, 1, len(PLAN))  # runs along the plan curve
 # how far the surface lies inside the plan curve at a height H: side, front, rear
 SIDE_INSET = np.array(
     [
-        (0.15, 0.06),
-        (0.18, 0.036),
-        (0.25, 0.012),
-        (0.42, 0.0),
-        (0.58, 0.0),
-        (0.72, 0.01),
-        (0.86, 0.03),
-        (0.94, 0.05),
-        (0.99, 0.072),
-        (1.02, 0.092),
+        (0.15, 0.06), (0.18, 0.036), (0.25, 0.012), (0.42, 0.0), (0.58, 0.0), (0.72, 0.01), (0.86, 0.03),
+        (0.94, 0.05), (0.99, 0.072), (1.02, 0.092),
     ]
-)
+)  # fmt: skip
 FRONT_INSET = np.array(
     [
-        (0.15, 0.09),
-        (0.18, 0.06),
-        (0.24, 0.02),
-        (0.34, 0.0),
-        (0.48, 0.0),
-        (0.525, 0.012),
-        (0.55, 0.032),
-        (0.66, 0.06),
-        (0.72, 0.1),
-        (0.8, 0.15),
-        (0.95, 0.25),
+        (0.15, 0.09), (0.18, 0.06), (0.24, 0.02), (0.34, 0.0), (0.48, 0.0), (0.525, 0.012), (0.55, 0.032),
+        (0.66, 0.06), (0.72, 0.1), (0.8, 0.15), (0.95, 0.25),
     ]
-)
+)  # fmt: skip
 REAR_INSET = np.array(
     [
-        (0.15, 0.1),
-        (0.24, 0.035),
-        (0.32, 0.006),
-        (0.42, 0.0),
-        (0.54, 0.0),
-        (0.58, 0.016),
-        (0.62, 0.034),
-        (0.8, 0.046),
-        (0.95, 0.066),
-        (1.02, 0.085),
+        (0.15, 0.1), (0.24, 0.035), (0.32, 0.006), (0.42, 0.0), (0.54, 0.0), (0.58, 0.016), (0.62, 0.034),
+        (0.8, 0.046), (0.95, 0.066), (1.02, 0.085),
     ]
-)
+)  # fmt: skip
 WAIST = np.array(  # upper edge of the lower body: (X, H); its bonnet edge, cowl and waist line
     [
-        (0.0, 0.69),
-        (0.105, 0.702),
-        (0.21, 0.73),
-        (0.36, 0.775),
-        (0.6, 0.828),
-        (0.85, 0.868),
-        (1.1, 0.902),
-        (1.36, 0.93),
-        (1.8, 0.945),
-        (2.5, 0.962),
-        (3.4, 0.984),
-        (4.2, 1.002),
-        (4.45, 1.005),
+        (0.0, 0.69), (0.105, 0.702), (0.21, 0.73), (0.36, 0.775), (0.6, 0.828), (0.85, 0.868), (1.1, 0.902),
+        (1.36, 0.93), (1.8, 0.945), (2.5, 0.962), (3.4, 0.984), (4.2, 1.002), (4.45, 1.005),
     ]
-)
+)  # fmt: skip
 SILL = np.array(
     [(0.0, 0.190), (0.21, 0.175), (0.55, 0.175), (1.2, 0.170), (3.1, 0.175), (3.8, 0.21), (4.2, 0.25), (4.45, 0.27)]
 )
 COWL_X, TAIL_X = 1.36, 4.335  # [m] where bonnet and tailgate end at the waist
 CANT_RAIL = np.array(  # lower edge of the roof's rounding: (X, Y, H)
     [
-        (2.0, 0.612, 1.352),
-        (2.3, 0.622, 1.388),
-        (2.8, 0.628, 1.402),
-        (3.4, 0.622, 1.4),
-        (3.9, 0.606, 1.39),
+        (2.0, 0.612, 1.352), (2.3, 0.622, 1.388), (2.8, 0.628, 1.402), (3.4, 0.622, 1.4), (3.9, 0.606, 1.39),
         (4.1, 0.596, 1.378),
     ]
-)
+)  # fmt: skip
 ROOF_EDGE_STEP = np.array([0.0, -0.085, 0.046])  # from the lower edge of the rounding to the flat of the roof
 ROOF_CORNER_STEP = np.array([0.0, -0.018, 0.040])
 ROOF_CROWN = 0.034  # [m] the middle of the roof above its edges
@@ -190,23 +148,25 @@ def station_at(X: float | Array) -> Array:
 
 def station_front(Y: float | Array) -> Array:
     """Station of the plan curve at a reference Y [m] on the front."""
-    half = len(PLAN) // 3
-    return np.asarray(np.interp(Y, PLAN[:half, 1], STATION[:half]))
+    ahead = slice(len(PLAN) // 3)
+    return np.asarray(np.interp(Y, PLAN[ahead, 1], STATION[ahead]))
 
 
 def station_rear(Y: float | Array) -> Array:
     """Station of the plan curve at a reference Y [m] on the rear."""
-    half = len(PLAN) // 3
-    return np.asarray(np.interp(Y, PLAN[::-1][:half, 1], STATION[::-1][:half]))
+    behind = slice(None, -(len(PLAN) // 3) - 1, -1)
+    return np.asarray(np.interp(Y, PLAN[behind, 1], STATION[behind]))
 
 
-def outline(points: Points, size: Mapping[str, float]) -> Outline:
+OUTLINE = ("wheel_center", "tyre_patch", "rear_axle", "roof")
+
+
+def outline(points: Points, size: Sizes) -> Outline:
     """The drawing fitted to a vehicle: x at front, axles, rear; z at plate, wheel centre, roof; width of track."""
-    wheel, patch = (right_handed(points, "fr")[name] for name in ("wheel_center", "tyre_patch"))
-    rear = float(points["rear_support_right"][0])
+    wheel, patch, rear = points["wheel_center"], points["tyre_patch"], float(points["rear_axle"][0])
     return Outline(
         np.array([0.0, wheel[0], rear, rear + size["rear_overhang"]]),
-        np.array([patch[2], wheel[2], points["roof_left_rear"][2]]),
+        np.array([patch[2], wheel[2], points["roof"][2]]),
         float(wheel[1] + WHEEL_TO_SIDE) / REFERENCE_HALF_WIDTH,
         float(wheel[2] - patch[2]) + size["tyre_deflection"] + ARCH_GAP,
     )

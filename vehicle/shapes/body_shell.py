@@ -20,13 +20,13 @@ from vehicle.shapes.body_outline import (
     station_front,
     station_rear,
 )
-from vehicle.shapes.curve import bezier, spline
-from vehicle.shapes.patch import coons, grid
-from vehicle.shapes.placement import joined, mirrored
+from vehicle.shapes.placement import both, inverted, joined
 from vehicle.shapes.shape import Array
+from vehicle.shapes.surface import bezier, coons, grid, spline
 
 CORNER_Y = 0.58  # [m] reference Y of the bonnet's front corner
 LINING_GAP = 0.014  # [m]
+HOUSE_DEPTH = (0.16, 0.22)  # [m] depth of the wheel houses; strut and spring stay visible behind the front one
 ARCH_POINTS = 11  # along the half circle of a wheel arch
 FAN = 0.075  # [m] the row over the foot of an arch leans away from the wheel by this much
 LEVELS = 7  # rows of the lower body between sill and waist
@@ -36,6 +36,9 @@ SILL_GLASS, TOP_GLASS = 0.06, 0.93  # share of the height of the side where the 
 # side windows: reference X at the waist and at the roof rail of the front and the rear edge [m]
 WINDOWS = ((1.66, 2.075, 2.46, 2.50), (2.58, 2.60, 3.38, 3.30), (3.50, 3.41, 4.20, 4.01))
 MIRROR_Y = np.array([1.0, -1.0, 1.0])
+ACROSS = 9  # points across the flat of the roof, odd
+ROOF_X = (float(CANT_RAIL[0, 0]), float(CANT_RAIL[-1, 0]))
+BOW_FRONT, BOW_REAR = 0.085, -0.045  # [m] the middles of the roof's edges lie ahead by this
 
 
 def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
@@ -94,46 +97,37 @@ def cant_rail(body: Outline, X: Array) -> tuple[Array, Array, Array]:
     return body.place(low), body.place(low + ROOF_CORNER_STEP), body.place(low + ROOF_EDGE_STEP)
 
 
-def header(body: Outline, X: float, bow: float, across: int) -> Array:
+def header(body: Outline, X: float, bow: float) -> Array:
     """Edge of the roof over the windscreen or the tailgate, from the right rail over the middle to the left one.
 
     Args:
         body: the outline
         X: reference X of its ends [m]
         bow: how far its middle lies ahead [m]
-        across: points across the flat of the roof, odd
 
     Returns:
-        points, shape (across + 2 * (CANT_STEPS - 1), 3)
+        points, shape (ACROSS + 2 * (CANT_STEPS - 1), 3)
     """
     low, corner, edge = (curve[0] for curve in cant_rail(body, np.array([X])))
     rounding = bezier(low, corner, edge, CANT_STEPS)
-    flat = np.linspace(1, -1, across)[:, None]
+    flat = np.linspace(1, -1, ACROSS)[:, None]
     roof = edge * (0, 0, 1) + (edge * (1, 0, 0) - (bow, 0, 0) * (1 - flat**2)) + (0, 1, 0) * flat * edge
     roof = roof + (0, 0, ROOF_CROWN) * (1 - flat**2)
     return np.vstack([rounding[:-1], roof, (rounding * MIRROR_Y)[::-1][1:]])
 
 
-ACROSS = 9  # points across the flat of the roof
-ROOF_X = (float(CANT_RAIL[0, 0]), float(CANT_RAIL[-1, 0]))
-BOW_FRONT, BOW_REAR = 0.085, -0.045
-
-
 def roof(body: Outline) -> Array:
     """Points of the roof with both rounded rails, from the windscreen to the tailgate, right to left."""
-    X = np.linspace(*ROOF_X, ROOF_STATIONS)
-    _low, _corner, _edge = cant_rail(body, X)
     rows = []
-    for _i, x in enumerate(X):
-        share = (x - X[0]) / (X[-1] - X[0])
+    for share, X in zip(np.linspace(0, 1, ROOF_STATIONS), np.linspace(*ROOF_X, ROOF_STATIONS), strict=True):
         bow = BOW_FRONT * max(0.0, 1 - 6 * share) ** 2 + BOW_REAR * max(0.0, 6 * share - 5) ** 2
-        rows.append(header(body, float(x), bow, ACROSS))
+        rows.append(header(body, float(X), bow))
     return np.array(rows)
 
 
 def windscreen_grid(body: Outline) -> Array:
     """Points of the windscreen plane with the pillars, from cowl to header, shape (6, n, 3)."""
-    top = header(body, ROOF_X[0], BOW_FRONT, ACROSS)
+    top = header(body, ROOF_X[0], BOW_FRONT)
     bottom = cowl(body, len(top))
     steps = np.linspace(0, 1, 6)[:, None]
     left, right = (bottom[k] + steps * (top[k] - bottom[k]) for k in (0, -1))
@@ -177,7 +171,7 @@ def bonnet(body: Outline) -> Array:
 
 def tailgate_grid(body: Outline) -> Array:
     """Points of the tailgate above the waist, from the waist to the header, shape (7, n, 3)."""
-    top = header(body, ROOF_X[1], BOW_REAR, ACROSS)
+    top = header(body, ROOF_X[1], BOW_REAR)
     shares = header_shares(len(top))
     station = 1 - (1 - station_at(TAIL_X)) * np.abs(shares)
     bottom = body.side(station, body.waist(station))
@@ -230,53 +224,42 @@ def side_patch(
     return surface
 
 
-def split_pane(surface: Array, rows: tuple[int, int], columns: int) -> tuple[list[Array], Array]:
-    """A pane cut from a grid: the frame around it as four patches, and the pane."""
+def split_pane(surface: Array, rows: tuple[int, int], flip: bool) -> tuple[list[trimesh.Trimesh], trimesh.Trimesh]:
+    """A pane cut from a grid between two rows and two columns from either side: the frame around it, and the pane."""
     low, high = rows
-    n = surface.shape[1]
-    frame = [
-        surface[: low + 1],
-        surface[high:],
-        surface[low : high + 1, : columns + 1],
-        surface[low : high + 1, n - 1 - columns :],
-    ]
-    return [patch for patch in frame if patch.shape[0] > 1], surface[low : high + 1, columns : n - columns]
+    inside = surface[low : high + 1]
+    frame = [surface[: low + 1], surface[high:], inside[:, :3], inside[:, -3:]]
+    return [grid(patch, flip=flip) for patch in frame if len(patch) > 1], grid(inside[:, 2:-2], flip=flip)
 
 
-def lower_body(body: Outline) -> trimesh.Trimesh:
-    """Bumpers, wings, doors and side panels up to the waist, both sides."""
-    right = grid(lower_grid(body), flip=True)
-    return joined(right, mirrored(right))
+def upper_body(body: Outline) -> tuple[trimesh.Trimesh, trimesh.Trimesh]:
+    """Everything above the waist but the roof: pillars with the frames of the windows, and the glass."""
+    metal, glass = ([grid(patch, flip=True) for patch in patches] for patches in side_columns(body))
+    front_frame, windscreen = split_pane(windscreen_grid(body), (0, 5), flip=False)
+    rear_frame, rear_window = split_pane(tailgate_grid(body), (1, 5), flip=True)
+    return joined(both(*metal), front_frame, rear_frame), joined(both(*glass), windscreen, rear_window)
 
 
-def pillars(body: Outline) -> trimesh.Trimesh:
-    """Pillars and the frames of windscreen and rear window."""
-    right = [grid(patch, flip=True) for patch in side_columns(body)[0]]
-    front = [grid(patch) for patch in split_pane(windscreen_grid(body), (0, 5), 2)[0]]
-    rear = [grid(patch, flip=True) for patch in split_pane(tailgate_grid(body), (1, 5), 2)[0]]
-    return joined(right, [mirrored(mesh) for mesh in right], front, rear)
+def sheet_metal(body: Outline, pillars: trimesh.Trimesh) -> trimesh.Trimesh:
+    """All painted panels: bumpers, wings, doors and side panels up to the waist, pillars, bonnet and roof."""
+    return joined(both(grid(lower_grid(body), flip=True)), pillars, grid(bonnet(body)), grid(roof(body)))
 
 
-def sheet_metal(body: Outline) -> trimesh.Trimesh:
-    """All painted panels."""
-    return joined(lower_body(body), pillars(body), grid(bonnet(body)), grid(roof(body)))
-
-
-def glass(body: Outline) -> trimesh.Trimesh:
-    """Windscreen, side windows and rear window."""
-    right = [grid(patch, flip=True) for patch in side_columns(body)[1]]
-    windscreen, rear_window = (
-        split_pane(windscreen_grid(body), (0, 5), 2)[1],
-        split_pane(tailgate_grid(body), (1, 5), 2)[1],
-    )
-    return joined(right, [mirrored(mesh) for mesh in right], grid(windscreen), grid(rear_window, flip=True))
-
-
-def lining(body: Outline) -> trimesh.Trimesh:
+def lining(body: Outline, pillars: trimesh.Trimesh) -> trimesh.Trimesh:
     """The inner side of the sheet metal, a little further inside and facing inward, with fewer triangles."""
     right = grid(lower_grid(body, -LINING_GAP)[[0, 3, LEVELS - 1]])
-    posts = pillars(body)
-    vertices = np.asarray(posts.vertices) - LINING_GAP * np.asarray(posts.vertex_normals)
-    inner = trimesh.Trimesh(vertices, np.asarray(posts.faces)[:, ::-1], process=False)
+    inner = inverted(pillars)
+    inner.vertices = np.asarray(pillars.vertices) - LINING_GAP * np.asarray(pillars.vertex_normals)
     covers = [grid(surface[::2, ::2] - (0, 0, 1.6 * LINING_GAP), flip=True) for surface in (bonnet(body), roof(body))]
-    return joined(right, mirrored(right), inner, covers)
+    houses = [wheel_house(body, axle, depth) for axle, depth in enumerate(HOUSE_DEPTH)]
+    return joined(both(right), inner, covers, houses)
+
+
+def wheel_house(body: Outline, axle: int, depth: float) -> trimesh.Trimesh:
+    """Sheet from the edge of an arch inward, facing the wheel, both sides of the car."""
+    X, H = arch_edge(body, axle)
+    edge = body.side(station_at(X), H) - (0, 0.012, 0)
+    inner = edge.copy()
+    inner[:, 1] = edge[:, 1].mean() - depth
+    sheet = grid(np.stack([edge, inner]))
+    return both(sheet, inverted(sheet))

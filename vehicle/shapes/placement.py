@@ -50,6 +50,16 @@ def mirrored(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
     return trimesh.Trimesh(vertices, np.asarray(mesh.faces)[:, ::-1], process=False)
 
 
+def inverted(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The mesh with its normals turned round."""
+    return trimesh.Trimesh(mesh.vertices, np.asarray(mesh.faces)[:, ::-1], process=False)
+
+
+def outward(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """A closed mesh with its faces turned, where needed, so that its volume is positive."""
+    return inverted(mesh) if mesh.volume < 0 else mesh
+
+
 def joined(*meshes: trimesh.Trimesh | Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
     """Several meshes as one; they may overlap, their surfaces are not cut."""
     flat: list[trimesh.Trimesh] = []
@@ -61,8 +71,6 @@ def joined(*meshes: trimesh.Trimesh | Sequence[trimesh.Trimesh]) -> trimesh.Trim
     return trimesh.Trimesh(vertices, faces, process=False)
 
 
-def outward(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """A closed mesh with its faces turned, where needed, so that its volume is positive."""
-    if mesh.volume < 0:
-        return trimesh.Trimesh(mesh.vertices, np.asarray(mesh.faces)[:, ::-1], process=False)
-    return mesh
+def both(*meshes: trimesh.Trimesh) -> trimesh.Trimesh:
+    """Right-hand meshes with their mirror images."""
+    return joined([*meshes, *(mirrored(mesh) for mesh in meshes)])

@@ -7,14 +7,14 @@ import itertools
 import numpy as np
 import trimesh
 
-from vehicle.shapes.block import box, hull
-from vehicle.shapes.hardpoint import Points
-from vehicle.shapes.lathe import drum, lathe, ring
+from vehicle.shapes import palette
 from vehicle.shapes.placement import joined, placed, shifted
-from vehicle.shapes.shape import Array
+from vehicle.shapes.shape import Array, Piece, Points, Sizes
+from vehicle.shapes.solids import block, box, drum, hull, lathe, plate, ring
 
 BED_TOP = 0.04  # [m] top of the bed plate above the ground
 TABLE = 0.030  # [m] thickness of both plates
+AIR = 0.045  # [m] free air between the shaker's upper face and the table
 RUBBER = 0.060  # [m] height of the rear blocks
 PLANKS = 9
 
@@ -26,36 +26,61 @@ def foot(point: Array) -> Array:
 
 def screws(centre: Array, reach: float, radius: float = 0.009) -> list[trimesh.Trimesh]:
     """Four square screw heads at the corners of a square [m] on a surface."""
+    places = centre + reach * np.array([(-1, -1, 0), (-1, 1, 0), (1, -1, 0), (1, 1, 0)])
+    return [block(place, (-radius, -radius, -0.002), (radius, radius, 0.008)) for place in places]
+
+
+def square(centre: Array, half: float, low: float, high: float, bevel: float = 0.0) -> trimesh.Trimesh:
+    """A square plate or column [m] about an upright axis through a point."""
+    return block(centre, (-half, -half, low), (half, half, high), bevel)
+
+
+def ribs(
+    base: Array, turns: Array, corners: list[tuple[float, float]], half: float, beside: tuple[float, ...]
+) -> list[trimesh.Trimesh]:
+    """Upright sheets around a column.
+
+    Args:
+        base: foot of the column, shape (3,) [m]
+        turns: unit vectors from the column outward, shape (n, 3)
+        corners: distance from the axis and height of each corner [m]
+        half: half thickness [m]
+        beside: distances of the sheets of one turn from the axis, across it [m]
+    """
+    sheets = []
+    for along in turns:
+        across = np.array([-along[1], along[0], 0.0])
+        edge = [base + r * along + (0, 0, h) for r, h in corners]
+        sheets += [hull([c + (w + s) * across for c in edge for s in (-half, half)]) for w in beside]
+    return sheets
+
+
+def shaker_table(points: Points, size: Sizes) -> list[Piece]:
+    """Round ribbed table whose top is at the tyre patch, with the armature stem that dips into the shaker.
+
+    Threaded inserts on a circle outside the tyre's footprint.
+    """
+    patch = points["tyre_patch"]
+    stem, low = shaker_top(patch) - float(patch[2]) - 0.01, float(patch[2]) - TABLE - float(patch[2])
+    profile = [(0, stem), (0.085, stem), (0.085, low - 0.012), (0.17, low), (0.205, low)]
+    profile += [(0.210, low + 0.005), (0.210, -0.005), (0.205, 0.0), (0, 0.0)]
+    phi = 2 * np.pi * (np.arange(6) + 0.5) / 6
+    places = patch + 0.19 * np.column_stack([np.cos(phi), np.sin(phi), 0 * phi])
+    inserts = [placed(drum(0.0075, -0.004, 0.0012, sections=6), place) for place in places]
     return [
-        box(place - (radius, radius, 0.002), shifted(place, radius, radius, 0.008))
-        for place in centre + reach * np.array([(-1, -1, 0), (-1, 1, 0), (1, -1, 0), (1, 1, 0)])
+        Piece("", placed(lathe(profile, sections=24), patch), palette.PLATE),
+        Piece("_inserts", joined(inserts), palette.DARK_STEEL),
     ]
 
 
-def shaker_table(patch: Array) -> trimesh.Trimesh:
-    """Round ribbed table whose top is at the tyre patch, with the armature stem that dips into the shaker."""
-    t = float(patch[2])
-    low = t - TABLE
-    stem = shaker_top(patch) - t - 0.01
-    profile = [(0, stem), (0.085, stem), (0.085, low - t - 0.012), (0.17, low - t), (0.205, low - t)]
-    profile += [(0.210, low - t + 0.005), (0.210, -0.005), (0.205, 0.0), (0, 0.0)]
-    return placed(lathe(profile, sections=24), patch)
-
-
-def table_inserts(patch: Array) -> trimesh.Trimesh:
-    """Threaded inserts of the table, on a circle outside the tyre's footprint."""
-    phi = 2 * np.pi * (np.arange(6) + 0.5) / 6
-    places = patch + 0.19 * np.column_stack([np.cos(phi), np.sin(phi), 0 * phi])
-    return joined([placed(drum(0.0075, -0.004, 0.0012, sections=6), place) for place in places])
-
-
 def shaker_top(patch: Array) -> float:
-    """Height [m] of the shaker body's upper face: 45 mm of free air under the table."""
-    return float(patch[2]) - TABLE - 0.045
+    """Height [m] of the shaker's upper face."""
+    return float(patch[2]) - TABLE - AIR
 
 
-def shaker_body(patch: Array) -> trimesh.Trimesh:
-    """Electrodynamic shaker: ribbed drum with an opening for the armature."""
+def shaker(points: Points, size: Sizes) -> list[Piece]:
+    """Electrodynamic shaker: ribbed drum with an opening for the armature, in its frame."""
+    patch = points["tyre_patch"]
     low, high = BED_TOP + 0.035, shaker_top(patch)
     step = (high - low) / 10
     outer = [(0.230, low), (0.245, low + 0.012)]
@@ -64,95 +89,70 @@ def shaker_body(patch: Array) -> trimesh.Trimesh:
         outer += [(0.245, z - 0.5 * step), (0.232, z - 0.4 * step), (0.232, z + 0.4 * step), (0.245, z + 0.5 * step)]
     outer += [(0.245, high - 0.012), (0.235, high)]
     profile = [(0, low), *outer, (0.105, high), (0.105, high - 0.04), (0, high - 0.04)]
-    drum_body = lathe([(r, z - low) for r, z in profile], sections=20)
-    return placed(drum_body, (patch[0], patch[1], low))
+    body = placed(lathe([(r, z - low) for r, z in profile], sections=20), (patch[0], patch[1], low))
+    frame = shaker_frame(patch, high)
+    return [Piece("", body, palette.SHAKER, held=True), Piece("_frame", frame, palette.STAND, held=True)]
 
 
-def shaker_frame(patch: Array) -> trimesh.Trimesh:
-    """Trunnions, their bearing pedestals and the base frame of the shaker."""
-    middle = 0.5 * (BED_TOP + 0.035 + shaker_top(patch))
+def shaker_frame(patch: Array, top: float) -> trimesh.Trimesh:
+    """Trunnions, their bearing pedestals and the base frame of a shaker whose upper face is at a height [m]."""
+    middle = 0.5 * (BED_TOP + 0.035 + top)
     base = foot(patch)
-    parts = [
-        box(shifted(base, -0.38, s * 0.2 - 0.045, 0), shifted(base, 0.38, s * 0.2 + 0.045, 0.035)) for s in (-1, 1)
-    ]
+    parts = [block(base, (-0.38, s * 0.2 - 0.045, 0), (0.38, s * 0.2 + 0.045, 0.035)) for s in (-1, 1)]
+    head = middle - BED_TOP + 0.055
     for s in (-1, 1):
-        side = shifted(base, s * 0.315, 0, 0)
-        axle = np.array([base[0] + s * 0.22, base[1], middle])
-        pedestal = [
-            shifted(side, x, y, z)
-            for x in (-0.030, 0.030)
-            for y, z in (
-                (-0.22, 0.03),
-                (0.22, 0.03),
-                (-0.07, middle - BED_TOP + 0.055),
-                (0.07, middle - BED_TOP + 0.055),
-            )
-        ]
-        parts += [hull(pedestal), placed(drum(0.048, 0.0, 0.155, bevel=0.006, sections=10), axle, (s, 0, 0))]
-        parts += [placed(drum(0.072, 0.0, 0.03, bevel=0.005, sections=10), shifted(axle, s * 0.115, 0, 0), (s, 0, 0))]
-    flange = ring(0.108, 0.150, 0.0, 0.008, sections=18)
-    parts.append(placed(flange, (patch[0], patch[1], shaker_top(patch) - 0.001)))
+        side, axle = shifted(base, s * 0.315, 0, 0), np.array([base[0] + s * 0.22, base[1], middle])
+        parts.append(plate(side, 0, (-0.030, 0.030), ((-0.22, 0.03), (0.22, 0.03), (-0.07, head), (0.07, head))))
+        parts.append(placed(drum(0.048, 0.0, 0.155, bevel=0.006, sections=10), axle, (s, 0, 0)))
+        disc = drum(0.072, 0.0, 0.03, bevel=0.005, sections=10)
+        parts.append(placed(disc, shifted(axle, s * 0.115, 0, 0), (s, 0, 0)))
+    parts.append(placed(ring(0.108, 0.150, 0.0, 0.008, sections=18), (patch[0], patch[1], top - 0.001)))
     return joined(parts)
 
 
-def fixed_plate(patch: Array) -> trimesh.Trimesh:
-    """Square plate under the standing tyre, its top at the tyre patch."""
-    return box(patch - (0.205, 0.205, TABLE), shifted(patch, 0.205, 0.205, 0), 0.005)
+def fixed_plate(points: Points, size: Sizes) -> list[Piece]:
+    """Square plate under a standing tyre, its top at the tyre patch."""
+    return [Piece("", square(points["tyre_patch"], 0.205, -TABLE, 0, 0.005), palette.PLATE)]
 
 
-def pedestal(patch: Array) -> trimesh.Trimesh:
-    """Welded steel pedestal: column, gussets, head and foot plates with screws."""
+def pedestal(points: Points, size: Sizes) -> list[Piece]:
+    """Welded steel pedestal under a plate: column, gussets, head and foot plates with screws."""
+    patch = points["tyre_patch"]
     base, top = foot(patch), float(patch[2]) - TABLE
     column = box(shifted(base, -0.11, -0.11, 0.02), (patch[0] + 0.11, patch[1] + 0.11, top), 0.008)
-    plates = [
-        box(base - (0.24, 0.24, 0), shifted(base, 0.24, 0.24, 0.025), 0.005),
-        box((patch[0] - 0.18, patch[1] - 0.18, top - 0.022), (patch[0] + 0.18, patch[1] + 0.18, top), 0.004),
-    ]
-    gussets = []
-    for direction in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):
-        along, across = np.array([*direction, 0.0]), np.array([-direction[1], direction[0], 0.0])
-        for w in (-0.06, 0.06):
-            corners = [base + 0.11 * along + (0, 0, 0.02), base + 0.22 * along + (0, 0, 0.02)]
-            corners += [base + 0.11 * along + (0, 0, 0.6 * (top - BED_TOP)), base + 0.22 * along + (0, 0, 0.05)]
-            gussets.append(hull([c + (w + s) * across for c in corners for s in (-0.005, 0.005)]))
-    return joined(column, plates, gussets, screws(shifted(base, 0, 0, 0.025), 0.205))
+    head = box((patch[0] - 0.18, patch[1] - 0.18, top - 0.022), (patch[0] + 0.18, patch[1] + 0.18, top), 0.004)
+    turns = np.array([(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)])
+    corners = [(0.11, 0.02), (0.22, 0.02), (0.11, 0.6 * (top - BED_TOP)), (0.22, 0.05)]
+    gussets = ribs(base, turns, corners, 0.005, (-0.06, 0.06))
+    steel = joined(
+        column, square(base, 0.24, 0, 0.025, 0.005), head, gussets, screws(shifted(base, 0, 0, 0.025), 0.205)
+    )
+    return [Piece("", steel, palette.STAND, held=True)]
 
 
-def rubber_block(support: Array) -> trimesh.Trimesh:
-    """Barrel-shaped rubber block under the rear of the body, its top at the support point."""
-    profile = [(0, -RUBBER), (0.066, -RUBBER), (0.076, -0.8 * RUBBER), (0.080, -0.5 * RUBBER), (0.076, -0.2 * RUBBER)]
-    return placed(lathe([*profile, (0.066, 0), (0, 0)], sections=18), support)
-
-
-def support_shoe(support: Array) -> trimesh.Trimesh:
-    """Steel shoe of the body on the rubber block, up to the rear floor."""
-    shoe = lathe([(0, 0), (0.084, 0), (0.084, 0.012), (0.046, 0.060), (0, 0.060)], sections=12)
-    return placed(shoe, support)
-
-
-def stand(support: Array) -> trimesh.Trimesh:
-    """Steel stand under a rubber block: column with four braces, head and foot plates."""
+def rear_block(points: Points, size: Sizes) -> list[Piece]:
+    """Barrel-shaped rubber block under the body, its top at the support point, on a steel stand with four braces."""
+    support = points["support"]
+    half = [(0.076, -0.8 * RUBBER), (0.080, -0.5 * RUBBER), (0.076, -0.2 * RUBBER)]
+    rubber = lathe([(0, -RUBBER), (0.066, -RUBBER), *half, (0.066, 0), (0, 0)], sections=18)
     base, top = foot(support), float(support[2]) - RUBBER
     column = placed(drum(0.058, 0.02, top - BED_TOP - 0.01, sections=14), base)
-    plates = [
-        box(base - (0.20, 0.20, 0), shifted(base, 0.2, 0.2, 0.025), 0.005),
-        box((support[0] - 0.10, support[1] - 0.10, top - 0.020), (support[0] + 0.10, support[1] + 0.10, top), 0.004),
+    head = box((support[0] - 0.10, support[1] - 0.10, top - 0.020), (support[0] + 0.10, support[1] + 0.10, top), 0.004)
+    phi = np.pi / 4 + np.pi / 2 * np.arange(4)
+    turns = np.column_stack([np.cos(phi), np.sin(phi), 0 * phi])
+    braces = ribs(base, turns, [(0.05, 0.02), (0.20, 0.02), (0.05, 0.34), (0.20, 0.045)], 0.006, (0.0,))
+    steel = joined(column, square(base, 0.20, 0, 0.025, 0.005), head, braces, screws(shifted(base, 0, 0, 0.025), 0.165))
+    return [
+        Piece("", placed(rubber, support), palette.RUBBER, held=True),
+        Piece("stand", steel, palette.STAND, held=True),
     ]
-    braces = []
-    for phi in np.pi / 4 + np.pi / 2 * np.arange(4):
-        along, across = np.array([np.cos(phi), np.sin(phi), 0]), np.array([-np.sin(phi), np.cos(phi), 0])
-        corners = [base + 0.05 * along + (0, 0, 0.02), base + 0.20 * along + (0, 0, 0.02)]
-        corners += [base + 0.05 * along + (0, 0, 0.34), base + 0.20 * along + (0, 0, 0.045)]
-        braces.append(hull([c + s * across for c in corners for s in (-0.006, 0.006)]))
-    return joined(column, plates, braces, screws(shifted(base, 0, 0, 0.025), 0.165))
 
 
-def bed_plate(points: Points) -> trimesh.Trimesh:
-    """Machined bed plate with T-slots along the car: planks with gaps, wide enough for shaker and stands."""
-    right, left = points["tyre_patch_fr"], points["tyre_patch_fl"]
-    x_low = min(right[0], left[0]) - 0.75
-    x_high = max(points["rear_support_right"][0], points["rear_support_left"][0]) + 0.75
-    y_low, y_high = left[1] - 0.60, right[1] + 0.60
+def bed_plate(points: Points, size: Sizes) -> list[Piece]:
+    """Machined bed plate with T-slots along the car: planks with gaps, wide enough for all that stands on it."""
+    low, high = (pick(list(points.values()), axis=0) for pick in (np.min, np.max))
+    x_low, x_high, y_low, y_high = low[0] - 0.75, high[0] + 0.75, low[1] - 0.60, high[1] + 0.60
     edges = np.linspace(y_low, y_high, PLANKS + 1)
     planks = [box((x_low, a + 0.011, 0.004), (x_high, b - 0.011, BED_TOP)) for a, b in itertools.pairwise(edges)]
-    return joined(planks, box((x_low + 0.01, y_low + 0.02, 0.0), (x_high - 0.01, y_high - 0.02, BED_TOP - 0.022)))
+    bed = box((x_low + 0.01, y_low + 0.02, 0.0), (x_high - 0.01, y_high - 0.02, BED_TOP - 0.022))
+    return [Piece("", joined(planks, bed), palette.BED, held=True)]

@@ -1,161 +1,94 @@
-"""All visible shapes of the complete car on its rig."""
+"""The car on its rig as parts with roles: two wheels on plates, the rear of the body on rubber blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
-import trimesh
 
-from vehicle.shapes import (
-    body_shell,
-    body_trim,
-    cabin,
-    engine,
-    palette,
-    rig,
-    strut,
-    suspension,
-    underbody,
-    wheel,
-)
-from vehicle.shapes.body_outline import outline
-from vehicle.shapes.hardpoint import Points, checked_dimensions, checked_points, right_handed
-from vehicle.shapes.placement import joined, mirrored
-from vehicle.shapes.shape import Colour, Shape
+from vehicle.shapes.roles import Part, part_shapes
+from vehicle.shapes.shape import Shape
 
-SHELL: Final = (
-    "body_shell",
-    "body_painted",
-    "body_trim",
-    "body_rails",
-    "body_lamps_front",
-    "body_lamps_rear",
-    "body_plates",
-    "body_glass",
+SHELL: Final = tuple(
+    f"body_{name}" for name in ("shell", "painted", "trim", "rails", "lamps_front", "lamps_rear", "plates", "glass")
 )
 """shapes that hide the chassis: make them translucent together, and leave `body_lining` out then"""
 
+BODY: Final = (
+    "floor",
+    "front_structure",
+    "subframe",
+    "exhaust",
+    "engine_mounts",
+    "support_shoes",
+    "cabin",
+    "estate_body",
+)
+CORNER: Final = {
+    "a_arm": "lower_arm",
+    "knuckle": "knuckle",
+    "brake_disc": "brake_disc",
+    "caliper": "caliper",
+    "tyre": "wheel",
+    "damper_bottom": "damper_tube",
+    "damper_top": "damper_rod",
+    "suspension_mount": "top_mount",
+    "main_spring": "coil_spring",
+    "steering_rod": "steering_rod",
+    "stabilizer_half": "stabilizer_half",
+    "stabilizer_rod": "stabilizer_rod",
+}
+"""part of a corner to its role"""
 
-def car_shapes(points: Mapping[str, np.ndarray], dimensions: Mapping[str, float] | None = None) -> dict[str, Shape]:
+WHEEL: Final = "wheel_center_"
+SUPPORT: Final = "rear_support_"
+
+
+def car_shapes(points: Mapping[str, np.ndarray]) -> dict[str, Shape]:
     """Every visible shape of car and rig at the design position.
 
     Args:
-        points: hardpoints [m] in the vehicle frame, side points with suffix `_fr` or `_fl`
-        dimensions: drawn sizes [m] that replace those of `hardpoint.DIMENSIONS`
+        points: hardpoints [m] in the vehicle frame; those of a corner end in the name of its wheel
 
     Returns:
         shapes by name, in a fixed order; the name is fit for a file
-
-    Raises:
-        ConfigurationError: a hardpoint is missing or not finite, or a dimension unknown or not positive
     """
-    hardpoints, size = checked_points(points), checked_dimensions(dimensions)
-    shapes = body_shapes(hardpoints, size) | engine_shapes(hardpoints)
-    for side in ("fr", "fl"):
-        shapes |= corner_shapes(hardpoints, size, side)
-    return shapes | rig_shapes(hardpoints)
+    return part_shapes(car_parts(points))
 
 
-def body_shapes(points: Points, size: Mapping[str, float]) -> dict[str, Shape]:
-    """Shell, glass, trim, cabin and the structure underneath: all on the part `body`."""
-    body = outline(points, size)
-    house = [
-        underbody.wheel_house(body, axle, depth)
-        for axle, depth in ((0, underbody.FRONT_HOUSE_DEPTH), (1, underbody.REAR_HOUSE_DEPTH))
-    ]
-    meshes: dict[str, tuple[trimesh.Trimesh, Colour]] = {
-        "body_floor": (underbody.floor(body, points), palette.FLOOR),
-        "body_front_structure": (underbody.front_structure(body, points, size), palette.STAND),
-        "body_subframe": (underbody.subframe(points), palette.DARK_STEEL),
-        "body_rack_bellows": (underbody.rack_bellows(points), palette.RUBBER),
-        "body_exhaust": (underbody.exhaust(points), palette.CAST),
-        "body_engine_mounts": (engine.side_mounts(points), palette.DARK_STEEL),
-        "body_support_shoes": (
-            joined([rig.support_shoe(points[f"rear_support_{side}"]) for side in ("right", "left")]),
-            palette.STAND,
-        ),
-        "body_seats": (cabin.seats(points), palette.SEAT),
-        "body_seat_rails": (cabin.seat_rails(points), palette.STEEL),
-        "body_dashboard": (cabin.dashboard(points), palette.TRIM),
-        "body_lining": (joined(body_shell.lining(body), house), palette.LINING),
-        "body_shell": (body_shell.sheet_metal(body), palette.BODY),
-        "body_painted": (body_trim.painted_parts(body), palette.BODY),
-        "body_trim": (body_trim.dark_trim(body), palette.TRIM),
-        "body_rails": (body_trim.roof_rails(body), palette.CHROME),
-        "body_lamps_front": (body_trim.headlamps(body), palette.HEADLAMP),
-        "body_lamps_rear": (body_trim.tail_lamps(body), palette.TAIL_LAMP),
-        "body_plates": (body_trim.plates(body), palette.CHROME),
-        "body_glass": (body_shell.glass(body), palette.GLASS),
+def car_parts(points: Mapping[str, np.ndarray]) -> Iterator[Part]:
+    """The parts of the car and of its rig: a shaker under each wheel on the right, a pedestal under the others.
+
+    Args:
+        points: hardpoints as for `car_shapes`
+    """
+    wheels = [name.removeprefix(WHEEL) for name in points if name.startswith(WHEEL)]
+    wheels.sort(key=lambda wheel: -points[WHEEL + wheel][1])
+    corners = {
+        wheel: {name.removesuffix(f"_{wheel}"): points[name] for name in points if name.endswith(f"_{wheel}")}
+        for wheel in wheels
     }
-    return {name: Shape(mesh=mesh, rgba=rgba, part="body") for name, (mesh, rgba) in meshes.items()}
-
-
-def engine_shapes(points: Points) -> dict[str, Shape]:
-    """Engine with gearbox, and the torque arm."""
-    meshes: dict[str, tuple[trimesh.Trimesh, Colour, str]] = {
-        "engine_castings": (engine.castings(points), palette.ALUMINIUM, "engine"),
-        "engine_block": (engine.cylinder_block(points), palette.CAST, "engine"),
-        "engine_covers": (engine.covers(points), palette.ENGINE_DARK, "engine"),
-        "engine_pulleys": (engine.pulleys(points), palette.STEEL, "engine"),
-        "engine_belt": (engine.belt(points), palette.RUBBER, "engine"),
-        "engine_mount_rubber": (engine.mount_rubber(points), palette.RUBBER, "engine"),
-        "engine_bolt": (engine.torque_arm_bolt(points), palette.STEEL, "engine"),
-        "torque_arm": (engine.torque_arm(points), palette.LINK, "torque_arm"),
-        "torque_arm_rubber": (engine.torque_arm_rubber(points), palette.RUBBER, "torque_arm"),
-    }
-    return {name: Shape(mesh=mesh, rgba=rgba, part=part) for name, (mesh, rgba, part) in meshes.items()}
-
-
-def corner_shapes(points: Points, size: Mapping[str, float], side: str) -> dict[str, Shape]:
-    """Suspension and wheel of one side, drawn on the right and mirrored for the left."""
-    p = right_handed(points, side)
-    meshes: dict[str, tuple[trimesh.Trimesh, Colour, str]] = {
-        "a_arm": (suspension.a_arm(p), palette.CAST, "a_arm"),
-        "a_arm_rubber": (suspension.a_arm_rubber(p), palette.RUBBER, "a_arm"),
-        "a_arm_bolts": (suspension.a_arm_bolts(p), palette.STEEL, "body"),
-        "knuckle": (suspension.knuckle(p, size), palette.STEEL, "knuckle"),
-        "brake_disc": (wheel.brake_disc(p, size), palette.DISC, "brake_disc"),
-        "caliper": (wheel.caliper(p, size), palette.CALIPER, "caliper"),
-        "tyre": (wheel.tyre(p, size), palette.RUBBER, "tyre"),
-        "rim": (wheel.rim(p, size), palette.RIM, "tyre"),
-        "wheel_bolts": (wheel.wheel_bolts(p, size), palette.DARK_STEEL, "tyre"),
-        "damper_bottom": (strut.damper_housing(p, size), palette.DAMPER, "damper_bottom"),
-        "spring_seat_lower": (strut.lower_seat(p, size), palette.DARK_STEEL, "damper_bottom"),
-        "damper_top": (strut.piston_rod(p), palette.ROD, "damper_top"),
-        "spring_seat_upper": (strut.upper_seat(p, size), palette.DARK_STEEL, "damper_top"),
-        "bump_stop": (strut.bump_stop(p), palette.RUBBER, "damper_top"),
-        "suspension_mount": (strut.top_mount_rubber(p), palette.RUBBER, "suspension_mount"),
-        "suspension_mount_steel": (strut.top_mount_steel(p), palette.STEEL, "suspension_mount"),
-        "main_spring": (strut.coil_spring(p, size), palette.SPRING, "main_spring"),
-        "steering_rod": (suspension.steering_rod(p), palette.LINK, "steering_rod"),
-        "stabilizer_half": (suspension.stabilizer_half(p), palette.LINK, "stabilizer_half"),
-        "stabilizer_bushing": (suspension.stabilizer_bushing(p), palette.RUBBER, "body"),
-        "stabilizer_rod": (suspension.stabilizer_rod(p), palette.LINK, "stabilizer_rod"),
-    }
-    return {
-        f"{name}_{side}": Shape(
-            mesh=mesh if side == "fr" else mirrored(mesh), rgba=rgba, part=part if part == "body" else f"{part}_{side}"
-        )
-        for name, (mesh, rgba, part) in meshes.items()
-    }
-
-
-def rig_shapes(points: Points) -> dict[str, Shape]:
-    """Shaker, pedestal, stands and bed plate; only both plates may move."""
-    right, left = points["tyre_patch_fr"], points["tyre_patch_fl"]
-    supports = {side: points[f"rear_support_{side}"] for side in ("right", "left")}
-    meshes: dict[str, tuple[trimesh.Trimesh, Colour, str]] = {
-        "plate_fr": (rig.shaker_table(right), palette.PLATE, "plate_fr"),
-        "plate_inserts_fr": (rig.table_inserts(right), palette.DARK_STEEL, "plate_fr"),
-        "plate_fl": (rig.fixed_plate(left), palette.PLATE, "plate_fl"),
-        "shaker_fr": (rig.shaker_body(right), palette.SHAKER, "world"),
-        "shaker_frame_fr": (rig.shaker_frame(right), palette.STAND, "world"),
-        "pedestal_fl": (rig.pedestal(left), palette.STAND, "world"),
-        "bed_plate": (rig.bed_plate(points), palette.BED, "world"),
-    }
+    supports = {name.removeprefix(SUPPORT): points[name] for name in sorted(points)[::-1] if name.startswith(SUPPORT)}
+    middle = {**points, **corners[wheels[0]]}
+    middle |= {"roof": points["roof_left_rear"], "rear_axle": next(iter(supports.values()))}
+    for role in BODY:
+        yield Part(name="body", role=role, points=supports if role == "support_shoes" else middle)
+    yield Part(name="engine", role="engine", points=middle)
+    yield Part(name="torque_arm", role="torque_arm", points=middle)
+    for wheel, corner in corners.items():
+        left = bool(corner["wheel_center"][1] < 0.0)
+        for part, role in CORNER.items():
+            yield Part(name=part, role=role, points=corner, suffix=f"_{wheel}", left=left)
+    right = {wheel: corner["wheel_center"][1] > 0.0 for wheel, corner in corners.items()}
+    for wheel, corner in corners.items():
+        plate = "shaker_table" if right[wheel] else "fixed_plate"
+        yield Part(name="plate", role=plate, points=corner, suffix=f"_{wheel}")
+    for wheel, corner in corners.items():
+        under = "shaker" if right[wheel] else "pedestal"
+        yield Part(name=under, role=under, points=corner, suffix=f"_{wheel}", carrier="world")
+    standing = {wheel: corner["tyre_patch"] for wheel, corner in corners.items()} | supports
+    yield Part(name="bed_plate", role="bed_plate", points=standing, carrier="world")
     for side, support in supports.items():
-        meshes[f"rubber_block_{side}"] = (rig.rubber_block(support), palette.RUBBER, "world")
-        meshes[f"stand_{side}"] = (rig.stand(support), palette.STAND, "world")
-    return {name: Shape(mesh=mesh, rgba=rgba, part=part) for name, (mesh, rgba, part) in meshes.items()}
+        block = {"support": support}
+        yield Part(name="rubber_block", role="rear_block", points=block, suffix=f"_{side}", carrier="world")

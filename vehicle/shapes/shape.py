@@ -1,8 +1,10 @@
-"""One visible shape: a mesh in vehicle coordinates, its colour and the rigid part that carries it."""
+"""What is drawn of a part: its pieces as its role draws them, its sizes, and the shapes that come of them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final, NamedTuple
 
 import numpy as np
 import trimesh
@@ -10,6 +12,34 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Colour = tuple[float, float, float, float]
+Points = Mapping[str, Array]
+Sizes = Mapping[str, float]
+
+SIZES: Final[dict[str, float]] = {
+    "tyre_section_width": 0.195,  # 195/60 R15
+    "tyre_deflection": 0.0125,  # free radius 0.3075 m of 195/60 R15 minus the loaded 0.295 m
+    "rim_diameter": 0.381,  # 15 inch
+    "brake_disc_radius": 0.129,  # assumed: 258 mm front disc
+    "damper_tube_radius": 0.0255,  # assumed
+    "spring_coil_radius": 0.070,  # assumed
+    "spring_wire_radius": 0.006,  # assumed
+    "spring_turns": 5.5,  # assumed
+    "rear_overhang": 0.985,  # 4.45 m of the estate minus the rear axle at 3.465 m
+}
+"""drawn sizes [m] (turns: number) that points do not give; the pictures' own, no physics reads them"""
+
+
+class Piece(NamedTuple):
+    """One mesh of a part."""
+
+    name: str
+    """empty or with a leading underscore: goes behind the part's name; else it stands alone"""
+    mesh: trimesh.Trimesh
+    """triangles with outward normals, vertices [m]"""
+    rgba: Colour
+    """colour and opacity, each between 0 and 1"""
+    held: bool = False
+    """moves with what carries the part, not with the part"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,15 +1,13 @@
-"""Patches, slabs, blocks, curves and placements."""
+"""Curves, the surfaces between them, and placements."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from vehicle.shapes.block import box
-from vehicle.shapes.curve import bezier, rounded, spline
-from vehicle.shapes.lathe import drum
-from vehicle.shapes.patch import coons, grid, ruled_slab
 from vehicle.shapes.placement import axis_rotation, joined, mirrored, placed
+from vehicle.shapes.solids import drum
+from vehicle.shapes.surface import bezier, coons, grid, rounded, spline
 
 
 def test_a_coons_patch_passes_through_its_four_edges() -> None:
@@ -41,27 +39,6 @@ def test_a_grid_drops_triangles_that_shrink_to_a_line() -> None:
     assert len(mesh.faces) == 3
     assert mesh.area == pytest.approx(0.5 + 0.5 + 0.375, rel=1e-12)
     assert np.sign(grid(fan, flip=True).face_normals[:, 2]) == pytest.approx(-np.sign(mesh.face_normals[:, 2]))
-
-
-def test_a_slab_has_area_times_thickness_whatever_its_edges_direction() -> None:
-    a = np.column_stack([np.linspace(0, 2, 5), np.zeros(5), np.zeros(5)])
-    b = np.column_stack([np.linspace(0, 2, 5), np.full(5, 0.5), np.zeros(5)])
-    for edge_a, edge_b in ((a, b), (b, a)):
-        slab = ruled_slab(edge_a, edge_b, np.array([0, 0, 0.05]))
-        assert slab.is_watertight
-        assert slab.volume == pytest.approx(2 * 0.5 * 0.1, rel=1e-12)
-
-
-def test_a_bevelled_box_loses_its_edges_and_corners() -> None:
-    size, bevel = np.array([0.4, 0.3, 0.2]), 0.03
-    inner = size - 2 * bevel
-    # core, six slabs on its faces, twelve triangular prisms, eight corner tetrahedra
-    exact = np.prod(inner) + 2 * bevel * (inner[0] * inner[1] + inner[1] * inner[2] + inner[2] * inner[0])
-    exact += 4 * 0.5 * bevel**2 * inner.sum() + 8 * bevel**3 / 6
-    mesh = box(-size / 2, size / 2, bevel)
-    assert mesh.is_watertight
-    assert mesh.volume == pytest.approx(exact, rel=1e-12)
-    assert box(size / 2, -size / 2).volume == pytest.approx(np.prod(size), rel=1e-12)
 
 
 def test_a_spline_passes_through_its_points_and_keeps_a_straight_line() -> None:

@@ -1,13 +1,15 @@
-"""Curves in space: smooth curves through points, rounded corners, helices."""
+"""Curves and the open surfaces between them: smooth curves, rounded corners, helices, grids, Coons patches."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
+import trimesh
 from numpy.typing import ArrayLike
 
 from vehicle.shapes.shape import Array
+from vehicle.shapes.solids import quads
 
 
 def spline(points: ArrayLike, count: int) -> Array:
@@ -82,6 +84,44 @@ def helix(radius: float | Callable[[Array], Array], low: float, high: float, tur
     return np.column_stack([r * np.cos(phi), r * np.sin(phi), low + (high - low) * share])
 
 
-def length(points: ArrayLike) -> float:
-    """Length of a polyline [m]."""
-    return float(np.linalg.norm(np.diff(np.asarray(points, dtype=float), axis=0), axis=1).sum())
+def grid(points: Array, *, flip: bool = False) -> trimesh.Trimesh:
+    """Triangles through a grid of points; the normal is (second index direction) x (first), turned by `flip`.
+
+    Args:
+        points: shape (m, n, 3) [m]; rows or columns may shrink to a point, the empty triangles are left out
+        flip: turn the normals
+
+    Returns:
+        open mesh, equal vertices merged
+    """
+    m, n = points.shape[:2]
+    index = np.arange(m * n).reshape(m, n)
+    faces = quads(index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1])
+    vertices = points.reshape(-1, 3)
+    p, q, r = (vertices[faces[:, k]] for k in range(3))
+    area = np.linalg.norm(np.cross(q - p, r - p), axis=1)
+    faces = faces[area > 1e-12]
+    return trimesh.Trimesh(vertices, faces[:, ::-1] if flip else faces, process=True)
+
+
+def coons(bottom: Array, top: Array, left: Array, right: Array) -> Array:
+    """The bilinearly blended surface between four boundary curves.
+
+    S(u, v) = (1-v) bottom(u) + v top(u) + (1-u) left(v) + u right(v) - bilinear blend of the four corners
+
+    Args:
+        bottom: curve at v = 0, shape (n, 3), from the left to the right
+        top: curve at v = 1, shape (n, 3)
+        left: curve at u = 0, shape (m, 3), from the bottom to the top
+        right: curve at u = 1, shape (m, 3)
+
+    Returns:
+        points, shape (m, n, 3), v along the first index
+
+    Source: S. A. Coons, Surfaces for computer-aided design of space forms, MIT MAC-TR-41, 1967.
+    """
+    u = np.linspace(0, 1, len(bottom))[None, :, None]
+    v = np.linspace(0, 1, len(left))[:, None, None]
+    corners = (1 - u) * (1 - v) * bottom[0] + u * (1 - v) * bottom[-1] + (1 - u) * v * top[0] + u * v * top[-1]
+    surface: Array = (1 - v) * bottom + v * top + (1 - u) * left[:, None] + u * right[:, None] - corners
+    return surface
