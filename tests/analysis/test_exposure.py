@@ -6,7 +6,6 @@ from vehicle.analysis.exposure import (
     estimated_vibration_dose_value,
     motion_sickness_dose_value,
     mtvv,
-    seat_value,
     vector_sum,
     vibration_dose_value,
     weighted_rms,
@@ -88,12 +87,6 @@ def test_the_dose_of_a_tiny_or_huge_record_neither_vanishes_nor_overflows():
 
 def test_a_record_of_zeros_has_no_crest_factor():
     assert crest_factor(np.zeros(100)) is None
-
-
-def test_seat_value_is_the_ratio_of_the_same_measure():
-    assert seat_value(0.3, 0.6) == 0.5
-    with pytest.raises(DataError, match=r"SEAT value: found 0.3 on the seat and 0.0 below"):
-        seat_value(0.3, 0.0)
 
 
 def test_vector_sums():

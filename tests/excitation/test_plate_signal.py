@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from vehicle.errors import DataError
-from vehicle.excitation.plausibility import require_duration
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal, uniform_time
 
@@ -123,13 +122,3 @@ def test_plate_motion_is_not_extrapolated(time):
 def test_a_time_that_rounding_carried_beyond_the_record_is_its_end():
     motion = hertz(10.0).plate_motion([1.0 + 1e-12, -1e-12])
     assert np.array_equal(motion.time, [1.0, 0.0])
-
-
-def test_require_duration():
-    signal = random_road(rms=1e-4, seed=1, duration=18.0)
-    require_duration(signal, window=4.0, averages=8, overlap=0.5)  # 4 (1 + 7/2) = 18 s exactly
-    with pytest.raises(DataError) as caught:
-        require_duration(signal, window=4.0, averages=8, overlap=0.0)
-    assert "record of 18 s; 8 averages of 4 s (resolution 0.25 Hz, overlap 0 %) need 32 s; record longer" in str(
-        caught.value
-    )

@@ -1,4 +1,4 @@
-"""Vibration exposure of a weighted acceleration: RMS, MTVV, crest factor, VDV, MSDV, SEAT and vector sums."""
+"""Vibration exposure of a weighted acceleration: RMS, MTVV, crest factor, VDV, MSDV and vector sums."""
 
 from __future__ import annotations
 
@@ -92,18 +92,6 @@ def estimated_vibration_dose_value(rms: float, duration_s: float) -> float:
 def motion_sickness_dose_value(time_step: float, weighted: ArrayLike) -> float:
     """Return MSDV = sqrt(int a_w^2 dt) [m/s^1.5] of a record (n,) weighted by Wf. Source: ISO 2631-1:1997, annex D."""
     return float(np.sqrt(np.sum(_one(weighted) ** 2) * checked_time_step(time_step)))
-
-
-def seat_value(seat: float, base: float) -> float:
-    """Return SEAT = seat / base [-]: the same measure (weighted RMS or VDV) on the seat and on the floor below it.
-
-    Below 1 the seat isolates. Both weighted alike (Wk vertically); the VDV is for shocks.
-
-    Source: ISO 10326-1; Griffin, Handbook of Human Vibration, chapter 9.
-    """
-    if not (np.isfinite([seat, base]).all() and seat >= 0.0 and base > 0.0):
-        raise DataError(f"SEAT value: found {seat!r} on the seat and {base!r} below; allowed are >= 0 and > 0")
-    return float(seat / base)
 
 
 def vector_sum(values: Sequence[float], factors: Sequence[float], *, power: float = 2.0) -> float:

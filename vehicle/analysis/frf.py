@@ -82,7 +82,7 @@ def frequency_response(
     window, rho = 1 - (2 pi^2/3) (tau/window_s)^2 + ... for Hann. So a peak with the time constant
     tau0 = 1/(2 pi zeta f) is low by about (4 pi^2/3) (tau0/window_s)^2 while that is small: 1.0 % at 28 Hz with 5 %
     damping and 4 s; at 20 Hz with 1 % it is 25 %, and 3 % with 16 s. The coherence drops there although nothing is
-    noisy. Use a longer window, or a periodic input with `periodic_response`, which has no leakage.
+    noisy. Use a longer window.
 
     A line that the excitation does not reach (a band-limited input below its lower edge) shows the leak of its
     neighbours only; choose the band within the band of the input.

@@ -85,11 +85,6 @@ def periodogram(time_step: float, signals: ArrayLike) -> PowerSpectralDensity:
     )
 
 
-def cumulative_rms(spectrum: PowerSpectralDensity) -> NDArray[np.float64]:
-    """Return the RMS of all lines up to and including each one, sqrt(cumsum(S df)), shape (k, m)."""
-    return np.asarray(np.sqrt(np.cumsum(spectrum.density, axis=1) * spectrum.resolution_hz))
-
-
 def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> PowerSpectralDensity:
     """Return the periodogram of the whole record, cut to the lines in the closed band [Hz].
 

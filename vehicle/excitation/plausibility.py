@@ -11,7 +11,6 @@ from scipy import fft
 from scipy.signal import butter, sosfiltfilt
 
 from vehicle.errors import DataError
-from vehicle.excitation.signal import Signal
 
 LARGEST_DISPLACEMENT = 0.15
 """Largest plausible |z| [m]: beyond it a plate leaves the stroke of a rig and a wheel the ground."""
@@ -117,28 +116,3 @@ def aliasing_notices(displacement: Mapping[str, NDArray[np.float64]], timestep: 
         for wheel, share in shares.items()
         if share > ALIAS_SHARE
     )
-
-
-def require_duration(signal: Signal, *, window: float = 4.0, averages: int = 8, overlap: float = 0.5) -> None:
-    """Refuse a signal too short for `averages` FRF windows.
-
-    T = window (1 + (averages - 1) (1 - overlap))
-
-    Args:
-        signal: the excitation.
-        window: length of a window [s]; the frequency resolution is 1/window.
-        averages: windows needed [-]; with one the coherence is 1 by definition.
-        overlap: share of a window that the next one repeats [-].
-
-    Raises:
-        DataError: the signal is shorter.
-
-    Source: Bendat and Piersol, Random Data, 4th edition (a coherence of one average is always 1).
-    """
-    needed = window * (1.0 + (averages - 1) * (1.0 - overlap))
-    if signal.duration < needed - 0.5 * signal.timestep:
-        raise DataError(
-            f"{signal.source}: record of {signal.duration:.6g} s; {averages} averages of {window:g} s (resolution "
-            f"{1.0 / window:g} Hz, overlap "
-            f"{100 * overlap:g} %) need {needed:.6g} s; record longer or ask for a coarser resolution"
-        )
