@@ -22,10 +22,10 @@ from scenarios.study import car_study, computed_by, estimator_text, setting
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
 from vehicle.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal
 from vehicle.excitation.slip_set import sets_text
 
 QUICK_DURATION = 5.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from vehicle.car import Car, Run
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal
 
 
 @pytest.fixture(scope="session")

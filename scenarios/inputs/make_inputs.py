@@ -7,10 +7,10 @@ from pathlib import Path
 
 from vehicle.excitation.band import LOWEST_FREQUENCY_HZ, SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER, UPPER_BAND_EDGE_HZ
 from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
-from vehicle.excitation.csv_output import write_signal
 from vehicle.excitation.input_files import INPUT_FOLDER
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import write_signal
 
 LEVELS = {"low": 1.06e-4, "mid": 3.17e-4, "high": 5.25e-4}
 """RMS of the displacement [m] (thesis sections 3.2 and 3.3)."""

@@ -14,16 +14,15 @@ from scenarios.car_runs import CarRuns, Case
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal
 from vehicle.output.folder import write_whole
 from vehicle.output.run_files import FRAME
-from vehicle.output.tables import write_frf
 from vehicle.parameters.paths import overrides_of, value_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle
-from vehicle.tuning.frf_file import read_frf
+from vehicle.records.frf import read_frf, write_frf
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.record_target import RecordTarget
 

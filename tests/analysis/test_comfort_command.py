@@ -114,10 +114,11 @@ def test_bad_data_exits_3_and_a_bad_path_2(tmp_path, capsys):
     assert main(["--input", str(path)]) == 3
     assert capsys.readouterr() == (
         "",
-        f"error: {path}:3: column 'y' holds 'nan', needed is a finite number; repair or cut the record\n",
+        f"error: {path}:3:3: column 'y [m/s2]' holds 'nan'; allowed are finite numbers; repair the cell or cut the "
+        "record\n",
     )
     assert main(["--input", str(tmp_path / "nix.csv")]) == 2
-    assert capsys.readouterr() == ("", f"error: {tmp_path / 'nix.csv'}: no such file\n")
+    assert capsys.readouterr() == ("", f"error: {tmp_path / 'nix.csv'}: no such file; give the path of a CSV file\n")
     assert main(["--input", str(path), "--place", "sofa"]) == 2
     assert "point of contact: found 'sofa', allowed are seat" in capsys.readouterr().err
 
@@ -134,10 +135,10 @@ def test_a_traceback_appears_with_debug_only(tmp_path, capsys):
 
 
 def test_an_interrupt_exits_130(ride, capsys, monkeypatch):
-    def interrupted(path):
+    def interrupted(path, place):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("vehicle.analysis.acceleration_record.read_acceleration", interrupted)
+    monkeypatch.setattr("vehicle.records.acceleration.read_acceleration", interrupted)
     assert main(["--input", "any.csv"]) == 130
 
 

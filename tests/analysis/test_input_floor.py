@@ -6,8 +6,8 @@ import pytest
 from tests.benchmarks.frf_accuracy import banded_input
 from vehicle.analysis.input_floor import rounding_step, tapered_power
 from vehicle.analysis.local_rational import local_rational_response
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
+from vehicle.excitation.signal_file import read_signal
 
 STEP = 1.0 / 2048.0
 SECONDS = 30.0

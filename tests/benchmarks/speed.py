@@ -20,9 +20,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.car import Car
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal
 from vehicle.names import AXES, WHEELS, acceleration_channels
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.element_rows import ElementRows, prepare_model

@@ -9,9 +9,9 @@ import pytest
 
 from tests.excitation.csv_samples import HEADER, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.excitation import csv_text
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.plausibility import band_limited_acceleration
+from vehicle.excitation.signal_file import read_signal
+from vehicle.records import text as csv_text
 
 NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
 
@@ -33,7 +33,7 @@ def refused_lines(folder: Path, lines: list[str]) -> str:
 def test_1_empty_file(tmp_path):
     path = tmp_path / "empty.csv"
     path.write_bytes(b"")
-    expected = ": the file is empty; needed is a header line 'time [s],displacement [m]' and one row per sample"
+    expected = ": the file is empty; needed are a header line with units and one row per sample"
     assert refused(path) == expected
     path.write_bytes(b" \n\n")
     assert refused(path) == expected

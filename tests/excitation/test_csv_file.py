@@ -9,12 +9,11 @@ import pytest
 
 from tests.excitation.csv_samples import HEADER, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError, OutputError
-from vehicle.excitation.csv_file import read_signal
-from vehicle.excitation.csv_output import write_signal
 from vehicle.excitation.input_files import find_input, shipped_inputs
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.rest import half_cosine
 from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.excitation.signal_file import read_signal, write_signal
 
 CLEAN = np.array([float(row.split(",")[1]) for row in rows()])
 

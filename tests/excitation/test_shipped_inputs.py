@@ -9,8 +9,8 @@ import pytest
 from scenarios.inputs.make_inputs import HEIGHTS, LEVELS
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.bump import bump_shape
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import INPUT_FOLDER, find_input, shipped_inputs
+from vehicle.excitation.signal_file import read_signal
 
 NAMES = [f"{name}.csv" for name in (*LEVELS, *HEIGHTS)]
 

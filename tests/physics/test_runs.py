@@ -9,10 +9,10 @@ import pytest
 
 from tests.periodic import multisine, periodic_response
 from vehicle.car import Car
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal
 from vehicle.names import AXES, acceleration_channels
 from vehicle.parameters.vehicle import load_vehicle
 

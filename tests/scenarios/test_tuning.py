@@ -12,9 +12,9 @@ from tests.tuning.two_masses import TRUE, MeasuredMasses
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
-from vehicle.output.tables import write_frf
 from vehicle.parameters.paths import value_of
 from vehicle.parameters.ranges import Range
+from vehicle.records.frf import write_frf
 from vehicle.tuning.fit import fit
 from vehicle.tuning.full_steps import FullSteps
 

@@ -11,9 +11,9 @@ import pytest
 from tests.benchmarks.frf_accuracy import banded_input
 from vehicle.car import Car
 from vehicle.errors import DataError
-from vehicle.excitation.csv_output import write_signal
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import write_signal
 from vehicle.names import acceleration_channels, channel_units
 from vehicle.output.written_files import MARKER, written
 from vehicle.parameters.vehicle import load_vehicle
@@ -150,7 +150,7 @@ def test_published_modes(capsys):
 def test_run_in_python(short_signal: Path):
     """The five lines of the README."""
     from vehicle.car import Car
-    from vehicle.excitation.csv_file import read_signal
+    from vehicle.excitation.signal_file import read_signal
 
     run = Car.load().run(read_signal(short_signal))
     assert run["seat_rail_acc_z"].shape == run.time.shape

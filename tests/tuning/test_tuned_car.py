@@ -10,8 +10,8 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.bump import bump
 from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range
+from vehicle.records.frf import FrfData
 from vehicle.tuning.fit import fit
-from vehicle.tuning.frf_file import FrfData
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.full_steps import SMALL, full_steps
 from vehicle.tuning.record_target import RecordTarget

@@ -18,7 +18,10 @@ def parser() -> Parser:
         "comfort", "Weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums of a record of acceleration."
     )
     found.add_argument(
-        "--input", required=True, metavar="FILE.csv", help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g])"
+        "--input", required=True, metavar="FILE", help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g])"
+    )
+    found.add_argument(
+        "--channel", metavar="PLACE", help="point of a run, as seat_rail in its time.csv or time.npz; columns x, y, z"
     )
     found.add_argument("--json", action="store_true", help="print the result as JSON")
     found.add_argument(
@@ -52,12 +55,12 @@ def parser() -> Parser:
 
 def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     """Read, treat the offset as asked, and evaluate."""
-    from vehicle.analysis.acceleration_record import read_acceleration
     from vehicle.analysis.evaluation import AXES, application, evaluate
     from vehicle.analysis.offset import LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line, without_offset
+    from vehicle.records.acceleration import read_acceleration
 
     application(options.place)
-    record = read_acceleration(options.input)
+    record = read_acceleration(options.input, options.channel)
     mean = record.xyz.mean(axis=1)
     line = offset_line(record.xyz)
     drift = line[:, -1] - line[:, 0]

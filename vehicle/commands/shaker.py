@@ -57,8 +57,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
-    from vehicle.excitation.csv_file import read_signal
     from vehicle.excitation.input_files import find_input
+    from vehicle.excitation.signal_file import read_signal
     from vehicle.output.folder import check_output, output_folder
 
     source = find_input(options.input)

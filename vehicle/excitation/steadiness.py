@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle.excitation.time_grid import PAUSE
+from vehicle.records.clock import PAUSE
 
 DRIFT_SHARE = 1.0
 """Drift from the beginning to the end, as a share of the RMS about it, from which it is mentioned [-]. A stationary

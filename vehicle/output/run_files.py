@@ -19,9 +19,11 @@ from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.names import AXES, WHEELS, acceleration_channels
 from vehicle.output.folder import write_json, write_whole
-from vehicle.output.tables import write_frf, write_time_csv, write_time_npz
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text
+from vehicle.records.formats import FORMATS
+from vehicle.records.frf import write_frf
+from vehicle.records.table import Record
 from vehicle.rendering.plots import plot_frf, plot_time
 
 COMFORT_PLACES = ("seat_rail", "seat")
@@ -76,8 +78,8 @@ def write_run(
     }
     header = f"parameters of this run, as used\nframe: {FRAME}"
     write_whole(folder / "vehicle.toml", lambda path: _write(path, write_text(run.car.vehicle, header)))
-    writer = write_time_npz if time_format == "npz" else write_time_csv
-    write_whole(folder / files["time"], lambda path: writer(path, run.recording, FRAME))
+    record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
+    write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, FRAME))
     write_whole(folder / "frf.csv", lambda path: write_frf(path, response, acceleration_channels(), FRAME))
     caption = _caption(run, response)
     write_whole(folder / "frf.png", lambda path: plot_frf(path, run, response, caption))

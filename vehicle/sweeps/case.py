@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Protocol
 
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.csv_file import read_signal
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal
 
 
 class Input(Protocol):

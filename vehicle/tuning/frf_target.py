@@ -13,7 +13,7 @@ from vehicle.car import Car, Run
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS
-from vehicle.tuning.frf_file import FrfData
+from vehicle.records.frf import FrfData
 from vehicle.tuning.log_response import FLOOR, log_deviation, log_ratio
 
 Vector = npt.NDArray[np.float64]

@@ -5,8 +5,7 @@ import pytest
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.output.tables import write_frf
-from vehicle.tuning.frf_file import read_frf
+from vehicle.records.frf import read_frf, write_frf
 
 CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z")
 HEADER = "frequency [Hz],a_magnitude,a_phase [deg],a_coherence"
@@ -70,16 +69,17 @@ def test_selection_by_channel_band_and_spacing(tmp_path):
     ("lines", "message"),
     [
         ([HEADER, *ROWS[:3]], "3 rows of numbers"),
-        (["# only a comment"], "0 rows of numbers"),
+        (["# only a comment"], "only comments; needed are the columns 'frequency"),
         (["f,a_magnitude,a_phase [deg],a_coherence", *ROWS], r"own\.csv:1: no column 'frequency \[Hz\]'"),
         (["frequency [Hz],a_magnitude,a_phase [rad],a_coherence", *ROWS], r"unknown column 'a_phase \[rad\]'"),
         (["frequency [Hz],a_magnitude,a_phase [deg],b_coherence", *ROWS], r"no column 'a_coherence'"),
         (["frequency [Hz],a_magnitude,a_phase [deg],a_magnitude", *ROWS], r"'a_magnitude' appears twice"),
         (["frequency [Hz]", *[row.split(",")[0] for row in ROWS]], "no channel"),
-        (["# note", HEADER, *ROWS, "20,1,2"], r"own\.csv:13: 3 cells, the header has 4"),
-        ([HEADER, *ROWS, "20,1,x,0.5"], r"own\.csv:12: column 'a_phase \[deg\]' holds 'x'"),
-        ([HEADER, *ROWS, "20,1,2,nan"], r"own\.csv:12: column 'a_coherence' holds 'nan'"),
-        ([HEADER, *ROWS, ",1,2,0.5"], r"own\.csv:12: column 'frequency \[Hz\]' holds ''"),
+        (["# note", HEADER, *ROWS, "20,1,2"], r"own\.csv:13:3: the last row has 3 cells, the header 4"),
+        ([HEADER, *ROWS, "20,1,2,nan"], r"own\.csv:12:4: column 'a_coherence' holds 'nan'; .*, or an empty cell"),
+        ([HEADER, *ROWS, "20,inf,2,0.5"], r"own\.csv:12:2: column 'a_magnitude' holds 'inf'"),
+        ([HEADER, *ROWS, "20,1,x,0.5"], r"own\.csv:12:3: column 'a_phase \[deg\]' holds 'x'"),
+        ([HEADER, *ROWS, ",1,2,0.5"], r"own\.csv:12:1: column 'frequency \[Hz\]' holds ''; a frequency is never"),
         ([HEADER, *ROWS, "20,1,2,1.5"], r"own\.csv:12: column 'a_coherence' holds 1\.5; allowed is 0 to 1"),
         ([HEADER, *ROWS, "20,-1,2,0.5"], r"own\.csv:12: column 'a_magnitude' holds -1; allowed is 0 and above"),
         ([HEADER, *ROWS, "3,1,2,0.5"], r"own\.csv:12: column 'frequency \[Hz\]' holds 3 after 10; .*must rise"),
@@ -96,5 +96,5 @@ def test_what_is_no_text_file_is_refused(tmp_path):
         read_frf(tmp_path / "own.csv")
     path = tmp_path / "own.csv"
     path.write_bytes(b"\xff\xfe\x00\x80")
-    with pytest.raises(DataError, match="byte 0 is not UTF-8"):
+    with pytest.raises(DataError, match="the file is UTF-16; allowed is UTF-8"):
         read_frf(path)

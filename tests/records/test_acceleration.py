@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from vehicle.analysis.acceleration_record import read_acceleration
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.records.acceleration import read_acceleration
 
 HEADER = "time [s],x [m/s2],y [m/s2],z [m/s2]"
 ROWS = ["0,0.1,0.2,0.3", "0.001,-0.1,0.4,0.5", "0.002,0.2,-0.2,0.1", "0.003,0.3,0.1,-0.4"]
@@ -35,6 +35,8 @@ def test_a_plain_record_is_read(write):
         pytest.param(lines(*ROWS).replace("\n", "\r\n"), id="CRLF"),
         pytest.param(lines(*ROWS).replace(",", " , "), id="blanks"),
         pytest.param(lines(*ROWS).rstrip(), id="no last line end"),
+        pytest.param(lines(*ROWS).replace(",", "\t"), id="tabs"),
+        pytest.param(lines(*ROWS).replace(",", ";").replace(".", ","), id="semicolons and decimal commas"),
     ],
 )
 def test_harmless_oddities_change_nothing(write, text):
@@ -56,44 +58,50 @@ NEEDED = r"needed are time \[s\], x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", r"ride.csv: empty; needed are a header and samples"),
-        ("# nothing\n\n", r"ride.csv: empty"),
-        (lines(), r"ride.csv: 0 samples after the header, at least 3 are needed"),
-        (lines(*ROWS, header=""), rf"ride.csv:2: unknown column '0'; found 0, 0.1, 0.2, 0.3; {NEEDED}"),
+        ("", r"ride.csv: the file is empty; needed are a header line with units and one row per sample"),
+        ("# nothing\n\n", rf"ride.csv: only comments; {NEEDED.replace('needed are', 'needed are the columns')}"),
+        (lines(), r"ride.csv:1: the file ends after the header"),
+        (lines(*ROWS[:2]), r"ride.csv: 2 samples, at least 3 are needed"),
+        (lines(*ROWS, header=""), rf"ride.csv:2: no column 'time \[s\]'; found '0', '0.1', '0.2', '0.3'; {NEEDED}"),
         (
             lines(*ROWS, header=HEADER.replace("z", "w")),
-            rf"ride.csv:1: unknown column 'w \[m/s2\]'; found time .*{NEEDED}",
+            rf"ride.csv: no column z; found x, y, w; {NEEDED}",
         ),
-        (lines(*ROWS, header="time [s],x [m/s2],y [m/s2]"), rf"ride.csv:1: no column z; found .*{NEEDED}"),
-        (lines(*ROWS, header=HEADER.replace("y", "x")), r"ride.csv:1: column 'x' appears twice"),
-        (lines(*ROWS, header="time,x,y,z"), r"ride.csv:1: column 'time' has the unit '', allowed are \[s\]; write the"),
+        (lines(*ROWS, header="time [s],x [m/s2],y [m/s2]"), r"ride.csv:2:4: row has 4 cells, the header 3"),
+        (lines(*ROWS, header=HEADER.replace("y", "x")), r"ride.csv:1: column 'x \[m/s2\]' appears twice"),
+        (lines(*ROWS, header=HEADER.replace("y [m/s2]", "x [g]")), r"ride.csv:1: column 'x' appears twice"),
+        (
+            lines(*ROWS, header="time,x,y,z"),
+            rf"ride.csv:1: no column 'time \[s\]'; found 'time', 'x', 'y', 'z'; {NEEDED}",
+        ),
         (lines(*ROWS, header=HEADER.replace("x [m/s2]", "x [mm/s2]")), r"column 'x' has the unit 'mm/s2', allowed are"),
-        (lines(*ROWS).replace(",", ";"), r"ride.csv:1: columns are separated by semicolons; save the file with commas"),
-        (lines(*ROWS).replace(",", "\t"), r"ride.csv:1: columns are separated by tabs"),
         (
             lines(*ROWS[:2], "0,002,0.2,-0.2,0.1", ROWS[3]),
-            r"ride.csv:4: 5 values, the header names 4 columns; a decimal",
+            r"ride.csv:4:5: row has 5 cells, the header 4; with decimal commas the columns must be separated by ';'",
         ),
-        (lines(*ROWS[:2], "0.002,0.2,-0.2", ROWS[3]), r"ride.csv:4: 3 values, the header names 4 columns"),
+        (lines(*ROWS[:2], "0.002,0.2,-0.2", ROWS[3]), r"ride.csv:4:3: row has 3 cells, the header 4"),
         (
             lines(*ROWS[:2], "0.002,0.2,nan,0.1", ROWS[3]),
-            r"ride.csv:4: column 'y' holds 'nan', needed is a finite number",
+            r"ride.csv:4:3: column 'y \[m/s2\]' holds 'nan'; allowed are finite numbers; repair",
         ),
-        (lines(*ROWS[:2], "0.002,inf,0.2,0.1", ROWS[3]), r"ride.csv:4: column 'x' holds 'inf'"),
-        (lines(*ROWS[:2], "0.002,,0.2,0.1", ROWS[3]), r"ride.csv:4: column 'x' holds ''"),
-        (lines(*ROWS[:2], "0.002,#N/A,0.2,0.1", ROWS[3]), r"ride.csv:4: column 'x' holds '#N/A'"),
-        (lines(*ROWS[:2], "0.002,1e400,0.2,0.1", ROWS[3]), r"ride.csv:4: column 'x' holds '1e400'"),
-        (lines(*ROWS[:2], "0.002,1_0,0.2,0.1", ROWS[3]), r"ride.csv:4: column 'x' holds '1_0'"),
-        (lines(*ROWS, ROWS[0]), r"ride.csv:6: time 0 s does not come after 0.003 s; two records in one file\?"),
-        (lines(*ROWS, ROWS[3]), r"ride.csv:6: time 0.003 s does not come after 0.003 s"),
-        (lines(*ROWS, "0.0041,0,0,0"), r"ride.csv:6: time step 0.0011 s, the median is 0.001 s; allowed is a relative"),
+        (lines(*ROWS[:2], "0.002,inf,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds 'inf'"),
+        (lines(*ROWS[:2], "0.002,,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds ''"),
+        (lines(*ROWS[:2], "0.002,#N/A,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '#N/A'"),
+        (lines(*ROWS[:2], "0.002,1e400,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '1e400'"),
+        (lines(*ROWS[:2], "0.002,1_0,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '1_0'"),
+        (lines(*ROWS, ROWS[0]), r"ride.csv:6: time 0 s goes back behind the time 0.003 s of line 5; .* two logs"),
+        (lines(*ROWS, ROWS[3]), r"ride.csv:6: time 0.003 s repeats the time 0.003 s of line 5"),
+        (
+            lines(*ROWS, "0.0043,0,0,0"),
+            r"ride.csv:6: time is not uniform: the step of 0.0013 s deviates by 0.3 of the median step 0.001 s",
+        ),
         (
             lines(*ROWS, "0.004,0,0,980"),
             r"column 'z' swings by 783\.9 m/s2 about its mean, allowed are 50; looks like mm",
         ),
-        (b"time [s]\xff", r"ride.csv:1: byte 0xff is not UTF-8; save the file as UTF-8"),
-        (b"time [s]\n\0", r"ride.csv:2: a NUL byte; needed is a CSV file in UTF-8"),
-        (HEADER + "\n" + "1" * 1_000_001, r"ride.csv:2: a line of 1000001 characters, allowed are 1000000"),
+        (b"time [s]\xff", r"ride.csv:1:9: byte 0xff is not UTF-8; save the file as UTF-8"),
+        (b"time [s]\n\0", r"ride.csv:2:1: NUL byte; allowed is UTF-8 text"),
+        (HEADER + "\n" + "1" * 1_000_001, r"ride.csv:2: line longer than 1000000 characters"),
     ],
 )
 def test_a_damaged_file_is_refused_with_the_place(write, text, message):
@@ -104,7 +112,7 @@ def test_a_damaged_file_is_refused_with_the_place(write, text, message):
 def test_a_missing_file_and_a_folder_are_refused(tmp_path):
     with pytest.raises(ConfigurationError, match=r"nix.csv: no such file"):
         read_acceleration(tmp_path / "nix.csv")
-    with pytest.raises(ConfigurationError, match="not a file; give a CSV file"):
+    with pytest.raises(ConfigurationError, match="no such file"):
         read_acceleration(tmp_path)
 
 
@@ -115,11 +123,3 @@ def test_a_dead_axis_and_aliased_content_are_noticed(write):
         "x: constant at 0.5 m/s2 (no sensor?)",
         "y: 100 % of the variance lies above 400 Hz (0.8 of Nyquist); the record may be aliased",
     )
-
-
-def test_a_file_beyond_the_limit_is_refused_before_it_is_read(tmp_path):
-    path = tmp_path / "huge.csv"
-    with path.open("wb") as file:
-        file.truncate(300 * 1024 * 1024)  # sparse: takes no room
-    with pytest.raises(DataError, match=r"huge.csv: 314572800 bytes, allowed are 268435456; cut the record into parts"):
-        read_acceleration(path)

@@ -24,7 +24,7 @@ BOM = b"\xef\xbb\xbf"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class CsvText:
+class Text:
     """The lines of a text file with what was noticed on the way."""
 
     lines: list[str]
@@ -35,7 +35,7 @@ class CsvText:
     """Hexadecimal digest of the file's bytes."""
 
 
-def read_text(path: Path) -> CsvText:
+def read_text(path: Path) -> Text:
     """Read a UTF-8 file into lines, refusing early what would be slow, large or not text.
 
     Memory needed = TEXT_COPIES * size + BYTES_PER_ROW * size / (mean length of the first rows).
@@ -56,9 +56,7 @@ def read_text(path: Path) -> CsvText:
     except OSError as error:
         raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
     if not data.strip():
-        raise DataError(
-            f"{path}: the file is empty; needed is a header line 'time [s],displacement [m]' and one row per sample"
-        )
+        raise DataError(f"{path}: the file is empty; needed are a header line with units and one row per sample")
     _check_bytes(path, data)
     notices = []
     digest = hashlib.sha256(data).hexdigest()
@@ -72,7 +70,7 @@ def read_text(path: Path) -> CsvText:
     longest = max(range(len(lines)), key=lambda index: len(lines[index]))
     if len(lines[longest]) > LONGEST_LINE:
         raise _line_too_long(path, longest + 1)
-    return CsvText(lines=lines, notices=tuple(notices), sha256=digest)
+    return Text(lines=lines, notices=tuple(notices), sha256=digest)
 
 
 def _check_bytes(path: Path, data: bytes) -> None:

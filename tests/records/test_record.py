@@ -1,0 +1,82 @@
+"""Records of a run, as text and as arrays, come back alike."""
+
+import json
+
+import numpy as np
+import pytest
+
+from vehicle.commands.comfort import main
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.excitation.signal_file import read_signal
+from vehicle.records.formats import FORMATS, read_record
+from vehicle.records.table import Record, Vector
+
+TIME: Vector = np.linspace(2.0, 5.999, 4000)
+SINE: Vector = np.sin(2 * np.pi * 8.0 * TIME)
+CHANNELS: dict[str, Vector] = {
+    **{f"seat_rail_acc_{axis}": scale * SINE for axis, scale in zip("xyz", (0.1, 0.2, 1.0), strict=True)},
+    "damper_fr_force": 100.0 * SINE,
+}
+UNITS = {**dict.fromkeys(CHANNELS, "m/s2"), "damper_fr_force": "N"}
+
+
+@pytest.fixture(params=FORMATS)
+def run(request, tmp_path):
+    path = tmp_path / f"time.{request.param}"
+    FORMATS[request.param].write(path, Record(time=TIME, channels=CHANNELS, units=UNITS), "x to the rear")
+    return path
+
+
+def test_what_a_run_writes_comes_back(run):
+    record = read_record(run)
+    assert (record.start, record.step) == pytest.approx((2.0, 1e-3))
+    assert record.units == UNITS
+    for name, values in CHANNELS.items():
+        # Nine digits are written as text.
+        np.testing.assert_allclose(record.channels[name], values, rtol=1e-8, atol=1e-12)
+
+
+def test_comfort_reads_a_place_of_a_run(run, tmp_path, capsys):
+    assert main(["--input", str(run), "--channel", "seat_rail", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    plain = tmp_path / "plain.csv"
+    axes: dict[str, Vector] = dict(zip("xyz", list(CHANNELS.values())[:3], strict=True))
+    FORMATS["csv"].write(plain, Record(time=TIME, channels=axes, units=dict.fromkeys("xyz", "m/s2")), "")
+    assert main(["--input", str(plain), "--json"]) == 0
+    expected = json.loads(capsys.readouterr().out)
+    for axis in "xyz":
+        assert found[axis]["weighted_rms"] == pytest.approx(expected[axis]["weighted_rms"], rel=1e-7)
+    assert main(["--input", str(run)]) == 3
+    said = capsys.readouterr().err
+    assert "no column x; found " in said
+    assert "give --channel with one of seat_rail" in said
+    assert main(["--input", str(run), "--channel", "roof"]) == 3
+    assert "no column roof_acc_x" in capsys.readouterr().err
+
+
+def test_arrays_that_are_no_record_are_refused(tmp_path):
+    path = tmp_path / "own.npz"
+    with pytest.raises(ConfigurationError, match=r"own\.npz: no such file"):
+        read_record(path)
+    path.write_bytes(b"PK no archive")
+    with pytest.raises(DataError, match=r"own\.npz: no file of arrays"):
+        read_record(path)
+    np.savez(path, x=SINE)
+    with pytest.raises(DataError, match=r"own\.npz: no array 'time'; found x; needed are 'time"):
+        read_record(path)
+    np.savez(path, time=TIME, x=SINE[:-1])
+    with pytest.raises(DataError, match=r"own\.npz: array 'x' has 3999 samples for 4000 times"):
+        read_record(path)
+    np.savez(path, time=TIME[::-1], x=SINE)
+    with pytest.raises(DataError, match=r"own\.npz: sample 2: time 5\.998 s goes back behind the time .* of sample 1"):
+        read_record(path)
+
+
+def test_the_shaker_reads_the_plates_of_a_run(run):
+    plates = {"plate_fr_displacement": 1e-3 * (1.0 - np.cos(50.0 * (TIME - 2.0))), "plate_fl_displacement": 0.0 * TIME}
+    record = Record(time=TIME, channels=CHANNELS | plates, units=UNITS | dict.fromkeys(plates, "m"))
+    FORMATS[run.suffix[1:]].write(run, record, "x to the rear")
+    signal = read_signal(run)
+    assert signal.wheels == ("fr",)  # the other plate stood still
+    assert signal.notices == ("time begins at 2 s in the file and was shifted to 0",)
+    np.testing.assert_allclose(signal.displacement["fr"], plates["plate_fr_displacement"], rtol=1e-8, atol=1e-15)

@@ -1,0 +1,267 @@
+"""Plate signals as files: the whole path from a file to a checked `Signal`, and back."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import ConfigurationError, DataError, OutputError
+from vehicle.excitation.plausibility import aliasing_notices, check_level
+from vehicle.excitation.rest import start_from_rest
+from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
+from vehicle.excitation.steadiness import drifts, pauses
+from vehicle.excitation.time_grid import LOWEST_RATE, check_rate, decimate, fill_missing, refine
+from vehicle.names import WHEELS
+from vehicle.records.clock import check_increasing, check_uniform, is_uniform, without_rounding
+from vehicle.records.formats import read_table
+from vehicle.records.table import TIME, Header, Table, Vector, Wanted, name_and_unit
+from vehicle.records.text_format import write_table
+
+NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
+
+_LENGTH_UNITS = {"m": 1.0, "mm": 1e-3}
+_OTHER_QUANTITY = re.compile(r"(^|_)(acc|vel)|^[av](_|$)", re.IGNORECASE)
+_OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
+
+
+def read_signal(
+    path: str | Path,
+    *,
+    wheel: str = "fr",
+    interpolate: bool = False,
+    resample_hz: float | None = None,
+    remove_mean: bool = False,
+    accept_implausible: bool = False,
+) -> Signal:
+    """Read plate displacements from a file; everything unusual is refused or recorded in `notices`.
+
+    Columns `time [s],displacement [m]` (or `[mm]`; or `displacement_fr [m]`, `displacement_fl [m]`), one row per sample
+    in uniform time; or the `time.csv` or `time.npz` of a run, whose plates are taken and all else left. Times are
+    shifted to begin at 0. A record that does not begin at rest gets a half-cosine ramp.
+
+    Args:
+        path: the file, of a format of `vehicle.records`.
+        wheel: wheel that a plain `displacement` column drives, 'fr' or 'fl'.
+        interpolate: fill missing displacements by a cubic spline over gaps up to 10 ms.
+        resample_hz: new sampling rate [Hz] with anti-alias filter, also for non-uniform times.
+        remove_mean: subtract the mean of each column.
+        accept_implausible: keep going where level or acceleration is beyond a shaker's (roads), with a notice.
+
+    Raises:
+        ConfigurationError: no such file, unknown wheel, resampling rate out of range.
+        DataError: bad data; the message names file, line, column, the value found, what is allowed and the remedy.
+    """
+    path = Path(path)
+    if wheel not in WHEELS:
+        raise ConfigurationError(f"wheel {wheel!r} is unknown; allowed: {', '.join(WHEELS)}")
+    if resample_hz is not None and not LOWEST_RATE <= resample_hz < np.inf:
+        raise ConfigurationError(
+            f"--resample {resample_hz:g} Hz: allowed from {LOWEST_RATE:g} Hz on (samples a second)"
+        )
+    wanted = Wanted(
+        needed=NEEDED,
+        key=lambda header: plate_columns(header, wheel).time,
+        missing="fill" if interpolate else "refuse",
+        remedy="repair the cell, or ask for interpolation (--interpolate)",
+    )
+    table = read_table(path, wanted)
+    plates = plate_columns(table.header, wheel)
+    notices = [*table.notices, *plates.notices]
+    time = table.values[:, table.key]
+    if time.size < MINIMUM_SAMPLES:
+        raise DataError(
+            f"{path}: {time.size} rows; allowed from {MINIMUM_SAMPLES} rows; this is no record of a vibration"
+        )
+    check_increasing(table, time)
+    columns = {}
+    for driven, column in plates.columns.items():
+        values, filled = fill_missing(table, time, column)
+        if plates.recorded and not np.ptp(values) > 0.0:
+            continue  # a run records the plate that it did not drive, too
+        notices.extend([*filled, *pauses(driven, time, values)])
+        columns[driven] = values * _LENGTH_UNITS[plates.units[driven]]
+    timestep, columns, resampled = _uniform_columns(table, time, columns, resample_hz)
+    notices.extend(resampled)
+    if time[0] != 0.0:
+        notices.append(f"time begins at {time[0]:.9g} s in the file and was shifted to 0")
+    if remove_mean:
+        for driven, z in columns.items():
+            notices.append(f"mean {np.mean(z):.6g} m of plate {driven} removed on request")
+            columns[driven] = z - np.mean(z)
+    if not any(np.ptp(z) > 0.0 for z in columns.values()):
+        raise DataError(f"{path}: no plate moves: every column holds one value only; give a record with motion")
+    notices.extend(drifts(columns))
+    try:
+        check_level(path, columns, timestep, plates.units)
+    except DataError as error:
+        if not accept_implausible:
+            raise
+        notices.append(f"accepted on request: {error}")
+    columns, ramped = start_from_rest(columns, timestep=timestep)
+    samples = next(iter(columns.values())).size
+    return Signal(
+        time=uniform_time(samples=samples, timestep=timestep),
+        displacement=columns,
+        notices=(*notices, *ramped),
+        source=path.name,
+        sha256=table.sha256,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlateColumns:
+    """Which column of a file holds which quantity in which unit; nothing is mapped by position.
+
+    Attributes:
+        time: index of the time.
+        columns: wheel to index of its displacement.
+        units: wheel to its unit as declared, 'm' or 'mm'.
+        recorded: whether they are channels of a run.
+        notices: what was accepted although it is unusual.
+    """
+
+    time: int
+    columns: dict[str, int]
+    units: dict[str, str]
+    recorded: bool
+    notices: tuple[str, ...]
+
+
+def plate_columns(header: Header, wheel: str) -> PlateColumns:
+    """Find the plates in the header of a file.
+
+    Args:
+        header: of the file.
+        wheel: the one that a plain `displacement` column drives.
+
+    Raises:
+        DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity.
+    """
+    if any(_is_number(cell) for cell in header.cells):
+        raise DataError(f"{header.where}:1: no header line: found {header.found}; needed are the columns {NEEDED}")
+    keys = {"time": "time", "displacement": wheel, **{f"displacement_{one}": one for one in WHEELS}}
+    channels = {f"plate_{one}_displacement": one for one in WHEELS}
+    named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
+    recorded = any(name in channels for _, _, name, _ in named)
+    if recorded:
+        keys = {"time": "time", **channels}
+        named = [one for one in named if one[2] in keys]
+    columns: dict[str, int] = {}
+    units: dict[str, str] = {}
+    unknown, notices = [], []
+    for index, cell, name, unit in named:
+        place = f"{header.where}:{index + 1}: column {cell!r}"
+        if _OTHER_UNIT.fullmatch(unit or "") or _OTHER_QUANTITY.search(name):
+            raise DataError(
+                f"{place} is an acceleration or a velocity; the plate needs a displacement. It is not integrated here: "
+                "drift makes double integration depend on a high-pass filter that only you can choose. Integrate it, "
+                f"record the filter in a '#' comment and give {NEEDED}"
+            )
+        key = keys.get(name.lower())
+        if key is None:
+            unknown.append(repr(cell))
+            continue
+        if key in columns:
+            raise DataError(
+                f"{place} gives the same quantity as column {columns[key] + 1} ({header.cells[columns[key]]!r}); each "
+                f"may appear once; found {header.found}"
+            )
+        columns[key], units[key] = index, _checked_unit(place, key, unit)
+        if units[key] == "mm":
+            notices.append(f"column {cell!r} converted from mm to m")
+    if unknown:
+        raise DataError(
+            f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
+            "the others"
+        )
+    if "time" not in columns or len(columns) == 1:
+        missing = "displacement" if "time" in columns else "time"
+        raise DataError(f"{header.where}: no {missing} column; found {header.found}; needed are {NEEDED}")
+    return PlateColumns(
+        time=columns["time"],
+        columns={one: columns[one] for one in WHEELS if one in columns},
+        units=units,
+        recorded=recorded,
+        notices=tuple(notices),
+    )
+
+
+def _checked_unit(place: str, key: str, unit: str | None) -> str:
+    allowed, shown = (("s",), "[s]") if key == "time" else (tuple(_LENGTH_UNITS), "[m] or [mm]")
+    if not unit:
+        raise DataError(f"{place} has no unit; write it in brackets behind the name, allowed: {shown}")
+    if unit not in allowed:
+        hint = "; divide the column by 1000 and write [s]" if key == "time" and unit == "ms" else ""
+        raise DataError(f"{place} has the unit [{unit}]; allowed: {shown}{hint}")
+    return unit
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True
+
+
+def _uniform_columns(
+    table: Table, time: Vector, columns: dict[str, Vector], resample_hz: float | None
+) -> tuple[float, dict[str, Vector], list[str]]:
+    """Check the time grid, or make a new one on request: step [s], columns and notices."""
+    path = table.header.path
+    time, rounded = without_rounding(time)
+    notices = list(rounded)
+    rate = 1.0 / float(np.median(np.diff(time)))
+    if resample_hz is None:
+        check_uniform(table, time, "resample it (--resample HZ)")
+    uniform = is_uniform(time)
+    if uniform:
+        rate = (time.size - 1) / float(time[-1] - time[0])
+    notices.extend(check_rate(path, rate))
+    if resample_hz is None or (uniform and abs(rate / resample_hz - 1.0) < 1e-9):
+        return 1.0 / rate, columns, [*notices, *aliasing_notices(columns, 1.0 / rate)]
+    notices.extend(check_rate(path, resample_hz))
+    factor, fine = refine(table, time, columns, resample_hz)
+    notices.extend(aliasing_notices(fine, 1.0 / (factor * resample_hz)))
+    shape = "uniform" if uniform else "non-uniform"
+    how = f" and an anti-alias FIR filter from {0.4 * resample_hz:g} Hz on" if factor > 1 else ""
+    notices.append(f"resampled from {shape} times at {rate:.6g} Hz to {resample_hz:g} Hz by a cubic spline{how}")
+    return 1.0 / resample_hz, {wheel: decimate(z, factor) for wheel, z in fine.items()}, notices
+
+
+def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = ()) -> None:
+    """Write a signal as `read_signal` reads it: comments, header, time, displacements with 7 significant digits.
+
+    Written under a temporary name and renamed when complete. A signal of the front right wheel alone gets the plain
+    column `displacement [m]`.
+
+    Args:
+        path: the file.
+        signal: what it holds.
+        comments: lines above the header.
+
+    Raises:
+        OutputError: the file cannot be written, or a comment holds a line break.
+    """
+    path = Path(path)
+    if any("\n" in comment or "\r" in comment for comment in comments):
+        raise OutputError(f"{path}: a comment holds a line break; give one line for each comment")
+    names = ["displacement"] if signal.wheels == ("fr",) else [f"displacement_{wheel}" for wheel in signal.wheels]
+    columns = [signal.time, *(signal.displacement[wheel] for wheel in signal.wheels)]
+    # Fewest decimals that keep each time stamp within 1e-6 of a step.
+    errors = {digits: np.max(np.abs(np.round(signal.time, digits) - signal.time)) for digits in range(3, 12)}
+    digits = next((digits for digits, error in errors.items() if error < 1e-6 * signal.timestep), 12)
+    forms = ",".join([f"%.{digits}f", *(["%.6e"] * len(names))])
+    temporary = path.with_name(f".{path.name}.partial")
+    try:
+        write_table(temporary, [TIME, *(f"{name} [m]" for name in names)], columns, comments, forms)
+        temporary.replace(path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise OutputError(
+            f"{path}: cannot be written ({error.strerror}); check the folder, its permissions and the space"
+        ) from error

@@ -1,0 +1,1 @@
+"""Records and tables as files: text and npz, read and written in one place."""

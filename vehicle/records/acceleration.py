@@ -1,0 +1,96 @@
+"""The acceleration of one point in three axes, taken from a record and checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle.errors import DataError
+from vehicle.names import AXES
+from vehicle.records.formats import read_record
+
+STANDARD_GRAVITY = 9.80665
+"""[m/s2], ISO 80000-3, for records in g"""
+UNITS = {"m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY}
+"""accepted units of acceleration and their value in m/s2"""
+LARGEST_ACCELERATION = 50.0
+"""deviation from the mean above which a record is taken for one in a wrong unit (bad-inputs item 7) [m/s2]"""
+ALIASED_SHARE = 0.05
+"""share of the variance above 0.8 of Nyquist that is worth a notice (bad-inputs item 12) [-]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AccelerationRecord:
+    """Acceleration of one point in three axes, uniformly sampled."""
+
+    time_step: float
+    """[s]"""
+    xyz: NDArray[np.float64]
+    """[m/s2], shape (3, n)"""
+    notices: tuple[str, ...]
+    """what a careful reader should know; empty when nothing is odd"""
+
+
+def _notices(xyz: NDArray[np.float64], rate: float) -> tuple[str, ...]:
+    """Return remarks on constant axes and on content near Nyquist."""
+    found = []
+    for axis, record in zip(AXES, xyz, strict=True):
+        power = np.abs(np.fft.rfft(record - record.mean())) ** 2
+        total = float(power.sum())
+        if np.ptp(record) == 0.0:
+            found.append(f"{axis}: constant at {record[0]:g} m/s2 (no sensor?)")
+        elif total > 0.0:
+            share = float(power[int(0.8 * power.size) :].sum()) / total
+            if share > ALIASED_SHARE:
+                found.append(
+                    f"{axis}: {100 * share:.0f} % of the variance lies above {0.4 * rate:g} Hz (0.8 of Nyquist); "
+                    "the record may be aliased"
+                )
+    return tuple(found)
+
+
+def read_acceleration(path: str | Path, place: str | None = None) -> AccelerationRecord:
+    """Read an acceleration in three axes.
+
+    Args:
+        path: a record, as of `read_record`.
+        place: point of a run, as "seat_rail", for the channels `seat_rail_acc_x|y|z`; None for columns x, y, z.
+
+    Returns:
+        The record in SI units.
+
+    Raises:
+        ConfigurationError: no such file.
+        DataError: it is no record, a channel is missing or in another unit, or a value is none of a vehicle.
+    """
+    file = Path(path)
+    axes = [axis if place is None else f"{place}_acc_{axis}" for axis in AXES]
+    needed = f"time [s], {', '.join(f'{name} [m/s2]' for name in axes)} (or [g])"
+    record = read_record(file, needed)
+    xyz = []
+    for name in axes:
+        if name not in record.channels:
+            places = dict.fromkeys(one[:-6] for one in record.channels if one.endswith("_acc_x"))
+            choice = f"; give --channel with one of {', '.join(places)}" if places else ""
+            shown = ", ".join(list(record.channels)[:6])
+            raise DataError(f"{file}: no column {name}; found {shown}; needed are {needed}{choice}")
+        if (unit := record.units[name]) not in UNITS:
+            raise DataError(
+                f"{file}: column {name!r} has the unit {unit!r}, allowed are "
+                f"{', '.join(f'[{one}]' for one in UNITS)}; write the header as {needed}"
+            )
+        values = record.channels[name] * UNITS[unit]
+        swing = float(np.abs(values - values.mean()).max())
+        if swing > LARGEST_ACCELERATION:
+            raise DataError(
+                f"{file}: column {name!r} swings by {swing:g} m/s2 about its mean, allowed are "
+                f"{LARGEST_ACCELERATION:g}; looks like mm/s2 or a spike? correct the unit in the header or the record"
+            )
+        xyz.append(values)
+    found = np.stack(xyz)
+    return AccelerationRecord(
+        time_step=record.step, xyz=found, notices=(*record.notices, *_notices(found, 1.0 / record.step))
+    )

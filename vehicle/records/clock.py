@@ -1,0 +1,117 @@
+"""The time stamps of a table: increasing, uniform, or a uniform clock that was rounded."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from vehicle.errors import DataError
+from vehicle.records.table import Table, Vector
+
+PAUSE = 0.5
+"""A step of the time, or a stretch without motion, from this length on is a pause of the record [s]."""
+
+UNIFORM_TOLERANCE = 1e-3
+"""Largest |dt - median dt| / median dt of a uniform record [-]."""
+
+LARGEST_QUANTUM = 0.25
+"""Largest last digit of rounded time stamps that still tells a clock, as a share of its step [-]."""
+
+
+def check_increasing(table: Table, time: Vector) -> None:
+    """Refuse repeated or decreasing time [s], shape (n,), naming the first offending row of the table."""
+    steps = np.diff(time)
+    if (steps > 0.0).all():
+        return
+    row = int(np.flatnonzero(steps <= 0.0)[0]) + 1
+    what = "repeats" if steps[row - 1] == 0.0 else "goes back behind"
+    raise DataError(
+        f"{table.place(row)}: time {time[row]:.9g} s {what} the time {time[row - 1]:.9g} s of {table.row(row - 1)}; "
+        "time must increase from row to row; were two logs put behind each other?"
+    )
+
+
+def check_uniform(table: Table, time: Vector, remedy: str = "resample it to uniform steps") -> None:
+    """Refuse steps that deviate from the median step by more than `UNIFORM_TOLERANCE`, naming the worst row.
+
+    Args:
+        table: for messages.
+        time: increasing times [s], shape (n,).
+        remedy: what else to do about it, for messages.
+
+    Raises:
+        DataError: the record pauses, or its time is not uniform.
+    """
+    worst, row = _worst_step(time)
+    step = time[row] - time[row - 1]
+    if worst > UNIFORM_TOLERANCE and step >= PAUSE:
+        raise DataError(
+            f"{table.place(row)}: the record pauses for {step:.6g} s, from {time[row - 1]:.9g} to {time[row]:.9g} s; "
+            "nothing is filled in; use the part before or after it"
+        )
+    if worst > UNIFORM_TOLERANCE:
+        raise DataError(
+            f"{table.place(row)}: time is not uniform: the step of {step:.9g} s deviates by {worst:.3g} of the median "
+            f"step {float(np.median(np.diff(time))):.9g} s; allowed {UNIFORM_TOLERANCE:g}; write the time with more "
+            f"digits, or {remedy}"
+        )
+
+
+def without_rounding(time: Vector) -> tuple[Vector, tuple[str, ...]]:
+    """Times of the clock behind rounded time stamps, shape (n,), with a notice; else the times as they are.
+
+    Args:
+        time: increasing times [s], shape (n,).
+    """
+    clock = None if is_uniform(time) else clock_of_rounded(time)
+    if clock is None:
+        return time, ()
+    notice = f"time stamps are rounded to {clock[1]} decimals: taken as a clock of {clock[0]:.9g} Hz"
+    return time[0] + np.arange(time.size) / clock[0], (notice,)
+
+
+def clock_of_rounded(time: Vector) -> tuple[float, int] | None:
+    """The clock behind time stamps that were rounded, or cut, to a fixed number of decimals.
+
+    t_k = t_0 + k / f + e_k with e_k within one unit q of the last decimal, for all k: 2048 Hz written with six decimals
+    has steps of 488 and 489 us. A whole number f that fits is taken, else the clock with the least spread.
+
+    Args:
+        time: increasing times [s], shape (n,).
+
+    Returns:
+        Rate f [Hz] and number of decimals; None where no clock fits, or q is more than `LARGEST_QUANTUM` steps.
+    """
+    count = np.arange(time.size)
+    step = float(time[-1] - time[0]) / (time.size - 1)
+    for decimals in range(2, 10):
+        digits = (time - time[0]) * 10.0**decimals
+        if np.max(np.abs(digits - np.rint(digits))) < 0.01:  # what binary numbers leave of decimal ones
+            break
+    else:
+        return None
+    quantum = 10.0**-decimals
+    if quantum > LARGEST_QUANTUM * step:
+        return None
+    # The spread about a clock is convex in its step; the step that is sought lies within q / T of the mean one.
+    reach = quantum / (time.size - 1)
+    best = minimize_scalar(
+        lambda one: np.ptp(time - count * one), bounds=(step - reach, step + reach), options={"xatol": 1e-6 * reach}
+    )
+    for rate in (float(round(1.0 / step)), 1.0 / float(best.x)):
+        if rate > 0.0 and np.ptp(time - count / rate) <= (1.0 + 1e-3) * quantum:
+            return rate, decimals
+    return None
+
+
+def is_uniform(time: Vector) -> bool:
+    """Tell whether `check_uniform` accepts the time stamps."""
+    return _worst_step(time)[0] <= UNIFORM_TOLERANCE
+
+
+def _worst_step(time: Vector) -> tuple[float, int]:
+    steps = np.diff(time)
+    median = float(np.median(steps))
+    deviation = np.abs(steps - median) / median
+    row = int(np.argmax(deviation))
+    return float(deviation[row]), row + 1
