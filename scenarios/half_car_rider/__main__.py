@@ -13,14 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.claims import Findings
-from scenarios.half_car_rider.base_case import base_case_claims, base_case_table
-from scenarios.half_car_rider.claims import dose_claims, matrix_claim, speed_claims, travel_claims
+from scenarios.claims import Findings, markdown
+from scenarios.half_car_rider.claims import base_case_claims, dose_claims, matrix_claim, speed_claims, travel_claims
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
-from scenarios.half_car_rider.runs import SPEEDS, Outcome, driven, outcome, parameter_study, passive
+from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
 from scenarios.study import lumped_study
-from vehicle.lumped.half_car_simulation import PASSIVE
-from vehicle.lumped.semi_active import LAWS
+from vehicle.lumped.half_car_rider import ENDS
+from vehicle.lumped.semi_active import LAWS, PASSIVE
 from vehicle.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
 
 SETTLING_NOTE = (
@@ -40,7 +39,9 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
     history = passive(car, SPEEDS[0])
     studied = parameter_study(car, factors)
     skyhook = None if options.quick else parameter_study(car, factors, "skyhook")
-    scan = _scan([passive(car, speed) for speed in _scan_speeds(options.quick)], car, _scan_speeds(options.quick))
+    speeds = np.arange(2.0 if options.quick else 1.0, 61.0, 2.0 if options.quick else 1.0).tolist()
+    scanned = [outcome(car, passive(car, speed)) for speed in speeds]
+    scan = {"speed": speeds, "upper": [o.upper_vdv for o in scanned], "lower": [o.lower_vdv for o in scanned]}
     outcomes = {PASSIVE: [outcome(car, passive(car, speed)) for speed in SPEEDS]}
     laws = ("skyhook", "hybrid") if options.quick else LAWS
     semi_active = {law: driven(car, SPEEDS, law, one_sided_tyres=False) for law in laws}
@@ -56,39 +57,41 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
         matrix_claim(car),
     ]
     shown = {PASSIVE: history, "skyhook": semi_active["skyhook"][0], "hybrid": semi_active["hybrid"][0]}
-    time_figures(folder, car, shown, SPEEDS[0])
+    time_figures(folder, shown, SPEEDS[0])
     study_figures(folder, factors, studied, skyhook)
     speed_figure(folder, scan, outcomes, SPEEDS)
     lift_off_figure(folder, car, history, free[0], SPEEDS[0])
-    base = {"base_case": base_case_table(car, history)}
     notes = [_lift_off_note(outcomes[PASSIVE], free_outcomes), _law_table(outcomes), SETTLING_NOTE, ASSUMED]
-    data = {**_data(outcomes, free_outcomes, studied, factors, scan), **base}
+    data = {
+        "speeds_kmh": list(SPEEDS),
+        "laws": {law: [_row(o) for o in row] for law, row in outcomes.items()},
+        "one_sided_tyres": [_row(o) for o in free_outcomes],
+        "parameter_study": {
+            "factors": factors,
+            "passive": {name: [[_row(o) for o in row] for row in table] for name, table in studied.items()},
+        },
+        "speed_scan": scan,
+        "base_case": base_case_table(car, history),
+    }
     return Findings(title="Half car with seat and rider", claims=claims, unjudged=None, notes=notes, data=data)
-
-
-def _scan_speeds(quick: bool) -> list[float]:
-    return [float(v) for v in np.arange(2.0 if quick else 1.0, 61.0, 2.0 if quick else 1.0)]
-
-
-def _scan(histories: Sequence[Any], car: Any, speeds: list[float]) -> dict[str, list[float]]:
-    found = [outcome(car, one) for one in histories]
-    return {"speed": speeds, "upper": [o.upper_vdv for o in found], "lower": [o.lower_vdv for o in found]}
 
 
 def _lift_off_note(glued: Sequence[Outcome], free: Sequence[Outcome]) -> str:
     """Say where the linear model pulls on the road."""
-    lines = ["Tyre lift-off (passive; the linear tyre pulls on the road during these times):", ""]
-    lines += [
-        "| speed [km/h] | wheel | linear tyre: load below 0 [s] | least load [N] | one-sided tyre: in the air [s] |"
+    rows = [
+        (f"{speed:.0f}", name, _intervals(a.lift_off[end]), f"{a.least_load[end]:.0f}", _intervals(b.lift_off[end]))
+        for speed, a, b in zip(SPEEDS, glued, free, strict=True)
+        for end, name in enumerate(ENDS)
     ]
-    lines += ["|---|---|---|---|---|"]
-    for speed, a, b in zip(SPEEDS, glued, free, strict=True):
-        for end, name in enumerate(("front", "rear")):
-            lines.append(
-                f"| {speed:.0f} | {name} | {_intervals(a.lift_off[end])} | {a.least_load[end]:.0f} "
-                f"| {_intervals(b.lift_off[end])} |"
-            )
-    return "\n".join(lines)
+    heads = (
+        "speed [km/h]",
+        "wheel",
+        "linear tyre: load below 0 [s]",
+        "least load [N]",
+        "one-sided tyre: in the air [s]",
+    )
+    title = "Tyre lift-off (passive; the linear tyre pulls on the road during these times):"
+    return f"{title}\n\n{markdown(heads, rows)}"
 
 
 def _intervals(intervals: Sequence[tuple[float, float]]) -> str:
@@ -96,32 +99,10 @@ def _intervals(intervals: Sequence[tuple[float, float]]) -> str:
 
 
 def _law_table(outcomes: Mapping[str, Sequence[Outcome]]) -> str:
-    lines = ["Passive against semi-active dampers (tyres glued to the road), VDV of the upper body [m/s^1.75]:", ""]
-    lines += ["| law | " + " | ".join(f"{speed:.0f} km/h" for speed in SPEEDS) + " | travel at 20 km/h [mm] |"]
-    lines += ["|" + "---|" * (len(SPEEDS) + 2)]
-    for law, row in outcomes.items():
-        values = " | ".join(f"{o.upper_vdv:.3f}" for o in row)
-        lines.append(f"| {law} | {values} | {1e3 * row[0].travel:.1f} |")
-    return "\n".join(lines)
-
-
-def _data(
-    outcomes: Mapping[str, Sequence[Outcome]],
-    free: Sequence[Outcome],
-    studied: Mapping[str, list[list[Outcome]]],
-    factors: Sequence[float],
-    scan: Mapping[str, Sequence[float]],
-) -> dict[str, Any]:
-    return {
-        "speeds_kmh": list(SPEEDS),
-        "laws": {law: [_row(o) for o in row] for law, row in outcomes.items()},
-        "one_sided_tyres": [_row(o) for o in free],
-        "parameter_study": {
-            "factors": list(factors),
-            "passive": {name: [[_row(o) for o in row] for row in table] for name, table in studied.items()},
-        },
-        "speed_scan": dict(scan),
-    }
+    rows = [(law, *(f"{o.upper_vdv:.3f}" for o in row), f"{1e3 * row[0].travel:.1f}") for law, row in outcomes.items()]
+    heads = ("law", *(f"{speed:.0f} km/h" for speed in SPEEDS), "travel at 20 km/h [mm]")
+    title = "Passive against semi-active dampers (tyres glued to the road), VDV of the upper body [m/s^1.75]:"
+    return f"{title}\n\n{markdown(heads, rows)}"
 
 
 def _row(one: Outcome) -> dict[str, Any]:
@@ -129,7 +110,7 @@ def _row(one: Outcome) -> dict[str, Any]:
         "upper_vdv": one.upper_vdv,
         "lower_vdv": one.lower_vdv,
         "travel_m": one.travel,
-        "lift_off_s": {"front": list(one.lift_off[0]), "rear": list(one.lift_off[1])},
+        "lift_off_s": dict(zip(ENDS, map(list, one.lift_off), strict=True)),
         "least_linear_tyre_load_n": list(one.least_load),
     }
 

@@ -3,17 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.claims import COMPARED, PREDICTED, Claim
-from scenarios.half_car_rider.runs import KMH, SPEEDS, VARIED, Outcome, passive, varied
-from vehicle.lumped.half_car_rider import places
-from vehicle.lumped.half_car_rider_printed import growth_rate
+from scenarios.half_car_rider.printed_matrices import growth_rate
+from scenarios.half_car_rider.runs import (
+    KMH,
+    SETTLING_BAND,
+    SPEEDS,
+    VARIED,
+    Motion,
+    Outcome,
+    passive,
+    peak,
+    settling_time,
+    varied,
+)
+from vehicle.lumped.history import Array, History
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
 
-Array = npt.NDArray[np.float64]
+Study = Mapping[str, list[list[Outcome]]]
+"""Varied parameter -> speed -> factor -> outcome."""
+
+READING = 0.3
+"""The printed times are read from figures, most of them with the word "about" [s]."""
+
+STIFF_SEAT = 50000.0
+"""Seat stiffness for the row on figure 10 [N/m]: the source does not print its own."""
+
+SETTLING: tuple[tuple[str, Motion, float, bool, str], ...] = (
+    ("upper_limb", "displacement", 3.5, True, "figure 5"),
+    ("lower_limb", "displacement", 3.5, True, "figure 5"),
+    ("upper_limb", "acceleration", 3.5, True, "figure 6"),
+    ("lower_limb", "acceleration", 3.5, True, "figure 6"),
+    ("front_body", "displacement", 3.0, False, "figure 7"),
+    ("rear_body", "displacement", 3.5, True, "figure 7"),
+    ("pitch", "displacement", 3.5, False, "figure 8"),
+    ("front_wheel", "displacement", 1.7, False, "figure 9"),
+    ("rear_wheel", "displacement", 1.2, False, "figure 9"),
+    ("seat", "acceleration", 3.5, False, "figure 10"),
+    ("body", "acceleration", 1.7, False, "figure 10"),
+)
+"""Place, quantity, printed settling time [s], whether it is a lower limit, figure."""
 
 LITTLE = 0.5
 """A change of the dose value counts as "little" below this share of what the sprung mass does at that speed [-]."""
@@ -32,40 +65,127 @@ TRAVEL_DIRECTIONS = {"suspension_stiffness": "rises", "suspension_damping": "fal
 """Printed effect on the suspension travel (figures 23 to 25)."""
 
 
-def dose_claims(
-    car: HalfCarRiderParameters, studied: Mapping[str, list[list[Outcome]]], factors: Sequence[float]
-) -> list[Claim]:
-    """Rows on figures 11 to 22: direction of the dose values over each parameter."""
+def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Claim]:
+    """Rows on figures 5 to 10: sizes and settling times of the base case."""
     rows = []
+    shown: tuple[tuple[Motion, str, float, str], ...] = (
+        ("displacement", "mm", 1e3, "figure 5"),
+        ("acceleration", "m/s2", 1.0, "figure 6"),
+    )
+    for quantity, unit, factor, figure in shown:
+        upper, lower = (factor * peak(history.of(name, quantity)) for name in ("upper_limb", "lower_limb"))
+        name = f"{figure}: peak {quantity} of the upper body above that of the lower body"
+        ours = f"upper {upper:.3g} {unit}, lower {lower:.3g} {unit}"
+        rows.append(PREDICTED.statement(name, "larger", ours, upper > lower, _why_upper(car, quantity)))
+    stiff = passive(replace(car, seat=replace(car.seat, stiffness=STIFF_SEAT)), SPEEDS[0])
+    (seat, body), stiffer = ([peak(one.acceleration(n)) for n in ("seat", "body")] for one in (history, stiff))
+    rows.append(
+        PREDICTED.statement(
+            "figure 10: peak acceleration of the seat above that of the chassis",
+            "larger",
+            f"seat {seat:.3g} m/s2, chassis {body:.3g} m/s2",
+            seat > body,
+            "the seat is not printed; the assumed one isolates from the pulse of the bump. With a seat of "
+            f"{STIFF_SEAT:.0f} N/m it would be {stiffer[0]:.3g} against {stiffer[1]:.3g} m/s2",
+        )
+    )
+    return rows + [_settling(history, *row) for row in SETTLING]
+
+
+def _why_upper(car: HalfCarRiderParameters, quantity: str) -> str:
+    if quantity == "displacement":
+        return "the upper limb on its spring overshoots the seat"
+    isolated = float(np.sqrt(2.0 * car.upper_limb.stiffness / car.upper_limb.mass)) / (2.0 * np.pi)
+    pulse = SPEEDS[0] * KMH / (2.0 * car.bump.length)
+    return (
+        f"above sqrt(2) times its own frequency ({isolated:.1f} Hz) the upper limb is isolated from the seat, the "
+        f"stiffly held lower limb is not; the pulse of the bump has {pulse:.1f} Hz"
+    )
+
+
+def _settling(history: History, place: str, quantity: Motion, printed: float, limit: bool, figure: str) -> Claim:
+    times = {
+        band: settling_time(history.time, history.of(place, quantity), band) for band in (SETTLING_BAND, 0.02, 0.05)
+    }
+    found = times[SETTLING_BAND]
+    ours = float(history.time[-1]) if found is None else found
+    two, five = ("beyond the record" if (t := times[band]) is None else f"{t:.2f} s" for band in (0.02, 0.05))
+    why = (
+        f"rule: last time above 0.5 % of the peak, t = 0 when the front wheel meets the bump; 2 %: {two}, 5 %: {five}; "
+        f"tolerance {READING} s, read from a figure"
+    )
+    label = f"{figure}: settling time of {place} {quantity} [s]"
+    if limit:
+        return PREDICTED.statement(label, f"longer than {printed}", f"{ours:.2f}", ours >= printed - READING, why)
+    return PREDICTED.number(label, printed, ours, READING, why)
+
+
+def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[float]) -> list[Claim]:
+    """Rows on figures 11 to 22: direction of the dose values over each parameter."""
+    change = {(name, limb): _changes(studied[name], f"{limb}_vdv") for name in VARIED for limb in ("upper", "lower")}
     reasons = _why_dose(car)
-    for parameter, direction in DIRECTIONS.items():
-        for limb in ("upper", "lower"):
-            change = relative_changes([[getattr(o, f"{limb}_vdv") for o in row] for row in studied[parameter]])
-            mass = relative_changes([[getattr(o, f"{limb}_vdv") for o in row] for row in studied["sprung_mass"]])
-            rows.append(
-                PREDICTED.statement(
-                    f"VDV of the {limb} body with {VARIED[parameter]}",
-                    direction,
-                    f"{_changes(change)} from {factors[0]:.0%} to {factors[-1]:.0%}, at {_speeds()} km/h",
-                    _agrees(direction, change, LITTLE * np.abs(mass)),
-                    f"rule: {_rule(direction)} at every speed; {reasons[parameter]}",
-                )
-            )
+    rows = [
+        _direction(
+            f"VDV of the {limb} body with {VARIED[parameter]}",
+            direction,
+            change[parameter, limb],
+            factors,
+            reasons[parameter],
+            LITTLE * np.abs(change["sprung_mass", limb]),
+        )
+        for parameter, direction in DIRECTIONS.items()
+        for limb in ("upper", "lower")
+    ]
     for limb in ("upper", "lower"):
         mass, unsprung, stiffness = (
-            np.abs(relative_changes([[getattr(o, f"{limb}_vdv") for o in row] for row in studied[name]]))
-            for name in ("sprung_mass", "unsprung_mass", "suspension_stiffness")
+            np.abs(change[name, limb]).mean() for name in ("sprung_mass", "unsprung_mass", "suspension_stiffness")
         )
         rows.append(
             PREDICTED.statement(
                 f"VDV of the {limb} body: sprung mass and suspension stiffness against unsprung mass",
                 "both stronger",
-                f"mean change {mass.mean():.1%}, {stiffness.mean():.1%} against {unsprung.mean():.1%}",
-                bool(min(mass.mean(), stiffness.mean()) > unsprung.mean()),
+                f"mean change {mass:.1%}, {stiffness:.1%} against {unsprung:.1%}",
+                bool(min(mass, stiffness) > unsprung),
                 "mean over the five speeds of the magnitude of the change from 80 to 120 %",
             )
         )
     return rows
+
+
+def travel_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[float]) -> list[Claim]:
+    """Rows on figures 23 to 25: direction of the suspension travel."""
+    return [
+        _direction(
+            f"suspension travel with {VARIED[parameter]}",
+            direction,
+            _changes(studied[parameter], "travel"),
+            factors,
+            _why_travel(car, parameter, factors),
+        )
+        for parameter, direction in TRAVEL_DIRECTIONS.items()
+    ]
+
+
+def _direction(
+    name: str, direction: str, change: Array, factors: Sequence[float], why: str, little: Array | float = 0.0
+) -> Claim:
+    """Row on what a parameter does at every speed; "little" is below the effects given."""
+    agrees = {"little": np.abs(change) < little, "rises": change > 0.0, "falls": change < 0.0}[direction]
+    rule = f"less than {LITTLE:.0%} of the effect of the sprung mass" if direction == "little" else direction
+    changes = ", ".join(f"{100.0 * value:+.1f}" for value in change)
+    speeds = ", ".join(f"{speed:.0f}" for speed in SPEEDS)
+    ours = f"{changes} % from {factors[0]:.0%} to {factors[-1]:.0%}, at {speeds} km/h"
+    return PREDICTED.statement(name, direction, ours, bool(np.all(agrees)), f"rule: {rule} at every speed; {why}")
+
+
+def _changes(table: Sequence[Sequence[Outcome]], name: str) -> Array:
+    return relative_changes([[getattr(one, name) for one in row] for row in table])
+
+
+def relative_changes(values: Sequence[Sequence[float]]) -> Array:
+    """Change from the first to the last factor over the middle of the range, one for each speed [-]."""
+    table = np.asarray(values, dtype=float)
+    return np.asarray((table[:, -1] - table[:, 0]) / table.mean(axis=1))
 
 
 def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
@@ -88,33 +208,10 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
     }
 
 
-def travel_claims(
-    car: HalfCarRiderParameters, studied: Mapping[str, list[list[Outcome]]], factors: Sequence[float]
-) -> list[Claim]:
-    """Rows on figures 23 to 25: direction of the suspension travel."""
-    rows = []
-    for parameter, direction in TRAVEL_DIRECTIONS.items():
-        change = relative_changes([[o.travel for o in row] for row in studied[parameter]])
-        rows.append(
-            PREDICTED.statement(
-                f"suspension travel with {VARIED[parameter]}",
-                direction,
-                f"{_changes(change)} from {factors[0]:.0%} to {factors[-1]:.0%}, at {_speeds()} km/h",
-                _agrees(direction, change, np.zeros_like(change)),
-                f"rule: {_rule(direction)} at every speed; {_why_travel(car, parameter, factors)}",
-            )
-        )
-    return rows
-
-
 def _why_travel(car: HalfCarRiderParameters, parameter: str, factors: Sequence[float]) -> str:
     """Peaks of the parts of the travel, wheel minus body, at the base speed."""
-    wheel, body = [], []
-    for factor in (factors[0], factors[-1]):
-        one = varied(car, parameter, factor)
-        history = passive(one, SPEEDS[0])
-        wheel.append(1e3 * float(np.abs(history.of(places(one)["front_wheel"])).max()))
-        body.append(1e3 * float(np.abs(history.of(places(one)["front_body"])).max()))
+    ends = [passive(varied(car, parameter, factor), SPEEDS[0]) for factor in (factors[0], factors[-1])]
+    wheel, body = ([1e3 * peak(one.displacement(f"front_{name}")) for one in ends] for name in ("wheel", "body"))
     return (
         f"the travel is body minus wheel; at the base speed the peak of the front wheel goes from {wheel[0]:.1f} to "
         f"{wheel[1]:.1f} mm, that of the body above it from {body[0]:.1f} to {body[1]:.1f} mm"
@@ -166,30 +263,6 @@ def matrix_claim(car: HalfCarRiderParameters) -> Claim:
         "typing errors: neither is symmetric and the pitch damping is negative, so the printed equations grow for "
         "ever; the figures of the source cannot come from them as they stand",
     )
-
-
-def relative_changes(values: Sequence[Sequence[float]]) -> Array:
-    """Change from the first to the last factor over the middle of the range, one for each speed [-]."""
-    table = np.asarray(values, dtype=float)
-    return np.asarray((table[:, -1] - table[:, 0]) / table.mean(axis=1))
-
-
-def _agrees(direction: str, change: Array, little: Array) -> bool:
-    if direction == "little":
-        return bool(np.all(np.abs(change) < little))
-    return bool(np.all(change > 0.0) if direction == "rises" else np.all(change < 0.0))
-
-
-def _rule(direction: str) -> str:
-    return f"less than {LITTLE:.0%} of the effect of the sprung mass" if direction == "little" else direction
-
-
-def _changes(change: Array) -> str:
-    return ", ".join(f"{100.0 * value:+.1f}" for value in change) + " %"
-
-
-def _speeds() -> str:
-    return ", ".join(f"{speed:.0f}" for speed in SPEEDS)
 
 
 def _list(values: Sequence[float]) -> str:

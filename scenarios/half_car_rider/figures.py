@@ -4,105 +4,74 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from scenarios.charts import chart, lines
-from scenarios.half_car_rider.runs import SPEEDS, VARIED, Outcome
-from vehicle.lumped.half_car_rider import places
-from vehicle.lumped.motion_history import MotionHistory
-from vehicle.lumped.tyre_contact import linear_tyre_load
+from scenarios.half_car_rider.claims import TRAVEL_DIRECTIONS, Study
+from scenarios.half_car_rider.runs import SPEEDS, VARIED, Motion, Outcome
+from vehicle.lumped.half_car_rider import linear_tyre_load
+from vehicle.lumped.history import History
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
 from vehicle.rendering.figure import COLOURS
 
 BUMP = "Half-sine bump 0.05 m high, 0.5 m long"
 
-TIME_FIGURES = (
-    ("figure_05", "upper_limb", "lower_limb", "displacement", 1e3, "displacement [mm]"),
-    ("figure_06", "upper_limb", "lower_limb", "acceleration", 1.0, "acceleration [m/s2]"),
-    ("figure_07", "front_body", "rear_body", "displacement", 1e3, "displacement [mm]"),
-    ("figure_08", "pitch", "pitch", "displacement", 1e3, "pitch angle [mrad]"),
-    ("figure_09", "front_wheel", "rear_wheel", "displacement", 1e3, "displacement [mm]"),
-    ("figure_10", "seat", "body", "acceleration", 1.0, "acceleration [m/s2]"),
+TIME_FIGURES: tuple[tuple[str, tuple[str, ...], Motion, float, str], ...] = (
+    ("figure_05", ("upper_limb", "lower_limb"), "displacement", 1e3, "displacement [mm]"),
+    ("figure_06", ("upper_limb", "lower_limb"), "acceleration", 1.0, "acceleration [m/s2]"),
+    ("figure_07", ("front_body", "rear_body"), "displacement", 1e3, "displacement [mm]"),
+    ("figure_08", ("pitch",), "displacement", 1e3, "pitch angle [mrad]"),
+    ("figure_09", ("front_wheel", "rear_wheel"), "displacement", 1e3, "displacement [mm]"),
+    ("figure_10", ("seat", "body"), "acceleration", 1.0, "acceleration [m/s2]"),
 )
-"""File, upper and lower panel, quantity, factor, axis."""
+"""File, panels, quantity, factor, axis."""
+
+LINEAR, ONE_SIDED = ("linear tyre", COLOURS[0], "-"), ("one-sided tyre", COLOURS[1], "--")
 
 LINE_STYLES = {"passive": "-", "skyhook": "--", "hybrid": ":"}
 
 
-def time_figures(
-    folder: Path, car: HalfCarRiderParameters, histories: Mapping[str, MotionHistory], speed: float
-) -> None:
+def time_figures(folder: Path, histories: Mapping[str, History], speed: float) -> None:
     """Figures 5 to 10: the base case, passive against semi-active."""
-    place = places(car)
-    for name, first, second, quantity, factor, label in TIME_FIGURES:
-        shown = (first,) if first == second else (first, second)
-        caption = (
-            f"{BUMP}, {speed:.0f} km/h, met by the front wheel at t = 0. Passive: exact linear response. Skyhook "
-            "(continuous) and hybrid: dampers between cmin and cmax, set each control period. Tyres glued to the road."
-        )
+    caption = (
+        f"{BUMP}, {speed:.0f} km/h, met by the front wheel at t = 0. Passive: exact linear response. Skyhook "
+        "(continuous) and hybrid: dampers between cmin and cmax, set each control period. Tyres glued to the road."
+    )
+    for name, shown, quantity, factor, label in TIME_FIGURES:
         with chart(folder / f"{name}.png", caption, rows=len(shown), size=(9.0, 3.0 + 2.2 * len(shown))) as panels:
             for panel, one in zip(panels, shown, strict=True):
                 for (law, history), color in zip(histories.items(), COLOURS, strict=False):
-                    curve = (law, factor * history.of(place[one], quantity), color, LINE_STYLES[law])
+                    curve = (law, factor * history.of(one, quantity), color, LINE_STYLES[law])
                     lines(panel, history.time, [curve], xlabel="time [s]", ylabel=label, title=one.replace("_", " "))
                 panel.set_xlim(0.0, 4.0)
 
 
-def study_figures(
-    folder: Path,
-    factors: Sequence[float],
-    passive: Mapping[str, list[list[Outcome]]],
-    skyhook: Mapping[str, list[list[Outcome]]] | None,
-) -> None:
+def study_figures(folder: Path, factors: Sequence[float], passive: Study, skyhook: Study | None) -> None:
     """Figures 11 to 22 in pairs and 23 to 25: dose values and travel over each parameter."""
-    percent = 100.0 * np.asarray(factors)
     semi = "" if skyhook is None else "; dashed: continuous skyhook, whose limits do not follow the passive damper"
-    for index, (parameter, label) in enumerate(VARIED.items()):
+
+    def draw(panel: Any, parameter: str, measure: str, factor: float, ylabel: str) -> None:
+        for study, style in ((passive, "-"), (skyhook, "--")):
+            for speed, row, color in zip(SPEEDS, study[parameter] if study else (), COLOURS, strict=False):
+                values = [factor * getattr(one, measure) for one in row]
+                curve = (f"{speed:.0f} km/h" if style == "-" else None, values, color, style)
+                xlabel = f"{VARIED[parameter]} [% of the base case]"
+                lines(panel, 100.0 * np.asarray(factors), [curve], xlabel=xlabel, ylabel=ylabel)
+        panel.set_ylim(bottom=0.0)
+
+    for index, parameter in enumerate(VARIED):
         first = 11 + 2 * index
         caption = f"{BUMP}. Solid: passive, exact linear response{semi}. Unweighted acceleration, as in the source."
         path = folder / f"figure_{first}_{first + 1}_{parameter}.png"
         with chart(path, caption, columns=2, size=(11.0, 4.8)) as panels:
             for panel, limb in zip(panels, ("upper", "lower"), strict=True):
-                _study(
-                    panel,
-                    percent,
-                    [[getattr(o, f"{limb}_vdv") for o in row] for row in passive[parameter]],
-                    None
-                    if skyhook is None
-                    else [[getattr(o, f"{limb}_vdv") for o in row] for row in skyhook[parameter]],
-                    xlabel=f"{label} [% of the base case]",
-                    ylabel=f"VDV of the {limb} body [m/s$^{{1.75}}$]",
-                )
+                draw(panel, parameter, f"{limb}_vdv", 1.0, f"VDV of the {limb} body [m/s$^{{1.75}}$]")
     caption = f"{BUMP}. Largest magnitude of the travel, front or rear. Solid: passive{semi}."
     with chart(folder / "figure_23_24_25_travel.png", caption, columns=3, size=(14.0, 4.8)) as panels:
-        for panel, name in zip(panels, ("suspension_stiffness", "suspension_damping", "tyre_stiffness"), strict=True):
-            _study(
-                panel,
-                percent,
-                [[1e3 * o.travel for o in row] for row in passive[name]],
-                None if skyhook is None else [[1e3 * o.travel for o in row] for row in skyhook[name]],
-                xlabel=f"{VARIED[name]} [% of the base case]",
-                ylabel="suspension travel [mm]",
-            )
-
-
-def _study(
-    panel: object,
-    percent: npt.ArrayLike,
-    solid: Sequence[Sequence[float]],
-    dashed: Sequence[Sequence[float]] | None,
-    *,
-    xlabel: str,
-    ylabel: str,
-) -> None:
-    for index, speed in enumerate(SPEEDS):
-        curves = [(f"{speed:.0f} km/h", solid[index], COLOURS[index], "-")]
-        if dashed is not None:
-            curves.append((None, dashed[index], COLOURS[index], "--"))  # type: ignore[arg-type]
-        lines(panel, percent, curves, xlabel=xlabel, ylabel=ylabel)
-    panel.set_ylim(bottom=0.0)  # type: ignore[attr-defined]
+        for panel, parameter in zip(panels, TRAVEL_DIRECTIONS, strict=True):
+            draw(panel, parameter, "travel", 1e3, "suspension travel [mm]")
 
 
 def speed_figure(
@@ -125,9 +94,7 @@ def speed_figure(
         right.set_ylim(bottom=0.0)
 
 
-def lift_off_figure(
-    folder: Path, car: HalfCarRiderParameters, glued: MotionHistory, free: MotionHistory, speed: float
-) -> None:
+def lift_off_figure(folder: Path, car: HalfCarRiderParameters, glued: History, free: History, speed: float) -> None:
     """Tyre loads of the base case: linear tyre that pulls, and one-sided tyre."""
     caption = (
         f"{BUMP}, {speed:.0f} km/h, passive dampers. The linear tyre pulls on the road where its load is below zero "
@@ -138,20 +105,7 @@ def lift_off_figure(
         one_sided = np.maximum(linear_tyre_load(car, free), 0.0)
         for panel, end, a, b in zip(panels, ("front", "rear"), linear, one_sided, strict=True):
             panel.fill_between(glued.time, a / 1e3, 0.0, where=a < 0.0, color="#f2c6bd")
-            lines(
-                panel,
-                glued.time,
-                [("linear tyre", a / 1e3, COLOURS[0], "-")],
-                xlabel="time [s]",
-                ylabel="tyre load [kN]",
-                title=end,
-            )
-            lines(
-                panel,
-                free.time,
-                [("one-sided tyre", b / 1e3, COLOURS[1], "--")],
-                xlabel="time [s]",
-                ylabel="tyre load [kN]",
-                title=end,
-            )
+            for time, load, look in ((glued.time, a, LINEAR), (free.time, b, ONE_SIDED)):
+                curve = (look[0], load / 1e3, *look[1:])
+                lines(panel, time, [curve], xlabel="time [s]", ylabel="tyre load [kN]", title=end)
             panel.set_xlim(0.0, 1.2)

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.exposure import vibration_dose_value
-from vehicle.lumped.bump_road import bump_passage
-from vehicle.lumped.half_car_rider import half_car_rider, places
-from vehicle.lumped.half_car_simulation import PASSIVE, simulate_bump
-from vehicle.lumped.linear_response import linear_response
-from vehicle.lumped.motion_history import MotionHistory
-from vehicle.lumped.tyre_contact import lift_off, linear_tyre_load
+from vehicle.errors import ConfigurationError
+from vehicle.lumped.bump_response import bump_passage, bump_response
+from vehicle.lumped.half_car_rider import ENDS, half_car_rider, lift_off, linear_tyre_load, places
+from vehicle.lumped.history import Array, History
+from vehicle.lumped.semi_active import PASSIVE, simulate_bump
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
 
-Array = npt.NDArray[np.float64]
+Motion = Literal["displacement", "acceleration"]
+
+SETTLING_BAND = 0.005
+"""Settled means: the rest is below 0.5 % of the peak, about the width of a line in a figure [-]."""
+
+BANDS = (SETTLING_BAND, 0.01, 0.02, 0.05)
+"""Bands given in the JSON file [-]."""
 
 KMH = 1.0 / 3.6
 """[m/s]."""
@@ -59,22 +65,21 @@ class Outcome:
     """Least load of a tyre glued to the road, front and rear [N]."""
 
 
-def passive(car: HalfCarRiderParameters, speed: float) -> MotionHistory:
+def passive(car: HalfCarRiderParameters, speed: float) -> History:
     """Exact passive response at a speed [km/h]."""
     passage = bump_passage(car.bump, speed * KMH, car.body.front_arm + car.body.rear_arm)
-    return linear_response(half_car_rider(car), passage, time_step=TIME_STEP, duration=DURATION)
+    return bump_response(half_car_rider(car), passage, time_step=TIME_STEP, duration=DURATION)
 
 
-def outcome(car: HalfCarRiderParameters, history: MotionHistory) -> Outcome:
+def outcome(car: HalfCarRiderParameters, history: History) -> Outcome:
     """Dose values, travel and lift-off of a passage."""
     step = float(history.time[1] - history.time[0])
-    place = places(car)
     loads = linear_tyre_load(car, history)
     front, rear = (tuple(lift_off(history.time, load)) for load in loads)
     return Outcome(
-        upper_vdv=vibration_dose_value(step, history.of(place["upper_limb"], "acceleration")),
-        lower_vdv=vibration_dose_value(step, history.of(place["lower_limb"], "acceleration")),
-        travel=max(float(np.abs(history.of(place[f"{end}_travel"])).max()) for end in ("front", "rear")),
+        upper_vdv=vibration_dose_value(step, history.acceleration("upper_limb")),
+        lower_vdv=vibration_dose_value(step, history.acceleration("lower_limb")),
+        travel=max(peak(history.displacement(f"{end}_travel")) for end in ENDS),
         lift_off=(front, rear),
         least_load=(float(loads[0].min()), float(loads[1].min())),
     )
@@ -121,9 +126,7 @@ def parameter_study(
     return {name: [[next(found) for _ in factors] for _ in SPEEDS] for name in VARIED}
 
 
-def driven(
-    car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, one_sided_tyres: bool
-) -> list[MotionHistory]:
+def driven(car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, one_sided_tyres: bool) -> list[History]:
     """Histories with a law at several speeds [km/h]."""
     return simulate_bump(
         [car] * len(speeds),
@@ -132,3 +135,54 @@ def driven(
         one_sided_tyres=one_sided_tyres,
         duration=DURATION,
     )
+
+
+def peak(signal: Array) -> float:
+    """Largest magnitude."""
+    return float(np.abs(signal).max())
+
+
+def settling_time(time: npt.ArrayLike, signal: npt.ArrayLike, band: float) -> float | None:
+    """Last instant at which |y| exceeds a share of its largest magnitude.
+
+    t_s = max { t : |y(t)| > band max|y| }: from there on the motion stays inside the band around its final value 0.
+
+    Args:
+        time: [s], shape (m,).
+        signal: y, shape (m,).
+        band: share of the peak [-], as 0.05.
+
+    Returns:
+        The time on the same clock [s]; None where the record ends outside the band. 0 for a signal that is zero.
+
+    Raises:
+        ConfigurationError: band not between 0 and 1.
+    """
+    if not 0.0 < band < 1.0:
+        raise ConfigurationError(f"settling time: band: found {band!r}, must be between 0 and 1")
+    instants, magnitude = np.asarray(time, dtype=float), np.abs(np.asarray(signal, dtype=float))
+    outside = np.flatnonzero(magnitude > band * magnitude.max())
+    if outside.size == 0:
+        return 0.0
+    if outside[-1] == magnitude.size - 1:
+        return None
+    return float(instants[outside[-1]])
+
+
+def base_case_table(car: HalfCarRiderParameters, history: History) -> dict[str, dict[str, Any]]:
+    """Peaks and settling times of every place.
+
+    Args:
+        car: base case.
+        history: its motion.
+
+    Returns:
+        Place -> quantity -> peak magnitude [m, m/s2; rad, rad/s2 for pitch] and settling time [s] for each band.
+    """
+    quantities: tuple[Motion, ...] = ("displacement", "acceleration")
+
+    def row(signal: Array) -> dict[str, Any]:
+        settling = {f"{band:g}": settling_time(history.time, signal, band) for band in BANDS}
+        return {"peak": peak(signal), "settling_s": settling}
+
+    return {name: {quantity: row(history.of(name, quantity)) for quantity in quantities} for name in places(car)}

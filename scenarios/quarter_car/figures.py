@@ -179,7 +179,7 @@ def figure_2_15(runs: Runs, path: Path) -> None:
             keep = (history.time >= 0.3 * runs.duration) & (history.time <= 0.65 * runs.duration)
             curves = [
                 ("body", history.displacement("body")[keep], COLOURS[0], "-"),
-                ("road", history.road[keep], COLOURS[1], ":"),
+                ("road", history.inputs[keep, 0], COLOURS[1], ":"),
             ]
             title = f"road RMS {1e3 * level:g} mm"
             lines(panel, history.time[keep], curves, xlabel="time [s]", ylabel="displacement [m]", title=title)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.lumped.bump_road import bump_passage
+from vehicle.lumped.bump_response import bump_passage
 from vehicle.parameters.half_car_rider import BumpShape
 
 SHAPE = BumpShape(height=0.05, length=0.5)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.lumped.drive import AtRest, Ramp, Sampled, Sine
+from vehicle.lumped.drive import AtRest, Sampled, Sine
 
 TIME = np.linspace(0.0, 1.0, 201)
 
 
 @pytest.mark.parametrize(
     "drive",
-    [AtRest(), Ramp(rate=0.3), Sine(amplitude=0.02, frequency=3.0, phase=0.4), Sampled(np.sin(5.0 * TIME), TIME[1])],
+    [AtRest(), Sine(amplitude=0.02, frequency=3.0, phase=0.4), Sampled(np.sin(5.0 * TIME), TIME[1])],
     ids=lambda drive: type(drive).__name__,
 )
 def test_the_rate_is_the_derivative_of_the_value(drive):

@@ -12,14 +12,25 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.stribeck import Stribeck
 from vehicle.laws.switch import Switch
-from vehicle.lumped.drive import Ramp, Sine
+from vehicle.lumped.drive import Sine
 from vehicle.lumped.quarter_car import quarter_car
 from vehicle.lumped.single_mass import single_mass
-from vehicle.lumped.stiff_solution import Tolerances, stiff_solution
-from vehicle.lumped.switch_solution import switch_solution
+from vehicle.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from vehicle.parameters.quarter_car import load_quarter_car
 
 CAR = load_quarter_car()
+
+
+class Ramp:
+    """A belt of constant velocity."""
+
+    def __init__(self, rate):
+        self.rate = rate
+
+    def at(self, time):
+        return self.rate * time, self.rate
+
+
 FINE = Tolerances(relative=1e-8, displacement=1e-12, velocity=1e-10)
 
 

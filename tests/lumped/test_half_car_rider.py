@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import sympy
 
+from scenarios.half_car_rider.printed_matrices import growth_rate, printed_damping, printed_stiffness
 from vehicle.errors import ConfigurationError
 from vehicle.linear.parts import Network, masses_of, spring_damper
 from vehicle.lumped.half_car_rider import half_car_rider, places, static_tyre_load
-from vehicle.lumped.half_car_rider_printed import growth_rate, printed_damping, printed_stiffness
 from vehicle.parameters.half_car_rider import half_car_rider_parameters
 
 CAR = half_car_rider_parameters()

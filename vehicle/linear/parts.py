@@ -88,13 +88,12 @@ class Network:
                 )
             branches.append((row, link.law))
         branch_rows = _stacked([row for row, _ in branches], (*shape, 0, n + w), axis=-2)
-        slides = _stacked([self._row(slide.row, shape) for slide in self.slides], (*shape, 0, n + w), axis=-2)
 
         def numbers(values: Sequence[Numbers]) -> Array:
             return _stacked([np.broadcast_to(value, shape) for value in values], (*shape, 0), axis=-1)
 
         own = ((name, {name: 1.0}) for name in self.coordinates)
-        return LinearSystem(
+        system = LinearSystem(
             coordinates=self.coordinates,
             inputs=self.inputs,
             mass=mass,
@@ -106,13 +105,15 @@ class Network:
             branch_inputs=branch_rows[..., n:],
             branch_stiffness=numbers([law.branch_stiffness for _, law in branches]),
             branch_time=numbers([law.relaxation_time for _, law in branches]),
-            slide_rows=slides[..., :n],
-            slide_inputs=slides[..., n:],
+            slide_rows=np.zeros((*shape, 0, n)),
+            slide_inputs=np.zeros((*shape, 0, w)),
             constraints=np.zeros((0, n)),
             load=form_row(self.force, self.coordinates, shape),
             outputs={name: self._row(form, shape) for name, form in (*own, *self.outputs.items())},
-            slides=self.slides,
         )
+        for slide in self.slides:
+            system = system.with_slide(slide)
+        return system
 
     def first_order(self) -> FirstOrder:
         """First-order form of the model, its sliding pairs free; errors as of `system`."""

@@ -11,7 +11,7 @@ x are the coordinates, z the driven displacements, f_b the forces of Maxwell bra
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -83,6 +83,16 @@ class LinearSystem:
             raise ConfigurationError(f"output {name!r}: unknown; this model has {', '.join(self.outputs)}")
         row = self.outputs[name]
         return row[..., : self.size], row[..., self.size :]
+
+    def with_slide(self, slide: Slide) -> LinearSystem:
+        """The system with one more sliding pair: a law between any coordinates and inputs; errors as of `form_row`."""
+        row = self.row(slide.row)[..., None, :]
+        return replace(
+            self,
+            slide_rows=np.concatenate([self.slide_rows, row[..., : self.size]], axis=-2),
+            slide_inputs=np.concatenate([self.slide_inputs, row[..., self.size :]], axis=-2),
+            slides=(*self.slides, slide),
+        )
 
     def row(self, form: Row) -> Array:
         """Coefficients of a linear form of coordinates and inputs, (..., n + w); errors as of `form_row`."""

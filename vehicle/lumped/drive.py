@@ -30,17 +30,6 @@ class AtRest:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Ramp:
-    """value = rate t: a belt of constant velocity."""
-
-    rate: float
-
-    def at(self, time: float) -> tuple[float, float]:
-        """Value and rate at a time [s]."""
-        return self.rate * time, self.rate
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Sine:
     """value = amplitude sin(2 pi frequency t + phase)."""
 

@@ -17,13 +17,16 @@ import numpy.typing as npt
 
 from vehicle.linear.parts import Link, Network, masses_of, spring_damper
 from vehicle.linear.system import LinearSystem
+from vehicle.lumped.history import Array, History
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters, Limb
 
 GRAVITY = 9.81
 """[m/s2]."""
 
-ROADS = ("front_road", "rear_road")
+ENDS = ("front", "rear")
+
+ROADS = tuple(f"{end}_road" for end in ENDS)
 """Road heights under the front and the rear wheel."""
 
 
@@ -89,7 +92,7 @@ def half_car_rider(parameters: HalfCarRiderParameters) -> LinearSystem:
     return Network(coordinates=coordinates, masses=masses_of(masses), links=links, outputs=extra, inputs=ROADS).system()
 
 
-def static_tyre_load(parameters: HalfCarRiderParameters) -> npt.NDArray[np.float64]:
+def static_tyre_load(parameters: HalfCarRiderParameters) -> Array:
     """Load of the front and rear tyre at rest [N], shape (2,).
 
     K x = -M g e with e = 1 for every displacement and 0 for pitch; the load is the force of the compressed tyre.
@@ -103,6 +106,41 @@ def static_tyre_load(parameters: HalfCarRiderParameters) -> npt.NDArray[np.float
     wheels = [model.coordinates.index(name) for name in ("front_wheel", "rear_wheel")]
     stiffness = np.array([parameters.front.tyre_stiffness, parameters.rear.tyre_stiffness])
     return np.asarray(-stiffness * rest[wheels])
+
+
+def linear_tyre_load(parameters: HalfCarRiderParameters, history: History) -> Array:
+    """Load of a tyre that is glued to the road [N]: static load + k (z - x) + c (z' - x').
+
+    Args:
+        parameters: the car.
+        history: its motion.
+
+    Returns:
+        Front and rear load, shape (2, m); below zero the linear tyre pulls on the road, which no tyre can.
+    """
+    loads = []
+    for i, (end, axle) in enumerate(zip(ENDS, (parameters.front, parameters.rear), strict=True)):
+        loads.append(
+            axle.tyre_stiffness * (history.inputs[:, i] - history.displacement(f"{end}_wheel"))
+            + axle.tyre_damping * (history.input_rates[:, i] - history.velocity(f"{end}_wheel"))
+        )
+    return np.asarray(static_tyre_load(parameters)[:, None] + np.stack(loads))
+
+
+def lift_off(time: npt.ArrayLike, load: npt.ArrayLike) -> list[tuple[float, float]]:
+    """Intervals in which a tyre load is not positive.
+
+    Args:
+        time: [s], shape (m,).
+        load: [N], shape (m,).
+
+    Returns:
+        Start and end of each interval [s]: its first and last sample.
+    """
+    instants, off = np.asarray(time, dtype=float), np.asarray(load, dtype=float) <= 0.0
+    edges = np.diff(np.concatenate(([False], off, [False])).astype(int))
+    starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
+    return [(float(instants[a]), float(instants[b])) for a, b in zip(starts, ends, strict=True)]
 
 
 def _on(limb: Limb, extension: Mapping[str, float]) -> Link:

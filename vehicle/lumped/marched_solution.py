@@ -55,6 +55,8 @@ def marched_solution(
     shape, size = model.models, model.state.shape[-1]
     if len(model.system.slides) != 1:
         raise ConfigurationError(f"marched_solution: needed is one sliding pair, found {len(model.system.slides)}")
+    if model.input.shape[-1] != 1:
+        raise ConfigurationError(f"marched_solution: needed is one road, found {model.input.shape[-1]} inputs")
     if not (math.isfinite(timestep) and timestep > 0.0):
         raise ConfigurationError(f"timestep: found {timestep!r} s, must be finite and greater than 0.0")
     if every < 1:
@@ -104,12 +106,9 @@ def marched_solution(
         model=model,
         time=np.asarray(timestep * every * np.arange(len(kept)), dtype=float),
         state=states,
+        inputs=ahead[::every, ..., None],
+        input_rates=rates[at_kept][..., None],
         sliding_force=forces[..., None],
-        road=ahead[::every],
-        road_rate=rates[at_kept],
-        force=np.zeros_like(ahead[::every]),
-        evaluations=len(driven) - 1,
-        method=f"exact propagator with implicit friction, step {timestep:g} s",
     )
 
 
