@@ -17,33 +17,35 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
-from scenarios.claims import DUPLICATE, Claim, Findings
-from scenarios.comfort_observation import Question
-from scenarios.comfort_runs import Changes, ComfortRuns, Point, Variation, comfort_options, records_of, setting
-from scenarios.comfort_sensitivity.figures import number
+from scenarios.claims import DUPLICATE, Claim, Findings, markdown
+from scenarios.comfort_runs import Changes, ComfortRuns, Point, changes, comfort_options, records_of
+from scenarios.comfort_sensitivity.figures import number, setting
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.analysis.comfort import COMFORT_BAND
 from vehicle.excitation.exact_road import ROAD_RMS
+from vehicle.parameters.paths import value_of
 from vehicle.rendering.figure import COLOURS
 
 
-def study(comfort: ComfortRuns, folder: Path, *, quick: bool) -> Findings:
+def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run all cars on both roads, draw the chart into the folder, and say what stands out."""
+    comfort = ComfortRuns(runs, records_of(options), folder / "sweep")
     started = clock.perf_counter()
-    comfort(tornado_questions(comfort))
+    cars: list[Changes] = [(), *(car for parameter in PARAMETERS for car in ends(comfort, parameter).values())]
+    comfort([case for car in cars for road in ROAD_RMS for case in comfort.cases(car, road)])
     seconds = clock.perf_counter() - started
     bars = all_bars(comfort)
     draw_tornado(folder / "tornado.png", comfort, bars)
     notes = [
         *setting(comfort),
         f"{comfort.computed} runs of {comfort.records.duration:g} s, computed in {seconds:.1f} s with --jobs "
-        f"{comfort.runs.jobs}.",
+        f"{runs.jobs}.",
         bar_table(bars),
     ]
     return Findings(
         title="Comfort against all parameters of the suspension and the stiffness of the body (beyond source 1)",
         claims=tornado_claims(bars),
-        notes=[*notes, *([QUICK_NOTE] if quick else [])],
+        notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
         data={
             "bars": [asdict(bar) for bar in bars],
             "engine": comfort.engine,
@@ -53,11 +55,7 @@ def study(comfort: ComfortRuns, folder: Path, *, quick: bool) -> Findings:
     )
 
 
-def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    return study(ComfortRuns(runs, records_of(options), folder / "sweep"), folder, quick=options.quick)
-
-
-main = car_study("tornado", _study, comfort_options)
+main = car_study("tornado", study, comfort_options)
 
 
 SHARE = 0.2
@@ -133,40 +131,24 @@ class Bar:
 def ends(comfort: ComfortRuns, parameter: Parameter) -> dict[float, Changes]:
     """The two cars of a parameter by its value, low end first."""
     vehicle = comfort.runs.car().vehicle
-    pair = parameter.ends or tuple(
-        _variation(parameter).nominal(vehicle) * factor**parameter.power for factor in (1.0 - SHARE, 1.0 + SHARE)
-    )
-    return {value: _variation(parameter).changes(vehicle, value) for value in pair}
-
-
-def tornado_questions(comfort: ComfortRuns) -> list[Question]:
-    """All runs of the chart."""
-    cars: list[Changes] = [(), *(car for parameter in PARAMETERS for car in ends(comfort, parameter).values())]
-    return [question for car in cars for road in ROAD_RMS for question in comfort.questions(car, road)]
+    factors = ((1.0 - SHARE) ** parameter.power, (1.0 + SHARE) ** parameter.power)
+    pair = parameter.ends or tuple(value_of(vehicle, parameter.path) * factor for factor in factors)
+    return {value: changes(vehicle, parameter.path, value) for value in pair}
 
 
 def all_bars(comfort: ComfortRuns) -> list[Bar]:
     """Bars of all parameters, the largest swing on either road first."""
-    vehicle = comfort.runs.car().vehicle
     bars = []
     for parameter in PARAMETERS:
-        (low, low_car), (high, high_car) = ends(comfort, parameter).items()
-        bars.append(
-            Bar(
-                label=parameter.label,
-                nominal=_variation(parameter).nominal(vehicle),
-                low=low,
-                high=high,
-                reason=parameter.reason,
-                at_low={road: comfort.point(low, low_car, road, ()) for road in ROAD_RMS},
-                at_high={road: comfort.point(high, high_car, road, ()) for road in ROAD_RMS},
-            )
+        cars = ends(comfort, parameter)
+        low, high = cars
+        at_low, at_high = (
+            {road: comfort.point(value, car, road, ()) for road in ROAD_RMS} for value, car in cars.items()
         )
+        nominal = value_of(comfort.runs.car().vehicle, parameter.path)
+        found = {"nominal": nominal, "low": low, "high": high}
+        bars.append(Bar(label=parameter.label, reason=parameter.reason, at_low=at_low, at_high=at_high, **found))
     return sorted(bars, key=lambda bar: -max(bar.swing(road) for road in ROAD_RMS))
-
-
-def _variation(parameter: Parameter) -> Variation:
-    return Variation(name="", label=parameter.label, path=parameter.path, values=())
 
 
 WAYS = (
@@ -197,21 +179,16 @@ def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
 
 def bar_table(bars: Sequence[Bar]) -> str:
     """The bars as a Markdown table."""
-    head = " | ".join(f"{road}: comfort value at the low, high end [%] | swing [points]" for road in ROAD_RMS)
-    lines = [f"| parameter | nominal | low, high end | {head} |", "|" + "---|" * (3 + 2 * len(ROAD_RMS))]
+    head = [cell for road in ROAD_RMS for cell in (f"{road}: comfort value at the low, high end [%]", "swing [points]")]
+    rows = []
     for bar in bars:
-        cells = [
-            f"{_percent(bar.at_low[road].relative, bar.at_low[road].relative_error)}, "
-            f"{_percent(bar.at_high[road].relative, bar.at_high[road].relative_error)} | {100.0 * bar.swing(road):.1f}"
-            for road in ROAD_RMS
-        ]
-        note = f" ({bar.reason})" if bar.reason else ""
-        lines.append(f"| {bar.label}{note} | {bar.nominal:g} | {bar.low:g}, {bar.high:g} | {' | '.join(cells)} |")
-    return "\n".join(lines)
-
-
-def _percent(relative: float, error: float) -> str:
-    return f"{100.0 * relative:.2f} ± {number(100.0 * error)}"
+        row = [bar.label + (f" ({bar.reason})" if bar.reason else ""), f"{bar.nominal:g}", f"{bar.low:g}, {bar.high:g}"]
+        for road in ROAD_RMS:
+            both = (bar.at_low[road], bar.at_high[road])
+            row.append(", ".join(f"{100.0 * one.relative:.2f} ± {number(100.0 * one.relative_error)}" for one in both))
+            row.append(f"{100.0 * bar.swing(road):.1f}")
+        rows.append(row)
+    return markdown(["parameter", "nominal", "low, high end", *head], rows)
 
 
 LOW_COLOUR, HIGH_COLOUR = COLOURS[0], COLOURS[3]

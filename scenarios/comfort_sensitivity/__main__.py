@@ -15,15 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from scenarios.car_runs import CarRuns
-from scenarios.claims import Claim, Findings
-from scenarios.comfort_observation import Question
-from scenarios.comfort_runs import QUICK, Changes, ComfortRuns, Curves, comfort_options, records_of, setting
+from scenarios.claims import Findings, markdown
+from scenarios.comfort_runs import QUICK, Changes, ComfortRuns, Curves, comfort_options, records_of
 from scenarios.comfort_sensitivity.claims import (
     BODY,
     DEGRESSIVE,
-    FRICTION,
-    MOUNT_DAMPING,
-    MOUNT_STIFFNESS,
     RIGID_BODY,
     SOURCE,
     TITLES,
@@ -33,36 +29,50 @@ from scenarios.comfort_sensitivity.claims import (
     size_claims,
     slip_claims,
 )
-from scenarios.comfort_sensitivity.figures import curve_table, draw_band_edge, draw_variation, edge_table, plain
+from scenarios.comfort_sensitivity.figures import (
+    curve_table,
+    draw_band_edge,
+    draw_variation,
+    edge_table,
+    plain,
+    setting,
+)
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.reduced.march import has_compiler
+from vehicle.sweeps.case import Case
 
 QUICK_WHY = f"records of {QUICK.duration:g} s tell it too coarsely"
 
 SURE = f"comfort value against {TITLES['coulomb_friction']}, smooth road"
 """What short records can judge: friction makes a smooth road worse, by far more than their error."""
 
+EDGES_HZ = (0.015, 0.02, 0.025, ROAD_EDGE_HZ, 0.035, 0.05, 0.1)
+"""Band edges at which the slip shares are shown [Hz]."""
 
-def study(comfort: ComfortRuns, folder: Path, *, quick: bool, source_only: bool) -> Findings:
+ENGINES = ("reduced", "mujoco")
+
+
+def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run all cars on both roads, draw the figures into the folder, and compare."""
+    comfort = ComfortRuns(runs, records_of(options), folder / "sweep")
     started = clock.perf_counter()
-    beyond = not (quick or source_only)
-    questions = [question for variation in SOURCE for question in comfort.all_questions(variation)]
+    beyond = not (options.quick or options.source_only)
+    cases = [case for variation in SOURCE for case in comfort.all_cases(variation)]
     # All at once: the worker processes take longer to start than most of the runs.
-    comfort([*questions, *(beyond_questions(comfort) if beyond else [])])
+    comfort([*cases, *(beyond_cases(comfort) if beyond else [])])
     seconds = clock.perf_counter() - started
     curves = {variation.name: comfort.curves(variation) for variation in SOURCE}
-    rigid = rigid_curves(comfort) if beyond else None
+    # Without the flexible modes of the body, whose shapes are assumed.
+    rigid = {variation.name: comfort.curves(variation, RIGID_BODY) for variation in SOURCE} if beyond else None
     notes = [
         *setting(comfort),
-        f"{comfort.computed} runs of {comfort.records.duration:g} s, {len(set(questions))} of them for the three "
-        f"parameters of source 1; computed in {seconds:.1f} s with --jobs {comfort.runs.jobs}.",
+        f"{comfort.computed} runs of {comfort.records.duration:g} s, {len(set(cases))} of them for the three "
+        f"parameters of source 1; computed in {seconds:.1f} s with --jobs {runs.jobs}.",
     ]
     for variation in SOURCE:
         beside = {"with a rigid body": rigid[variation.name]} if rigid else {}
-        path = folder / f"{variation.name}.png"
-        draw_variation(path, comfort, variation, curves[variation.name], beside=beside)
+        draw_variation(folder / f"{variation.name}.png", comfort, variation, curves[variation.name], beside=beside)
         notes.append(curve_table(variation.label, curves[variation.name]))
     data: dict[str, Any] = {
         "source": plain(curves),
@@ -72,30 +82,23 @@ def study(comfort: ComfortRuns, folder: Path, *, quick: bool, source_only: bool)
         "runs": comfort.computed,
         "seconds": seconds,
     }
-    if beyond:
+    if rigid:
         more, numbers = beyond_findings(comfort, folder, curves)
-        notes, data = [*notes, *more], {**data, **numbers}
+        notes += more
+        data |= numbers | plain({"rigid_body_" + name: found for name, found in rigid.items()})
     levels = road_levels(comfort)
     data["levels"] = {
         road: {"largest_seat_rail": one.seat_rail.tolist(), "swing": one.swing.tolist()} for road, one in levels.items()
     }
-    claims = [*all_claims(comfort, curves, rigid), *level_claims(levels)]
-    judged = [claim for claim in claims if claim.name == SURE] if quick else claims
-    left = [claim for claim in claims if claim not in judged]
+    slip = slip_claims(comfort.nominal(), runs.car().vehicle.damper.slip_velocity)
+    claims = [*slip, *order_claims(curves), *size_claims(curves, rigid), *level_claims(levels)]
     return Findings(
         title="Comfort on a smooth and a rough road (source 1, chapter 4)",
-        claims=judged,
-        unjudged={claim.name: QUICK_WHY for claim in left},
-        notes=[*notes, *([QUICK_NOTE] if quick else [])],
+        claims=claims,
+        unjudged={one.name: QUICK_WHY for one in claims if one.name != SURE} if options.quick else {},
+        notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
         data=data,
     )
-
-
-def all_claims(comfort: ComfortRuns, curves: Mapping[str, Curves], rigid: Mapping[str, Curves] | None) -> list[Claim]:
-    """The rows of the published results."""
-    nominal = {road: comfort.point(0.0, (), road, ()) for road in ROAD_RMS}
-    slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
-    return [*slip_claims(nominal, slip_velocity), *order_claims(curves), *size_claims(curves, rigid)]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -103,33 +106,24 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--source-only", action="store_true", help="only the three parameters of source 1")
 
 
-def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    comfort = ComfortRuns(runs, records_of(options), folder / "sweep")
-    return study(comfort, folder, quick=options.quick, source_only=options.source_only)
+main = car_study("comfort_sensitivity", study, comfort_options, add_options)
 
 
-main = car_study("comfort_sensitivity", _study, comfort_options, add_options)
-
-
-EDGES_HZ = (0.015, 0.02, 0.025, ROAD_EDGE_HZ, 0.035, 0.05, 0.1)
-"""Band edges at which the slip shares are shown [Hz]."""
-
-
-def beyond_questions(comfort: ComfortRuns) -> list[Question]:
-    """All runs that `beyond_findings` and `rigid_curves` need."""
+def beyond_cases(comfort: ComfortRuns) -> list[Case]:
+    """All runs that go beyond the source: other dampers and bodies, band edges, both engines on one record."""
     more = [
-        question
-        for base in (DEGRESSIVE, RIGID_BODY)
-        for variation in SOURCE
-        for question in comfort.all_questions(variation, base)
+        case for base in (DEGRESSIVE, RIGID_BODY) for variation in SOURCE for case in comfort.all_cases(variation, base)
     ]
-    edges = [question for edge in EDGES_HZ for road in ROAD_RMS for question in comfort.questions((), road, edge=edge)]
-    return [*more, *comfort.all_questions(BODY), *edges, *check_questions(comfort)]
-
-
-def rigid_curves(comfort: ComfortRuns) -> dict[str, Curves]:
-    """The variations of source 1 without the flexible modes of the body, whose shapes are assumed."""
-    return {variation.name: comfort.curves(variation, RIGID_BODY) for variation in SOURCE}
+    edges = [case for edge in EDGES_HZ for road in ROAD_RMS for case in comfort.cases((), road, edge=edge)]
+    # Without numba there is no reduced engine to be compared.
+    checks = [
+        case
+        for car in (corners(comfort) if has_compiler() else {}).values()
+        for road in ROAD_RMS
+        for engine in ENGINES
+        for case in comfort.cases(car, road, engine=engine, count=1)
+    ]
+    return [*more, *comfort.all_cases(BODY), *edges, *checks]
 
 
 def beyond_findings(
@@ -153,19 +147,18 @@ def beyond_findings(
         f"{damper.viscous:g} N s/m above, as equation C.1): comfort value {', '.join(ratios)} of that with the linear "
         "damper. The same parameters, relative to the car that has it:"
     ]
-    degressive: dict[str, Curves] = {}
+    degressive = {variation.name: comfort.curves(variation, DEGRESSIVE) for variation in SOURCE}
     for variation in SOURCE:
-        found = degressive[variation.name] = comfort.curves(variation, DEGRESSIVE)
         draw_variation(
             folder / f"{variation.name}_degressive.png",
             comfort,
             variation,
-            found,
+            degressive[variation.name],
             base=DEGRESSIVE,
             title=f"Degressive damper: comfort against {variation.label} (beyond the source)",
             beside={"with the linear damper": linear[variation.name]},
         )
-        notes.append(curve_table(variation.label, found))
+        notes.append(curve_table(variation.label, degressive[variation.name]))
     body = comfort.curves(BODY)
     draw_variation(folder / f"{BODY.name}.png", comfort, BODY, body)
     edges = {road: [comfort.point(edge, (), road, (), edge) for edge in EDGES_HZ] for road in ROAD_RMS}
@@ -175,62 +168,57 @@ def beyond_findings(
     return notes, {
         "degressive": plain(degressive),
         "degressive_against_linear": {road: asdict(one) for road, one in against.items()},
-        **plain({"rigid_body_" + name: curves for name, curves in rigid_curves(comfort).items()}),
         **plain({BODY.name: body, "band_edge": edges}),
     }
 
 
-ENGINES = ("reduced", "mujoco")
-
-
 def corners(comfort: ComfortRuns) -> dict[str, Changes]:
-    """Cars of the check by name; the nominal one first."""
+    """Cars on which both engines are compared, by name: nominal, both ends of each variation, another damper."""
     found: dict[str, Changes] = {"nominal": ()}
-    for variation in (FRICTION, MOUNT_DAMPING, MOUNT_STIFFNESS):
+    for variation in SOURCE:
         cars = comfort.cars(variation)
-        for value in (variation.values[0], variation.values[-1]):
-            if cars[value]:
-                found[f"{variation.label}: {value:g}"] = cars[value]
-    return {**found, "degressive damper": DEGRESSIVE}
-
-
-def check_questions(comfort: ComfortRuns) -> list[Question]:
-    """Runs of the check: the first record with both engines; none without numba, which the reduced one needs."""
-    if not has_compiler():
-        return []
-    return [
-        question
-        for car in corners(comfort).values()
-        for road in ROAD_RMS
-        for engine in ENGINES
-        for question in comfort.questions(car, road, engine=engine, count=1)
-    ]
+        found |= {f"{variation.label}: {value:g}": cars[value] for value in variation.values[:: len(cars) - 1]}
+    return {name: car for name, car in found.items() if car or name == "nominal"} | {"degressive damper": DEGRESSIVE}
 
 
 def check_table(comfort: ComfortRuns) -> str:
-    """Differences of both engines as a Markdown table."""
+    """Differences of both engines on the first record as a Markdown table."""
     if not has_compiler():
         return "The reduced engine was not compared with MuJoCo: it needs numba."
-    lines = [
-        f"Reduced engine against MuJoCo, one record of {comfort.records.duration:g} s (on the rough road parts turn by "
-        "more than the 0.05 rad that the reduced engine vouches for):",
-        "",
-        "| car | road | comfort value, MuJoCo [m/s²] | reduced against it [%] | relative comfort value, MuJoCo, "
-        "reduced [%] | slip share, MuJoCo, reduced [%] | lowest load, MuJoCo, reduced [N] |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for road in ROAD_RMS:
-        reference: dict[str, float] = {}
+        reference: tuple[float, float] | None = None
         for name, car in corners(comfort).items():
-            reduced, mujoco = (comfort(comfort.questions(car, road, engine=engine, count=1))[0] for engine in ENGINES)
-            reference = reference or {"reduced": reduced.comfort, "mujoco": mujoco.comfort}
-            lines.append(
-                f"| {name} | {road} | {mujoco.comfort:.4f} | {100.0 * (reduced.comfort / mujoco.comfort - 1.0):+.2f} | "
-                f"{100.0 * mujoco.comfort / reference['mujoco']:.2f}, "
-                f"{100.0 * reduced.comfort / reference['reduced']:.2f} | {100.0 * mujoco.slip:.2f}, "
-                f"{100.0 * reduced.slip:.2f} | {mujoco.lowest_load:.0f}, {reduced.lowest_load:.0f} |"
+            pair = [comfort(comfort.cases(car, road, engine=engine, count=1))[0] for engine in ENGINES]
+            reduced, mujoco = pair
+            values = reduced["comfort"], mujoco["comfort"]
+            reference = reference or values
+            relative = (
+                f"{100.0 * value / base:.2f}" for value, base in zip(values[::-1], reference[::-1], strict=True)
             )
-    return "\n".join(lines)
+            rows.append(
+                [
+                    *(name, road, f"{values[1]:.4f}", f"{100.0 * (values[0] / values[1] - 1.0):+.2f}"),
+                    ", ".join(relative),
+                    f"{100.0 * mujoco['slip']:.2f}, {100.0 * reduced['slip']:.2f}",
+                    f"{mujoco['lowest_load']:.0f}, {reduced['lowest_load']:.0f}",
+                ]
+            )
+    return (
+        f"Reduced engine against MuJoCo, one record of {comfort.records.duration:g} s (on the rough road parts turn by "
+        "more than the 0.05 rad that the reduced engine vouches for):\n\n"
+    ) + markdown(
+        (
+            "car",
+            "road",
+            "comfort value, MuJoCo [m/s²]",
+            "reduced against it [%]",
+            "relative comfort value, MuJoCo, reduced [%]",
+            "slip share, MuJoCo, reduced [%]",
+            "lowest load, MuJoCo, reduced [N]",
+        ),
+        rows,
+    )
 
 
 if __name__ == "__main__":

@@ -74,40 +74,31 @@ def slip_claims(nominal: Mapping[str, Point], slip_velocity: float) -> list[Clai
 
 def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
     """Rising and falling, and which road feels it more."""
-    claims = []
-    for name, rising in RISING.items():
-        for road, points in curves[name].items():
-            claims.append(
-                PREDICTED.statement(
-                    f"comfort value against {TITLES[name]}, {road} road",
-                    "rises over the whole range" if rising else "falls over the whole range",
-                    ", ".join(f"{100.0 * one.relative:.1f}" for one in points) + " %",
-                    is_monotone(points, rising=rising),
-                    "from point to point by more than twice the standard error of both",
-                )
-            )
-    for name in ("coulomb_friction", "mount_damping"):
-        smooth, rough = (100.0 * _range(curves[name][road]) for road in ("smooth", "rough"))
-        claims.append(
+    trends = [
+        PREDICTED.statement(
+            f"comfort value against {TITLES[name]}, {road} road",
+            f"{'rises' if rising else 'falls'} over the whole range",
+            ", ".join(f"{100.0 * one.relative:.1f}" for one in points) + " %",
+            is_monotone(points, rising=rising),
+            "from point to point by more than twice the standard error of both",
+        )
+        for name, rising in RISING.items()
+        for road, points in curves[name].items()
+    ]
+    greater = ("greater on the smooth road", "largest minus smallest relative comfort value")
+    same = ("about the same", f"ranges within {100.0 * SAME_INFLUENCE:g} % of each other")
+    for name, (published, why) in zip(RISING, (greater, greater, same), strict=True):
+        smooth, rough = (100.0 * np.ptp([one.relative for one in curves[name][road]]) for road in ("smooth", "rough"))
+        trends.append(
             PREDICTED.statement(
                 f"influence of {TITLES[name]}, smooth road against rough",
-                "greater on the smooth road",
+                published,
                 f"range {smooth:.1f} against {rough:.1f} points",
-                smooth > rough,
-                "largest minus smallest relative comfort value",
+                abs(rough - smooth) <= SAME_INFLUENCE * smooth if name == "mount_stiffness" else smooth > rough,
+                why,
             )
         )
-    smooth, rough = (100.0 * _range(curves["mount_stiffness"][road]) for road in ("smooth", "rough"))
-    claims.append(
-        PREDICTED.statement(
-            "influence of mount stiffness, smooth road against rough",
-            "about the same",
-            f"range {smooth:.1f} against {rough:.1f} points",
-            abs(rough - smooth) <= SAME_INFLUENCE * smooth,
-            f"ranges within {100.0 * SAME_INFLUENCE:g} % of each other",
-        )
-    )
-    return claims
+    return trends
 
 
 def size_claims(curves: Mapping[str, Curves], rigid: Mapping[str, Curves] | None = None) -> list[Claim]:
@@ -121,18 +112,18 @@ def size_claims(curves: Mapping[str, Curves], rigid: Mapping[str, Curves] | None
     for (name, road), (figure, ends) in PUBLISHED.items():
         for value, interval in ends.items():
             found = _at(curves[name][road], value)
-            stiff = (
-                "" if rigid is None else f"; with a rigid body {100.0 * _at(rigid[name][road], value).relative:.1f} %"
-            )
             ours = 100.0 * found.relative
-            inside = interval[0] <= ours <= interval[1]
-            reason = "" if inside or (name, road) not in WHY else f"; {WHY[(name, road)]}"
+            why = f"axis of figure {figure}; standard error {100.0 * found.relative_error:.2f}"
+            if rigid is not None:
+                why += f"; with a rigid body {100.0 * _at(rigid[name][road], value).relative:.1f} %"
+            if not interval[0] <= ours <= interval[1] and (name, road) in WHY:
+                why += f"; {WHY[(name, road)]}"
             claims.append(
                 interval_claim(
                     f"relative comfort value at {TITLES[name]} {value:g}, {road} road [%]",
                     interval,
                     ours,
-                    f"axis of figure {figure}; standard error {100.0 * found.relative_error:.2f}{stiff}{reason}",
+                    why,
                     # The body was chosen among several with figures 4.3 to 4.12 in view (`vehicle.flexbody.fit`). Their
                     # trends, in `order_claims`, held with the body before it too.
                     status="chosen",
@@ -153,11 +144,6 @@ def is_monotone(points: Sequence[Point], *, rising: bool) -> bool:
 
 def _at(points: Sequence[Point], value: float) -> Point:
     return next(point for point in points if point.value == value)
-
-
-def _range(points: Sequence[Point]) -> float:
-    found = [point.relative for point in points]
-    return max(found) - min(found)
 
 
 Vector = npt.NDArray[np.float64]
@@ -194,13 +180,13 @@ class RoadLevels:
 def road_levels(comfort: ComfortRuns) -> dict[str, RoadLevels]:
     """Windows of both roads, the lead left out."""
     found = {}
+    record = slice(round(comfort.records.lead * RATE_HZ) + 1, None)
     for road in ROAD_RMS:
         extremes, swings = [], []
-        for question in comfort.questions((), road):
-            run = comfort.run_of(question)
-            record = slice(round(comfort.records.lead * RATE_HZ) + 1, None)
+        for number in range(comfort.records.count):
+            run = comfort.history((), road, record=number)
             extremes.append(window_extremes(run.recording.timestep, run["seat_rail_acc_z"][record], WINDOW_S))
-            plate = question.source.signal().displacement["fr"][record]
+            plate = run.signal.displacement["fr"][record]
             samples = min(round(SWING_S * RATE_HZ), plate.size)
             swings.append(np.ptp(plate[: plate.size // samples * samples].reshape(-1, samples), axis=1))
         found[road] = RoadLevels(seat_rail=np.concatenate(extremes), swing=np.concatenate(swings))

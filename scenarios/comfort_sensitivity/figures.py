@@ -1,8 +1,8 @@
-"""Figures of the comfort study: histories, spectra, relative comfort (4.1 to 4.12 of source 1), and the band edge."""
+"""Figures of the comfort study, histories, spectra, relative comfort (4.1 to 4.12 of source 1), and its tables."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 
 from scenarios.charts import figure_file
-from scenarios.comfort_observation import chosen_engine
-from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation
+from scenarios.claims import markdown
+from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, chosen_engine
 from scenarios.comfort_sensitivity.claims import PUBLISHED, PUBLISHED_SLIP
+from scenarios.study import car_text
 from vehicle.analysis.comfort import COMFORT_BAND
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.car import Run
-from vehicle.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
+from vehicle.excitation.slip_set import sets_text
+from vehicle.parameters.paths import value_of
 from vehicle.rendering.figure import COLOURS
 
 EXCERPT_S = (27.0, 27.5)
@@ -55,7 +58,7 @@ def draw_variation(
     cars = comfort.cars(variation, base)
     step = max(1, -(-len(cars) // SHOWN))
     shown = {value: car for index, (value, car) in enumerate(cars.items()) if index % step == 0}
-    nominal = variation.nominal(comfort.runs.car().vehicle)
+    nominal = value_of(comfort.runs.car().vehicle, variation.path)
     engine = chosen_engine("auto")
     numbers = f"figures {variation.figures}" if variation.figures else "beyond the source"
     heading = title or f"Comfort against {variation.label} ({numbers})"
@@ -70,7 +73,7 @@ def draw_variation(
         axes = figure.subplots(3, 2)
         for (history, spectrum, relative), road in zip(axes.T, ROAD_RMS, strict=True):
             for (value, car), colour in zip(shown.items(), COLOURS, strict=False):
-                run = comfort.history(car, road, engine)
+                run = comfort.history(car, road, engine=engine)
                 look = {
                     "color": colour,
                     "label": f"{value:g}{' (reference)' if value == nominal else ''}",
@@ -175,22 +178,59 @@ def _levels() -> str:
     return " and ".join(f"{1e3 * rms:g} mm RMS ({road})" for road, rms in ROAD_RMS.items())
 
 
+def setting(comfort: ComfortRuns) -> list[str]:
+    """Paragraphs for `results.md`."""
+    slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
+    levels = ", ".join(
+        f"{road} {1e3 * rms:g} mm RMS (velocity PSD {velocity_density(rms):.3g} (m/s)²/Hz)"
+        for road, rms in ROAD_RMS.items()
+    )
+    errors = ", ".join(
+        f"{road} {100.0 * one.comfort_error / one.comfort:.2f} % over the records, "
+        f"{100.0 * one.gaussian_error / one.comfort:.2f} % as a Gaussian road"
+        for road, one in comfort.nominal().items()
+    )
+    return [
+        f"Made with {car_text(comfort.runs)}; engine {comfort.engine}. Roads: {levels}, {ROAD_EDGE_HZ:g} to 50 Hz, "
+        f"lines of exact level and random phase, {comfort.records.text()}; every car runs on the same records.",
+        f"Standard error of the comfort value of the nominal car: {errors} (1/2 sqrt(int S² df / T) / int S df, which "
+        "would hold if the amplitudes of the lines were random too). ± behind a number is one standard error over the "
+        "records; that of a ratio is over the ratios of the single records.",
+        f"Slip shares: time with the right damper above {1e3 * slip_velocity:g} mm/s, above 1 mm/s, and "
+        "the left one. Lowest load: of the tyre on the shaker.",
+        sets_text(),
+        "The tyre is a linear spring, as in the source: where its load is negative it pulls.",
+    ]
+
+
 def curve_table(label: str, curves: Curves) -> str:
     """Relative comfort of a variation on both roads as a Markdown table."""
-    head = " | ".join(
-        f"{road}: relative comfort value [%] | comfort value [m/s²] | slip shares [%] | lowest load [N] (time below 0)"
-        for road in curves
+    columns = (
+        "relative comfort value [%]",
+        "comfort value [m/s²]",
+        "slip shares [%]",
+        "lowest load [N] (time below 0)",
     )
-    lines = [f"| {label} | {head} |", "|" + "---|" * (1 + 4 * len(curves))]
-    for row in zip(*curves.values(), strict=True):
-        cells = [
-            f"{100.0 * one.relative:.2f} ± {number(100.0 * one.relative_error)} | {one.comfort:.4f} ± "
-            f"{number(one.comfort_error, 4)} | {100.0 * one.slip:.1f}, {100.0 * one.saturated:.1f}, "
-            f"{100.0 * one.slip_left:.1f} | {one.lowest_load:.0f} ({100.0 * one.pulling:.2g} %)"
-            for one in row
-        ]
-        lines.append(f"| {row[0].value:g} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+    return _points_table(
+        label,
+        curves,
+        columns,
+        lambda one: (
+            f"{100.0 * one.relative:.2f} ± {number(100.0 * one.relative_error)}",
+            f"{one.comfort:.4f} ± {number(one.comfort_error, 4)}",
+            f"{100.0 * one.slip:.1f}, {100.0 * one.saturated:.1f}, {100.0 * one.slip_left:.1f}",
+            f"{one.lowest_load:.0f} ({100.0 * one.pulling:.2g} %)",
+        ),
+    )
+
+
+def _points_table(label: str, curves: Curves, columns: Sequence[str], cells: Callable[[Point], tuple[str, ...]]) -> str:
+    """A row for each value, the cells of one road behind those of the other; the road stands in its first column."""
+    head = [f"{road}: {name}" if name == columns[0] else name for road in curves for name in columns]
+    rows = zip(*curves.values(), strict=True)
+    return markdown(
+        [label, *head], [[f"{row[0].value:g}", *(cell for one in row for cell in cells(one))] for row in rows]
+    )
 
 
 def number(value: float, digits: int = 2) -> str:
@@ -200,16 +240,18 @@ def number(value: float, digits: int = 2) -> str:
 
 def edge_table(edges: Curves) -> str:
     """Slip shares and comfort over the band edge of the roads; `value` of the points is the edge [Hz]."""
-    head = " | ".join(f"{road}: slip share, right [%] | above 1 mm/s | left | comfort value [m/s²]" for road in edges)
-    lines = [f"| lower band edge [Hz] | {head} |", "|" + "---|" * (1 + 4 * len(edges))]
-    for row in zip(*edges.values(), strict=True):
-        cells = [
-            f"{100.0 * one.slip:.2f} ± {number(100.0 * one.slip_error)} | {100.0 * one.saturated:.1f} | "
-            f"{100.0 * one.slip_left:.1f} | {one.comfort:.4f} ± {number(one.comfort_error, 4)}"
-            for one in row
-        ]
-        lines.append(f"| {row[0].value:g} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+    columns = ("slip share, right [%]", "above 1 mm/s", "left", "comfort value [m/s²]")
+    return _points_table(
+        "lower band edge [Hz]",
+        edges,
+        columns,
+        lambda one: (
+            f"{100.0 * one.slip:.2f} ± {number(100.0 * one.slip_error)}",
+            f"{100.0 * one.saturated:.1f}",
+            f"{100.0 * one.slip_left:.1f}",
+            f"{one.comfort:.4f} ± {number(one.comfort_error, 4)}",
+        ),
+    )
 
 
 def plain(curves: Mapping[str, Curves]) -> dict[str, dict[str, list[dict[str, float]]]]:

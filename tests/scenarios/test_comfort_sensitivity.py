@@ -2,13 +2,13 @@
 
 import dataclasses
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from scenarios.car_runs import CarRuns
-from scenarios.comfort_observation import Observation, Question, chosen_engine, observe
-from scenarios.comfort_runs import ComfortRuns, Point, Records, point, records_of, standard_error
+from scenarios.comfort_runs import ComfortRuns, Point, Records, chosen_engine, point, records_of, standard_error
 from scenarios.comfort_sensitivity import __main__ as beyond
 from scenarios.comfort_sensitivity.__main__ import SURE, main
 from scenarios.comfort_sensitivity.claims import (
@@ -30,6 +30,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.output.written_files import MARKER
 from vehicle.reduced.march import has_compiler
+from vehicle.sweeps.case import Case
 from vehicle.sweeps.road import RoadInput, RoadMeasure
 
 needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
@@ -62,15 +63,20 @@ def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):
 
 def question(car=(), rms=0.0075, lead=3.0):
     source = RoadInput(name="road", rms=rms, seed=0, duration=8.0, lead=lead, lower_band_edge=ROAD_EDGE_HZ)
-    return Question(car=car, source=source, engine="reduced")
+    return Case(overrides=tuple(tuple(text.split("=")) for text in car), source=source, engine="reduced")
+
+
+def observe(cases, folder):
+    comfort = ComfortRuns(CarRuns(), Records(count=1, duration=8.0, lead=3.0), folder)
+    return [SimpleNamespace(**numbers) for numbers in comfort(cases)]
 
 
 @needs_reduced
-def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale():
+def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale(tmp_path):
     # All but friction is linear and gravity's part is a constant: x(2 Fd, 2 z) = 2 x(Fd, z), with the smooth law
     # reaching its limit at twice the velocity. So the curve over Fd and the one over the level of the road are one.
     double = ("damper.coulomb_friction=250", "damper.smoothing=5e4", "damper.slip_velocity=0.024")
-    one, two = observe([question(), question(double, rms=0.015)], CarRuns())
+    one, two = observe([question(), question(double, rms=0.015)], tmp_path)
     # Rounding, and the 1e-9 N at which the friction forces of a step are called solved.
     assert two.comfort == pytest.approx(2.0 * one.comfort, rel=1e-6)
     assert two.slip == pytest.approx(one.slip, abs=1e-3)
@@ -93,21 +99,14 @@ def test_the_lead_is_left_out():
 
 
 @needs_reduced
-def test_a_run_that_fails_stops_the_study_with_its_reason():
+def test_a_run_that_fails_stops_the_study_with_its_reason(tmp_path):
     with pytest.raises(SimulationError, match=r"road, damper\.coulomb_friction=-5.*must be"):
-        observe([question(("damper.coulomb_friction=-5",))], CarRuns())
+        observe([question(("damper.coulomb_friction=-5",))], tmp_path)
 
 
 def observation(comfort, slip=0.3):
-    return Observation(
-        comfort=comfort,
-        gaussian_error=0.02 * comfort,
-        slip=slip,
-        slip_left=0.0,
-        saturated=0.5,
-        lowest_load=1000.0 * comfort,
-        pulling=0.0,
-    )
+    rest = {"slip": slip, "slip_left": 0.0, "saturated": 0.5, "pulling": 0.0}
+    return {"comfort": comfort, "gaussian_error": 0.02 * comfort, "lowest_load": 1000.0 * comfort, **rest}
 
 
 def test_common_roads_make_the_error_of_a_ratio_small():
@@ -222,13 +221,13 @@ def test_the_options_choose_records_and_engine():
 class Answers(ComfortRuns):
     """Answers without runs: friction and the degressive damper make comfort worse, MuJoCo is 1 % above the other."""
 
-    def __call__(self, questions):
-        self.asked = [*getattr(self, "asked", []), *questions]
+    def __call__(self, cases):
+        self.asked = [*getattr(self, "asked", []), *cases]
         found = []
-        for one in questions:
+        for one in cases:
             comfort = 4.0 if one.source.rms > 0.01 else 1.0
-            comfort *= 1.2 if "damper.viscous_law=degressive" in one.car else 1.0
-            comfort *= 1.3 if "damper.coulomb_friction=250.0" in one.car else 1.0
+            comfort *= 1.2 if "damper.viscous_law=degressive" in one.texts() else 1.0
+            comfort *= 1.3 if "damper.coulomb_friction=250.0" in one.texts() else 1.0
             found.append(observation(comfort * (1.01 if one.engine == "mujoco" else 1.0)))
         return found
 
@@ -239,11 +238,11 @@ def test_what_goes_beyond_the_source_is_asked_at_once_and_reported(tmp_path, mon
     monkeypatch.setattr(beyond, "draw_variation", lambda path, *_, **__: drawn.append(path.name))
     monkeypatch.setattr(beyond, "draw_band_edge", lambda path, *_: drawn.append(path.name))
     comfort = Answers(CarRuns(engine="auto"), Records(count=2), tmp_path)
-    asked = set(beyond.beyond_questions(comfort))
+    asked = set(beyond.beyond_cases(comfort))
     linear = {variation.name: comfort.curves(variation) for variation in SOURCE}
     comfort.asked = []
     notes, data = beyond.beyond_findings(comfort, tmp_path, linear)
-    source = {one for variation in SOURCE for one in comfort.all_questions(variation)}
+    source = {one for variation in SOURCE for one in comfort.all_cases(variation)}
     # A run that was not asked for in advance would start worker processes of its own.
     assert set(comfort.asked) <= asked | source
     assert drawn == [

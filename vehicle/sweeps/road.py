@@ -41,7 +41,12 @@ class RoadInput:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadMeasure:
-    """Turns a run on a road into the numbers of an `Observation`.
+    """Turns a run on a road into numbers.
+
+    `comfort` is sqrt(RMSx^2 + RMSy^2 + RMSz^2) of the seat rail, unfiltered, 2 to 50 Hz; `gaussian_error` its standard
+    error for a Gaussian road, from the spectrum; `slip` and `slip_left` are shares of the time above the slip velocity,
+    right and left damper; `saturated` is the share above 1 mm/s, right damper; `lowest_load` that of the tyre on the
+    shaker; `pulling` the share of the time with a negative load there.
 
     Attributes:
         lead: seconds at the beginning that are left out.
