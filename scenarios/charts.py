@@ -14,15 +14,12 @@ import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.output.folder import write_whole
-from vehicle.rendering.figure import COLOURS, saved_figure
-from vehicle.rendering.frf_plot import BAND, TICKS, wrapped_phase
+from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, wrapped_phase
 
 Vector = npt.NDArray[np.float64]
 
 LEVEL_COLOURS = (COLOURS[0], COLOURS[3], COLOURS[1])
 """Blue, orange and red for low, mid and high; for two variants the first and the last."""
-
-INK = "#444444"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -88,15 +85,7 @@ def draw_frf(
                     axis.axvline(frequency, color=colour, linestyle="--", linewidth=0.9, label=label)
             magnitude.set_title(heading)
             magnitude.legend(loc="lower right")
-            coherence.set_xlabel("frequency [Hz]")
-        upper, middle, lower = axes[:, 0]
-        upper.set(xscale="log", yscale="log", xlim=BAND, ylabel="acceleration / plate displacement [(m/s²)/m]")
-        middle.set(ylim=(-180.0, 180.0), yticks=(-180, -90, 0, 90, 180), ylabel="phase [deg]")
-        lower.set(ylim=(0.0, 1.05), yticks=(0, 0.5, 1), ylabel="coherence [-]")
-        for axis in axes[2]:
-            axis.set_xticks(TICKS, [str(tick) for tick in TICKS])
-            axis.set_xticks([], minor=True)
-        figure.align_ylabels(axes[:, 0])
+        frf_axes(figure, axes, (0, 0.5, 1))
 
 
 @contextmanager
@@ -111,11 +100,8 @@ def figure_file(path: Path, size: tuple[float, float], title: str, caption: str)
     """
     draft = path.with_name(f".{path.name}.draft.png")
     try:
-        with saved_figure(draft, size) as figure:
+        with saved_figure(draft, size, title, textwrap.fill(caption, width=int(14.5 * size[0]))) as figure:
             yield figure
-            if title:
-                figure.suptitle(title, fontsize=12)
-            figure.supxlabel(textwrap.fill(caption, width=int(14.5 * size[0])), fontsize=8.5, color=INK)
         write_whole(path, lambda temporary: draft.replace(temporary))
     finally:
         draft.unlink(missing_ok=True)

@@ -13,13 +13,12 @@ from scenarios.bump.runs import RUNG_DOWN, BumpNumbers, relative_acceleration, r
 from scenarios.charts import figure_file, rows_of
 from scenarios.study import computed_by
 from vehicle.car import Run
-from vehicle.errors import OutputError
 from vehicle.excitation.bump import BUMP_START_S
 from vehicle.output.folder import write_whole
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.rendering.figure import COLOURS
-from vehicle.rendering.film import QUALITY
-from vehicle.rendering.layout import Layout
+from vehicle.rendering.film import write_film
+from vehicle.rendering.overlay import Layout, font
 from vehicle.rendering.shot import Shot
 
 VERTICAL = {
@@ -190,33 +189,17 @@ def side_by_side(path: Path, runs: Sequence[Run], sizes: Sequence[float], *, sta
     captions = [f"bump of {1e3 * size:g} mm, motion {SHOWN_BUMP / size:g} times" for size in sizes]
     banner = np.concatenate([_banner(text) for text in captions], axis=1)
 
-    import mediapy
-
-    mediapy.set_ffmpeg(ffmpeg)
-
-    def write(file: Path) -> None:
-        shape = (banner.shape[0] + HALF[1], banner.shape[1])
-        with mediapy.VideoWriter(
-            file, shape=shape, fps=FPS, codec="h264", crf=QUALITY, encoded_format="yuv420p"
-        ) as writer:
-            for halves in zip(*(shot.frames(backend) for shot in shots), strict=True):
-                writer.add_image(np.concatenate([banner, np.concatenate(halves, axis=1)], axis=0))
-
-    try:
-        write_whole(path, write)
-    except RuntimeError as error:
-        # What ffmpeg complains about comes as a RuntimeError with these words.
-        if str(error).startswith("Error writing"):
-            raise OutputError(f"{path}: the film cannot be written: {' '.join(str(error).split())}") from None
-        raise
+    pairs = zip(*(shot.frames(backend) for shot in shots), strict=True)
+    frames = (np.concatenate([banner, np.concatenate(halves, axis=1)], axis=0) for halves in pairs)
+    shape = (banner.shape[0] + HALF[1], banner.shape[1])
+    write_whole(path, lambda file: write_film(file, frames, shape, FPS, ffmpeg))
 
 
 def _banner(text: str) -> Picture:
     """A strip with a text in its middle, (height, width, 3)."""
-    import matplotlib
-    from PIL import Image, ImageDraw, ImageFont
+    from PIL import Image, ImageDraw
 
-    font = ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans-Bold.ttf"), 24)
     image = Image.new("RGB", (HALF[0], BANNER), (28, 37, 48))
-    ImageDraw.Draw(image).text((HALF[0] / 2, BANNER / 2), text, fill=(255, 255, 255), font=font, anchor="mm")
+    place = (HALF[0] / 2, BANNER / 2)
+    ImageDraw.Draw(image).text(place, text, fill=(255, 255, 255), font=font(24, bold=True), anchor="mm")
     return np.asarray(image)

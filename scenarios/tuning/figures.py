@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.charts import INK, FrfCurve, draw_frf, figure_file, rows_of
+from scenarios.charts import FrfCurve, draw_frf, figure_file, rows_of
 from vehicle.car import Car
 from vehicle.names import channel_units
-from vehicle.rendering.figure import COLOURS
+from vehicle.rendering.figure import COLOURS, INK
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.record_target import RecordTarget
 from vehicle.tuning.result import TuningResult

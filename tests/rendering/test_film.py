@@ -11,8 +11,7 @@ import pytest
 from vehicle.errors import ConfigurationError, OutputError
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.rendering.film import film
-from vehicle.rendering.layout import Layout
-from vehicle.rendering.overlay import SLIP_COLOUR, STICK_COLOUR
+from vehicle.rendering.overlay import SLIP_COLOUR, STICK_COLOUR, Layout
 from vehicle.rendering.shot import Shot
 
 

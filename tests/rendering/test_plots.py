@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.names import acceleration_channels
-from vehicle.rendering.excerpt import excerpt_start, liveliest
-from vehicle.rendering.frf_plot import plot_frf, wrapped_phase
-from vehicle.rendering.time_plot import plot_time
+from vehicle.rendering.figure import wrapped_phase
+from vehicle.rendering.plots import plot_frf, plot_time
+from vehicle.rendering.recorded_run import excerpt_start, liveliest
 
 
 @pytest.fixture(scope="module")

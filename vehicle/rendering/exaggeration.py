@@ -21,7 +21,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
-from vehicle.names import WHEELS
+from vehicle.rendering.recorded_run import wheels_of
 from vehicle.simulation.recording import Recording
 
 Vector = npt.NDArray[np.float64]
@@ -70,13 +70,12 @@ class Motion:
         self.position = data.xpos.copy()
         self.orientation = data.xmat.reshape(-1, 3, 3).copy()
         self.geom_position = model.geom_pos.copy()
-        self.geom_orientation = _matrices(model.geom_quat)
-        plates = [(int(model.body_mocapid[model.body(f"plate_{wheel}").id]), wheel) for wheel in WHEELS]
-        rest = data.mocap_pos.copy()
-        rows = []
+        self.geom_orientation = Rotation.from_quat(model.geom_quat, scalar_first=True).as_matrix()
+        plates = {wheel: int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in wheels_of(recording)}
+        rest, rows = data.mocap_pos.copy(), []
         for index in range(first, last):
             data.qpos[:] = recording.poses[index]
-            for plate, wheel in plates:
+            for wheel, plate in plates.items():
                 lift = np.interp(recording.pose_time[index], recording.time, recording[f"plate_{wheel}_displacement"])
                 data.mocap_pos[plate] = rest[plate] + np.array([0.0, 0.0, lift])
             mujoco.mj_kinematics(model, data)
@@ -129,17 +128,3 @@ class Motion:
         turned = Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
         arm = points - self.position[body]
         return np.asarray(self.position[body] + factor * state.translation[body] + arm @ turned.T)
-
-
-def round_factor(factor: float) -> float:
-    """Round an exaggeration down to 1, 1.5, 2, 3, 5 or 7 times a power of ten; never below 1."""
-    if factor <= 1.0:
-        return 1.0
-    power = 10.0 ** np.floor(np.log10(factor))
-    steps = np.array([1.0, 1.5, 2.0, 3.0, 5.0, 7.0])
-    return float(steps[steps <= factor / power * (1.0 + 1e-12)][-1] * power)
-
-
-def _matrices(quaternions: Vector) -> Vector:
-    """Rotation matrices of MuJoCo's quaternions (w, x, y, z)."""
-    return np.asarray(Rotation.from_quat(quaternions, scalar_first=True).as_matrix())

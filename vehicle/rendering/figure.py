@@ -5,13 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 COLOURS = ("#1f5fa8", "#d1495b", "#2e8b57", "#d98e04", "#6a4c93")
 """Line colours, told apart in print and by most colour-blind readers."""
+
+INK = "#444444"
+"""Colour of captions."""
+
+FRF_BAND = (1.0, 50.0)
+FRF_TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
+"""Frequency axis of an FRF [Hz]."""
 
 STYLE = {
     "figure.dpi": 110,
@@ -34,12 +45,14 @@ STYLE = {
 
 
 @contextmanager
-def saved_figure(path: Path, size: tuple[float, float]) -> Iterator[Figure]:
+def saved_figure(path: Path, size: tuple[float, float], title: str = "", caption: str = "") -> Iterator[Figure]:
     """Give an empty figure; write it as PNG when the block is done.
 
     Args:
         path: PNG file.
         size: width and height [inch].
+        title: above the figure; none if empty.
+        caption: below it; none if empty.
 
     Yields:
         The figure.
@@ -51,4 +64,57 @@ def saved_figure(path: Path, size: tuple[float, float]) -> Iterator[Figure]:
     with style.context(["default", STYLE]):
         figure = Figure(figsize=size, layout="constrained")
         yield figure
+        if title:
+            figure.suptitle(title, fontsize=12)
+        if caption:
+            figure.supxlabel(caption, fontsize=8.5, color=INK)
         figure.savefig(path, format="png", metadata={"Software": None})
+
+
+def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[float, ...]) -> None:
+    """Scales, limits and labels of rows of magnitude, phase and coherence over one logarithmic frequency axis.
+
+    Args:
+        figure: the figure.
+        axes: its axes, (3, columns), y shared by the rows.
+        coherence_ticks: of the coherence axis.
+    """
+    upper, middle, lower = axes[:, 0]
+    upper.set(xscale="log", yscale="log", xlim=FRF_BAND, ylabel="acceleration / plate displacement [(m/s²)/m]")
+    middle.set(ylim=(-180.0, 180.0), yticks=(-180, -90, 0, 90, 180), ylabel="phase [deg]")
+    lower.set(ylim=(0.0, 1.05), yticks=coherence_ticks, ylabel="coherence [-]")
+    for axis in axes[2]:
+        axis.set_xlabel("frequency [Hz]")
+        axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
+        axis.set_xticks([], minor=True)
+    figure.align_ylabels(axes[:, 0])
+
+
+def wrapped_phase(response: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Phase [deg] between -180 and 180, with NaN after each jump so that no line crosses the picture.
+
+    Args:
+        response: complex values over frequency, (m,).
+
+    Returns:
+        Phase of a line to draw, (m,); NaN at the first point behind a jump.
+    """
+    phase = np.degrees(np.angle(response))
+    phase[np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1] = np.nan
+    return np.asarray(phase)
+
+
+def shade(
+    axis: Axes, along: npt.ArrayLike, where: npt.NDArray[np.bool_], colour: str, label: str | None = None
+) -> None:
+    """Colour the whole height of an axis where something holds.
+
+    Args:
+        axis: the axis.
+        along: places on its horizontal scale, (n,).
+        where: whether it holds there, (n,).
+        colour: of the shade.
+        label: legend text.
+    """
+    transform = axis.get_xaxis_transform()
+    axis.fill_between(along, 0.0, 1.0, where=where, transform=transform, color=colour, zorder=0, label=label)

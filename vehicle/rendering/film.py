@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from vehicle.errors import OutputError
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
-from vehicle.rendering.layout import Layout
+from vehicle.rendering.overlay import Layout, Picture
 from vehicle.rendering.recorded_run import RecordedRun
 from vehicle.rendering.shot import Cut, Shot
 
@@ -52,22 +52,42 @@ def film(
     layout = Layout(width=size[0], height=size[1])
     shot = Shot(run, layout, start=start, duration=duration, slow=slow, exaggeration=exaggeration, fps=fps)
 
+    def counted() -> Iterator[Picture]:
+        for number, frame in enumerate(shot.frames(backend), start=1):
+            yield frame
+            if progress is not None:
+                progress(number / shot.cut.frames)
+
+    write_film(path, counted(), (layout.height, layout.width), fps, ffmpeg)
+    return shot.cut
+
+
+def write_film(path: Path, frames: Iterable[Picture], shape: tuple[int, int], fps: float, ffmpeg: str) -> None:
+    """Write frames as H.264 in MP4, whole or not at all.
+
+    Args:
+        path: MP4 file.
+        frames: pictures, (height, width, 3) each.
+        shape: height and width [pixel], even.
+        fps: frames per second [Hz].
+        ffmpeg: program that encodes.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
     import mediapy
 
     mediapy.set_ffmpeg(ffmpeg)
     try:
         path.open("wb").close()
         with mediapy.VideoWriter(
-            path, shape=(layout.height, layout.width), fps=fps, codec="h264", crf=QUALITY, encoded_format="yuv420p"
+            path, shape=shape, fps=fps, codec="h264", crf=QUALITY, encoded_format="yuv420p"
         ) as writer:
-            for number, frame in enumerate(shot.frames(backend), start=1):
+            for frame in frames:
                 writer.add_image(frame)
-                if progress is not None:
-                    progress(number / shot.cut.frames)
     except BaseException as error:
         path.unlink(missing_ok=True)
         # What ffmpeg complains about comes as a RuntimeError with these words.
         if isinstance(error, OSError) or str(error).startswith("Error writing"):
             raise OutputError(f"{path}: the film cannot be written: {' '.join(str(error).split())}") from None
         raise
-    return shot.cut

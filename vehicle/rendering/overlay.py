@@ -1,4 +1,4 @@
-"""What is written on a frame: input, time, factors, lamps of both dampers, colour bar, traces that run along."""
+"""Where things are in a frame, and what is written on it: input, time, lamps, colour bar, traces that run along."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
-from vehicle.rendering.colour_scale import colours
-from vehicle.rendering.layout import Layout
+from vehicle.errors import ConfigurationError
+from vehicle.rendering.scale import colours
 
 Picture = npt.NDArray[np.uint8]
 Vector = npt.NDArray[np.float64]
@@ -23,8 +23,52 @@ STICK_COLOUR = (38, 140, 84)
 SLIP_COLOUR = (214, 48, 49)
 GRID = (208, 212, 218)
 TRACE_COLOURS = ((31, 95, 168), (46, 139, 87), (209, 73, 91))
+BAND = (226, 240, 231)
 FINE = 2
 """Traces are drawn this many times larger and reduced, which smooths their lines."""
+
+SMALLEST = (320, 180)
+"""Width and height of a frame that can still be read [pixel]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Layout:
+    """Frame of a film: the car at the left, a close-up at the right, traces along the bottom.
+
+    Raises:
+        ConfigurationError: a side is odd (H.264 with yuv420p halves both) or too small to read.
+    """
+
+    width: int
+    """[pixel]"""
+    height: int
+    """[pixel]"""
+
+    def __post_init__(self) -> None:
+        if self.width % 2 or self.height % 2:
+            raise ConfigurationError(
+                f"film size: found {self.width} x {self.height}, both must be even; "
+                f"give {self.width + self.width % 2} x {self.height + self.height % 2}"
+            )
+        if self.width < SMALLEST[0] or self.height < SMALLEST[1]:
+            raise ConfigurationError(
+                f"film size: found {self.width} x {self.height}, at least {SMALLEST[0]} x {SMALLEST[1]} can be read"
+            )
+
+    @property
+    def view_height(self) -> int:
+        """Height of the views of the car [pixel]."""
+        return round(0.79 * self.height)
+
+    @property
+    def main_width(self) -> int:
+        """Width of the view of the whole car [pixel]."""
+        return round(0.70 * self.width)
+
+    @property
+    def trace_left(self) -> int:
+        """Left edge of the traces [pixel]."""
+        return round(0.19 * self.width)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -49,30 +93,22 @@ class Lamp:
     slipping: bool
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Overlay:
-    """Draws onto frames of one size.
+    """Draws onto frames of one size."""
 
-    Args:
-        layout: where things are.
-        heading: lines at the upper left; the first is bold.
-        time: sample times of the traces [s], (n,).
-        traces: what runs along.
-        visible: length of the traces on the screen [s].
-        scale_top: displacement at the top of the colour bar [mm].
-    """
-
-    def __init__(
-        self,
-        layout: Layout,
-        heading: Sequence[str],
-        time: Vector,
-        traces: Sequence[Trace],
-        visible: float,
-        scale_top: float,
-    ) -> None:
-        self.layout, self.heading, self.time, self.traces = layout, tuple(heading), time, tuple(traces)
-        self.visible, self.scale_top = visible, scale_top
-        self.unit = layout.height / 720.0
+    layout: Layout
+    """where things are"""
+    heading: Sequence[str]
+    """lines at the upper left; the first is bold"""
+    time: Vector
+    """sample times of the traces [s], (n,)"""
+    traces: Sequence[Trace]
+    """what runs along"""
+    visible: float
+    """length of the traces on the screen [s]"""
+    scale_top: float
+    """displacement at the top of the colour bar [mm]"""
 
     def draw(self, picture: Picture, time: float, lamps: Sequence[Lamp]) -> Picture:
         """Finish a frame.
@@ -98,10 +134,10 @@ class Overlay:
 
     def _px(self, length: float) -> int:
         """A length of the 720 line picture in this picture [pixel]."""
-        return max(round(length * self.unit), 1)
+        return max(round(length * self.layout.height / 720.0), 1)
 
     def _font(self, size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
-        return _font(max(round(size * self.unit), 6), bold)
+        return font(max(round(size * self.layout.height / 720.0), 6), bold)
 
     def _head(self, pen: ImageDraw.ImageDraw, time: float) -> None:
         """Input and level, time, factors."""
@@ -131,19 +167,14 @@ class Overlay:
         width, height = self._px(384), self._px(56)
         image = Image.new("RGB", (width, height), PAPER)
         pen = ImageDraw.Draw(image)
-        pen.text(
-            (self._px(8), self._px(4)),
-            "true displacement of the body [mm]; grey: at rest",
-            fill=INK,
-            font=self._font(14),
-        )
+        words = "true displacement of the body [mm]; grey: at rest"
+        pen.text((self._px(8), self._px(4)), words, fill=INK, font=self._font(14))
         left, right, top, bottom = self._px(10), width - self._px(10), self._px(23), self._px(35)
         shades = (255.0 * colours(np.linspace(0.0, 1.0, right - left), 1.0)[:, :3]).astype(np.uint8)
         image.paste(Image.fromarray(np.repeat(shades[None], bottom - top, axis=0)), (left, top))
         for share, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
-            text = f"{share * self.scale_top:.3g}"
             place = (left + share * (right - left), bottom + self._px(3))
-            pen.text(place, text, fill=INK, font=self._font(13), anchor=anchor)
+            pen.text(place, f"{share * self.scale_top:.3g}", fill=INK, font=self._font(13), anchor=anchor)
         return image
 
     @cached_property
@@ -181,10 +212,8 @@ class Overlay:
             panel = Image.new("RGB", (width * FINE, height), (255, 255, 255))
             pen = ImageDraw.Draw(panel)
             if trace.band is not None:
-                share = min(trace.band / trace.top, 1.0)
-                pen.rectangle(
-                    [0, height / 2 * (1 - share), width * FINE, height / 2 * (1 + share)], fill=(226, 240, 231)
-                )
+                half = height / 2 * min(trace.band / trace.top, 1.0)
+                pen.rectangle([0, height / 2 - half, width * FINE, height / 2 + half], fill=BAND)
             pen.line([(0, height / 2), (width * FINE, height / 2)], fill=GRID, width=FINE)
             up = height / 2 * (1.0 - trace.values[part] / trace.top)
             pen.line(list(zip(across.tolist(), up.tolist(), strict=True)), fill=colour, width=FINE + 1)
@@ -192,8 +221,8 @@ class Overlay:
             image.paste(panel.resize((width, bottom - top), Image.Resampling.BOX), (layout.trace_left, top))
 
 
-def _font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
-    """DejaVu Sans, which comes with matplotlib."""
+def font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
+    """DejaVu Sans of a size [pixel], which comes with matplotlib."""
     import matplotlib
 
     name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"

@@ -1,6 +1,160 @@
-"""The pictures of a run."""
+"""The two pictures of a run: FRFs of the main vertical channels, and the main time histories."""
 
-from vehicle.rendering.frf_plot import plot_frf
-from vehicle.rendering.time_plot import plot_time
+from __future__ import annotations
 
-__all__ = ["plot_frf", "plot_time"]
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.names import acceleration_channels
+from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, shade, wrapped_phase
+from vehicle.rendering.recorded_run import RecordedRun, liveliest, side_of, wheels_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Vector = npt.NDArray[np.float64]
+
+REGION = 1.96
+"""Half width of the band around a magnitude, in standard errors: 95 % of all records lie within it."""
+
+NO_LEVELS = (1.0, 1e5)
+"""Range of the magnitude [m/s2 per m] of a picture without any."""
+
+DETAIL = 2.0
+"""Length of the magnified stretch [s]."""
+
+LEGEND_ROOM = 0.22
+"""Share of the height of a panel kept free for its legend."""
+
+UNDRIVEN, SLIPPING, SLIP_LIMIT, MAGNIFIED = "#ececec", "#f2b8b5", "#8c2f39", "#fff3c4"
+
+
+def plot_frf(
+    path: Path,
+    run: RecordedRun,
+    response: FrequencyResponse,
+    caption: str,
+    channels: Sequence[str] | None = None,
+) -> None:
+    """Write the FRF picture: magnitudes with the 95 % band of their random error, grey where the input tells nothing.
+
+    Args:
+        path: PNG file.
+        run: the run; tells the excited wheel.
+        response: FRFs to the plate displacement [m/s2 per m].
+        caption: line under the picture: input, level, estimator.
+        channels: names of the rows of `response`; all acceleration channels by default.
+    """
+    rows = {name: row for row, name in enumerate(acceleration_channels() if channels is None else channels)}
+    wheel, side = run.wheel, side_of(run.wheel)
+    mount = {f"suspension_mount_{wheel}_acc_z": "body at suspension mount"}
+    corner = {f"knuckle_{wheel}_acc_z": "knuckle at damper bottom", f"damper_top_{wheel}_acc_z": "damper top"}
+    body = {"seat_rail_acc_z": "seat rail", "body_front_acc_z": "body front", "roof_left_rear_acc_z": "roof, left rear"}
+    groups = {
+        f"Suspension ({side}) and engine, vertical": corner | mount | {"engine_acc_z": "engine"},
+        "Body, vertical": body | mount,
+    }
+    frequency = response.frequency
+    inside = np.asarray(np.isfinite(response.response).any(axis=0))
+    shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels if name in rows]])
+    with saved_figure(path, (13.0, 8.6), f"FRFs to the plate under the {side} front wheel", caption) as figure:
+        axes = figure.subplots(3, 2, sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9))
+        for column, (title, labels) in enumerate(groups.items()):
+            magnitude, phase, coherence = axes[:, column]
+            for number, (name, label) in enumerate(labels.items()):
+                if name not in rows:
+                    continue
+                # The mount stands in both columns and looks the same in both.
+                style = {"color": COLOURS[4] if name in mount else COLOURS[number]}
+                row = rows[name]
+                values, error = np.abs(response.response[row]), REGION * response.random_error[row]
+                low = np.maximum(values - error, 0.01 * values)
+                magnitude.fill_between(frequency, low, values + error, alpha=0.25, linewidth=0.0, **style)
+                magnitude.plot(frequency, values, label=label, **style)
+                phase.plot(frequency, wrapped_phase(response.response[row]), **style)
+                coherence.plot(frequency, response.coherence[row], **style)
+            magnitude.set_title(title)
+            for axis in axes[:, column]:
+                shade(axis, frequency, ~inside, UNDRIVEN, "no FRF: no input")
+            magnitude.legend(loc="upper left")
+        frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
+        levels = shown[:, inside]
+        levels = levels[np.isfinite(levels) & (levels > 0.0)]
+        axes[0, 0].set_ylim(*(0.5 * levels.min(), 2.0 * levels.max()) if levels.size else NO_LEVELS)
+
+
+def plot_time(path: Path, run: RecordedRun) -> None:
+    """Write the main time histories: the whole record, its liveliest moment, and the characteristic of each damper.
+
+    Args:
+        path: PNG file.
+        run: the run.
+    """
+    recording, wheel, wheels = run.recording, run.wheel, wheels_of(run.recording)
+    time, velocity = recording.time, recording[f"damper_{wheel}_velocity"]
+    slip, side = run.car.model.vehicle.damper.slip_velocity, side_of(wheel)
+    corner = {f"knuckle_{wheel}_acc_z": f"knuckle {side}", f"damper_top_{wheel}_acc_z": f"damper top {side}"}
+    # label, scale from the unit of the channels to that of the label, legend text of each channel
+    panels: tuple[tuple[str, float, dict[str, str]], ...] = (
+        ("plate\ndisplacement [mm]", 1e3, _each("plate_{}_displacement", "plate", recording.excited or (wheel,))),
+        ("acceleration z\n[m/s²]", 1.0, {"seat_rail_acc_z": "seat rail"}),
+        ("acceleration z\n[m/s²]", 1.0, corner),
+        ("damper velocity\n[mm/s]", 1e3, _each("damper_{}_velocity", "damper", wheels)),
+        ("tyre force z\n[kN]", 1e-3, _each("tyre_{}_force_z", "tyre", wheels)),
+    )
+    start = liveliest(time, velocity, DETAIL)
+    end = min(start + DETAIL, float(time[-1]))
+    inside = (time >= start) & (time <= end)
+    caption = (
+        f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}; "
+        f"dashed: slip velocity ±{1e3 * slip:g} mm/s, red: {side} damper in slip"
+    )
+    with saved_figure(path, (15.0, 9.2), "Main time histories", caption) as figure:
+        grid = figure.add_gridspec(1, 2, width_ratios=(3.3, 1.0))
+        histories, characteristics = (figure.add_subfigure(grid[column]) for column in range(2))
+        axes = histories.subplots(len(panels), 2, sharey="row", width_ratios=(2.0, 1.6))
+        for (whole, detail), (unit, scale, lines) in zip(axes, panels, strict=True):
+            for number, (name, label) in enumerate(lines.items()):
+                style = {"color": COLOURS[number], "zorder": 2.5 - 0.1 * number}
+                values = scale * recording[name]
+                whole.plot(time, values, linewidth=0.5, label=label, **style)
+                detail.plot(time[inside], values[inside], **style)
+            lowest, highest = whole.get_ylim()
+            whole.set(ylim=(lowest, highest + LEGEND_ROOM * (highest - lowest)), ylabel=unit)
+            whole.legend(loc="upper right", ncols=2)
+            whole.axvspan(start, end, color=MAGNIFIED, zorder=0)
+            whole.set_xlim(time[0], time[-1])
+            detail.set_xlim(start, end)
+            if "velocity" in unit:
+                for axis in (whole, detail):
+                    for limit in (-1e3 * slip, 1e3 * slip):
+                        axis.axhline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--", zorder=4)
+                shade(detail, time[inside], np.abs(velocity[inside]) > slip, SLIPPING)
+        for axis in axes[:-1].flat:
+            axis.tick_params(labelbottom=False)
+        for axis in axes[-1]:
+            axis.set_xlabel("time [s]")
+        axes[0, 0].set_title("whole record")
+        axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
+        histories.align_ylabels(axes[:, 0])
+        for axis, name in zip(characteristics.subplots(len(wheels), 1, squeeze=False)[:, 0], wheels, strict=True):
+            _characteristic(axis, recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"], slip)
+            axis.set_title(f"{side_of(name)} damper")
+
+
+def _each(channel: str, label: str, wheels: Sequence[str]) -> dict[str, str]:
+    """Channel of each wheel to its legend text."""
+    return {channel.format(wheel): f"{label} {side_of(wheel)}" for wheel in wheels}
+
+
+def _characteristic(axis: Axes, velocity: Vector, force: Vector, slip: float) -> None:
+    """Damper force [N] over its velocity [m/s], every sample a point."""
+    axis.plot(1e3 * velocity, force, ".", markersize=1.5, color=COLOURS[0], zorder=3)
+    for limit in (-1e3 * slip, 1e3 * slip):
+        axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
+    axis.set(xlabel="damper velocity [mm/s]", ylabel="damper force [N]")

@@ -12,17 +12,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import SIDE_OF_WHEEL, WHEELS
 from vehicle.rendering.canvas import Canvas
-from vehicle.rendering.coil import Coil
-from vehicle.rendering.colour_scale import colours, round_up
-from vehicle.rendering.exaggeration import Motion, State, round_factor
-from vehicle.rendering.excerpt import excerpt_start
-from vehicle.rendering.layout import Layout
-from vehicle.rendering.overlay import Lamp, Overlay, Trace
-from vehicle.rendering.recorded_run import RecordedRun
+from vehicle.rendering.deforming import Coil, Wireframe
+from vehicle.rendering.exaggeration import Motion
+from vehicle.rendering.overlay import Lamp, Layout, Overlay, Trace
+from vehicle.rendering.recorded_run import RecordedRun, excerpt_start, side_of, wheels_of
+from vehicle.rendering.scale import colours, round_factor, round_up
 from vehicle.rendering.stage import close_up, stage_model, whole_car
-from vehicle.rendering.wireframe import Wireframe
 from vehicle.shapes import SHELL
 
 Picture = npt.NDArray[np.uint8]
@@ -50,23 +46,20 @@ CLEARED = (*SHELL, "body_seats", "body_dashboard", "body_floor", "body_exhaust",
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Cut:
-    """What of a record a film shows, and how.
-
-    Attributes:
-        start: first time [s].
-        frames: number of frames.
-        fps: frames per second of the film [Hz].
-        slow: how many times slower than the record.
-        exaggeration: factor of all motion.
-        reason: why it starts there.
-    """
+    """What of a record a film shows, and how."""
 
     start: float
+    """first time [s]"""
     frames: int
+    """number of frames"""
     fps: float
+    """frames per second of the film [Hz]"""
     slow: float
+    """how many times slower than the record"""
     exaggeration: float
+    """factor of all motion"""
     reason: str
+    """why it starts there"""
 
     @property
     def interval(self) -> float:
@@ -102,7 +95,7 @@ class Shot:
         exaggeration: float | None,
         fps: float,
     ) -> None:
-        self.run, self.layout = run, layout
+        self.run, self.layout, self.wheels = run, layout, wheels_of(run.recording)
         recording = run.recording
         _check_options(float(recording.time[-1]), start, duration, slow, exaggeration, fps)
         self.slip = run.car.model.vehicle.damper.slip_velocity
@@ -115,40 +108,39 @@ class Shot:
         self.model = stage_model(run.car.model, (layout.width, layout.view_height))
         self.motion = Motion(self.model, recording, start, start + length)
         self.wireframe = Wireframe(run.car.model, self.motion)
-        times = start + np.arange(frames) / (fps * slow)
         self.exposure = 1.0 / (fps * slow)
-        largest, node = self._largest(times)
-        self.cut = Cut(
-            start=start,
-            frames=frames,
-            fps=fps,
-            slow=slow,
-            exaggeration=round_factor(VISIBLE_TRAVEL / largest) if exaggeration is None else exaggeration,
-            reason=reason,
-        )
+        largest, node = self._largest(start + np.arange(frames) / (fps * slow))
+        factor = round_factor(VISIBLE_TRAVEL / largest) if exaggeration is None else exaggeration
+        self.cut = Cut(start=start, frames=frames, fps=fps, slow=slow, exaggeration=factor, reason=reason)
         self.visible = VISIBLE_TIME / np.sqrt(slow)
         self.scale_top = 1e-3 * round_up(1e3 * node)
         self.overlay = Overlay(
-            layout, self._heading(), recording.time, self._traces(), self.visible, 1e3 * self.scale_top
+            layout=layout,
+            heading=self._heading(),
+            time=recording.time,
+            traces=self._traces(),
+            visible=self.visible,
+            scale_top=1e3 * self.scale_top,
         )
 
     def frames(self, backend: str) -> Iterator[Picture]:
         """Draw all frames, (height, width, 3) each."""
-        layout, model = self.layout, self.model
+        layout, model, factor = self.layout, self.model, self.cut.exaggeration
         data = mujoco.MjData(model)
         # Lights and cameras take their places once; the geoms are then placed frame by frame.
         for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
             place(model, data)
-        coils = [Coil(self.motion, wheel) for wheel in WHEELS]
+        coils = [Coil(self.motion, wheel) for wheel in self.wheels]
         views = self._views()
         with Canvas(model, (layout.width, layout.view_height), backend) as canvas:
             for number in range(self.cut.frames):
                 time = self.cut.start + number * self.cut.interval
                 state = self.motion.at(time, self.exposure)
-                self._place(data, coils, state)
+                data.geom_xpos[:], data.geom_xmat[:] = self.motion.geoms(state, factor)
                 for coil in coils:
+                    coil.write(data, coil.places(state, factor))
                     canvas.upload(coil.mesh)
-                places = self.wireframe.places(state, self.cut.exaggeration)
+                places = self.wireframe.places(state, factor)
                 shades = colours(self.wireframe.displacement(state), self.scale_top)
                 for camera, viewport, opacities in views:
                     with _opacity(model, opacities):
@@ -167,17 +159,10 @@ class Shot:
             (close_up(self.motion, wheel), right, ghosts | dict.fromkeys(CLEARED, 0.0)),
         ]
 
-    def _place(self, data: mujoco.MjData, coils: list[Coil], state: State) -> None:
-        """Write the exaggerated poses of all geoms."""
-        factor = self.cut.exaggeration
-        data.geom_xpos[:], data.geom_xmat[:] = self.motion.geoms(state, factor)
-        for coil in coils:
-            coil.write(data, coil.places(state, factor))
-
     def _largest(self, times: Vector) -> tuple[float, float]:
         """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
         parts, nodes = [], []
-        moving = [self.model.body(f"{part}_{wheel}").id for part in ("knuckle", "plate") for wheel in WHEELS]
+        moving = [self.model.body(f"{part}_{wheel}").id for part in ("knuckle", "plate") for wheel in self.wheels]
         for time in times:
             state = self.motion.at(time, self.exposure)
             parts.append(np.linalg.norm(state.translation[moving], axis=1))
@@ -194,7 +179,7 @@ class Shot:
             speed += f" (faster than {highest:g} Hz averages out)"
         return [
             f"{Path(run.signal.source).name}: RMS {1e3 * run.signal.rms(run.wheel):.3g} mm under the "
-            f"{SIDE_OF_WHEEL[run.wheel]} front wheel",
+            f"{side_of(run.wheel)} front wheel",
             f"motion exaggerated {cut.exaggeration:g} times, {speed}",
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
         ]
@@ -208,7 +193,7 @@ class Shot:
         for label, channel, scale, band in (
             ("plate [mm]", f"plate_{wheel}_displacement", 1e3, None),
             ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
-            (f"damper {SIDE_OF_WHEEL[wheel]} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
+            (f"damper {side_of(wheel)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
         ):
             values = scale * recording[channel]
             top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0)))
@@ -223,10 +208,10 @@ class Shot:
         part = slice(int(first), max(int(last), int(first) + 1))
         return [
             Lamp(
-                label=f"damper {SIDE_OF_WHEEL[wheel]}",
+                label=f"damper {side_of(wheel)}",
                 slipping=bool(np.any(np.abs(recording[f"damper_{wheel}_velocity"][part]) > self.slip)),
             )
-            for wheel in WHEELS
+            for wheel in self.wheels
         ]
 
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from vehicle.assembly.studio import add_studio
 from vehicle.assembly.visuals import add_shapes
-from vehicle.names import WHEEL_SIGN
 from vehicle.rendering.exaggeration import Motion
 from vehicle.shapes import SHELL, car_shapes
 from vehicle.simulation.car_model import CarModel
@@ -65,5 +64,5 @@ def close_up(motion: Motion, wheel: str) -> mujoco.MjvCamera:
     camera = mujoco.MjvCamera()
     camera.lookat = ends.mean(axis=0)
     camera.distance, camera.elevation = 2.0, -7.0
-    camera.azimuth = -60.0 * WHEEL_SIGN[wheel]
+    camera.azimuth = -60.0 * np.sign(camera.lookat[1])
     return camera

@@ -1,4 +1,4 @@
-"""Displacement as a colour, and the numbers beside the colour bar."""
+"""Scales of a film: numbers that read well, and displacement as a colour."""
 
 from __future__ import annotations
 
@@ -39,3 +39,10 @@ def round_up(value: float) -> float:
     power = 10.0 ** np.floor(np.log10(value))
     steps = np.array([1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0])
     return float(steps[steps >= value / power * (1.0 - 1e-12)][0] * power)
+
+
+def round_factor(factor: float) -> float:
+    """Round an exaggeration down to 1, 1.5, 2, 3, 5 or 7 times a power of ten; never below 1."""
+    power = 10.0 ** np.floor(np.log10(max(factor, 1.0)))
+    steps = np.array([1.0, 1.5, 2.0, 3.0, 5.0, 7.0])
+    return float(steps[steps <= max(factor, 1.0) / power * (1.0 + 1e-12)][-1] * power)

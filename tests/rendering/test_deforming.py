@@ -1,4 +1,4 @@
-"""The wireframe against the sites of the recorded places and their modal shapes."""
+"""What deforms in the film, against the sites of the recorded places and their modal shapes."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from vehicle.names import BODY_OUTPUTS
-from vehicle.rendering.coil import Coil
-from vehicle.rendering.colour_scale import colours, round_up
+from vehicle.rendering.deforming import Coil, Wireframe
 from vehicle.rendering.exaggeration import Motion
-from vehicle.rendering.wireframe import Wireframe
+from vehicle.rendering.scale import colours, round_up
 
 
 @pytest.fixture(scope="module")
