@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.claims import Findings
+from scenarios.claims import Findings, markdown
 from scenarios.damper_choice.claims import (
     half_optimum_claims,
     half_response_claims,
@@ -23,12 +23,14 @@ from scenarios.damper_choice.claims import (
     rate_claims,
     ratio_claims,
 )
-from scenarios.damper_choice.figures import (
-    half_response_figure,
-    iteration_figure,
-    optimum_figure,
-    quarter_response_figure,
-    trade_off_figure,
+from scenarios.damper_choice.figures import iteration_figure, optimum_figure, response_figures, trade_off_figure
+from scenarios.damper_choice.fit import (
+    HALF_FREE,
+    QUARTER_FREE,
+    fit_half_car,
+    fit_quarter_car,
+    half_car_values,
+    quarter_car_values,
 )
 from scenarios.damper_choice.runs import (
     MEASURES,
@@ -42,7 +44,6 @@ from scenarios.damper_choice.runs import (
     trade_off,
 )
 from scenarios.study import lumped_study
-from vehicle.lumped.damper_fit import HALF_FREE, QUARTER_FREE, fit_half_car, fit_quarter_car
 from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
 from vehicle.parameters.toml_file import as_table
 from vehicle.parameters.vehicle import load_vehicle
@@ -77,8 +78,7 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
         *rate_claims(found["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
         *half_optimum_claims(found["highway"]["physical"], "physical"),
     ]
-    quarter_response_figure(folder, lines, quarter)
-    half_response_figure(folder, wide, half)
+    response_figures(folder, lines, quarter, wide, half)
     for road, measures in found.items():
         optimum_figure(folder, measures, road)
     iteration_figure(folder, found["highway"]["printed"], printed)
@@ -98,66 +98,54 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
 
 
 def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:
-    lines = ["Optimum damping [N s/m] and the measures there [-]:", ""]
-    lines += [
-        "| road | measure | quarter car | half car, equal: front | rear | iteration: front, rear | R front, rear "
-        "| joint optimum: front, rear | R front, rear |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
+    heads = ("road", "measure", "quarter car", "half car, equal: front", "rear", "iteration: front, rear")
+    rows = []
     for road, measures in found.items():
         for name, one in measures.items():
             last, (front, rear, values) = one.continuous[-1], one.joint
-            lines.append(
-                f"| {road} | {name} | {one.quarter_optimum.damping:.0f} | {one.equal_optima[0].damping:.0f} "
-                f"| {one.equal_optima[1].damping:.0f} | {last.front:.0f}, {last.rear:.0f} "
-                f"| {last.fluctuation[0]:.3f}, {last.fluctuation[1]:.3f} | {front:.0f}, {rear:.0f} "
-                f"| {values[0]:.3f}, {values[1]:.3f} |"
-            )
+            optima = (f"{best.damping:.0f}" for best in (one.quarter_optimum, *one.equal_optima))
+            iterated = (f"{last.front:.0f}, {last.rear:.0f}", "{:.3f}, {:.3f}".format(*last.fluctuation))
+            joint = (f"{front:.0f}, {rear:.0f}", "{:.3f}, {:.3f}".format(*values))
+            rows.append((road, name, *optima, *iterated, *joint))
     heights = " and ".join(
         f"{1e3 * math.sqrt(road.roughness / road.decay):.0f} mm ({name})" for name, road in roads.items()
     )
-    lines += [
-        "",
-        "The iteration lets each end look after its own tyre, the joint optimum (scipy.optimize, Nelder-Mead) after "
-        "the sum of both. Physical ratios above 1/3 mean that the tyres leave these roads: the printed densities have "
-        f"an RMS height of {heights}, so the values rank dampers and no more.",
-    ]
-    return "\n".join(lines)
+    return "\n\n".join(
+        [
+            "Optimum damping [N s/m] and the measures there [-]:",
+            markdown((*heads, "R front, rear", "joint optimum: front, rear", "R front, rear"), rows),
+            "The iteration lets each end look after its own tyre, the joint optimum (scipy.optimize, Nelder-Mead) "
+            "after the sum of both. Physical ratios above 1/3 mean that the tyres leave these roads: the printed "
+            f"densities have an RMS height of {heights}, so the values rank dampers and no more.",
+        ]
+    )
 
 
 def _trade_note(trades: Mapping[str, TradeOff]) -> str:
-    lines = [
-        "ISO 8608, 80 km/h, linear quarter car; every class doubles all values, so the optima hold for A to H:",
-        "",
-    ]
-    lines += [
-        "| car | own damping | least tyre load at | best comfort (Wk) at | class C, own damper: tyre load, "
-        "acceleration, travel |",
-        "|---|---|---|---|---|",
-    ]
+    own_heads = "class C, own damper: tyre load, acceleration, travel"
+    rows = []
     for name, trade in trades.items():
-        row = trade.measures["C"]
-        own = [
-            float(np.interp(trade.own, trade.damping, [getattr(one, key) for one in row]))
+        load, acceleration, travel = (
+            float(np.interp(trade.own, trade.damping, [getattr(one, key) for one in trade.measures["C"]]))
             for key in ("tyre_load", "acceleration", "travel")
-        ]
-        lines.append(
-            f"| {name} | {trade.own:.0f} | {trade.best('tyre_load'):.0f} | {trade.best('acceleration'):.0f} N s/m "
-            f"| {own[0]:.3f}, {own[1]:.3f} m/s2, {1e3 * own[2]:.2f} mm |"
         )
-    lines += [
-        "",
-        "Complete car: front right quarter from the complete car's own parameters (share of body and engine on the "
-        "wheel, spring and damper along the strut); rigid body, no friction, no mounts.",
-    ]
-    return "\n".join(lines)
+        best = f"{trade.best('acceleration'):.0f} N s/m"
+        measures = f"{load:.3f}, {acceleration:.3f} m/s2, {1e3 * travel:.2f} mm"
+        rows.append((name, f"{trade.own:.0f}", f"{trade.best('tyre_load'):.0f}", best, measures))
+    return "\n\n".join(
+        [
+            "ISO 8608, 80 km/h, linear quarter car; every class doubles all values, so the optima hold for A to H:",
+            markdown(("car", "own damping", "least tyre load at", "best comfort (Wk) at", own_heads), rows),
+            "Complete car: front right quarter from the complete car's own parameters (share of body and engine on the "
+            "wheel, spring and damper along the strut); rigid body, no friction, no mounts.",
+        ]
+    )
 
 
 def _fit_note(parameters: DamperChoiceParameters) -> str:
-    half = parameters.half_car
-    index = half.pitch_inertia / (half.sprung_mass * half.front_arm * half.rear_arm)
+    index = half_car_values(parameters.half_car)[1]
     return (
-        "Vehicle parameters are not printed. Fitted (vehicle/lumped/damper_fit.py lists every target): "
+        "Vehicle parameters are not printed. Fitted (scenarios/damper_choice/fit.py lists every target): "
         f"quarter car {', '.join(QUARTER_FREE)}; half car {', '.join(HALF_FREE)}; suspension stiffnesses from the "
         f"printed damping ratios; band width. The fitted half car has J = {index:.2f} Ms a b; real cars have 0.8 to "
         "1.1: the printed influence of one end on the other asks for a body that pitches more easily than a car's. "
@@ -196,28 +184,13 @@ def _trade_data(trade: TradeOff) -> dict[str, Any]:
 
 def _refit(parameters: DamperChoiceParameters) -> dict[str, Any]:
     """Repeat the fit from the shipped values."""
-    quarter, half = parameters.quarter_car, parameters.half_car
-    base = half.front_arm + half.rear_arm
-    index = half.pitch_inertia / (half.sprung_mass * half.front_arm * half.rear_arm)
-    starts = (
-        (quarter.sprung_mass, quarter.wheel.unsprung_mass, quarter.wheel.tyre_stiffness),
-        (
-            half.sprung_mass,
-            index,
-            base,
-            half.front_arm / base,
-            half.front.unsprung_mass,
-            half.rear.unsprung_mass,
-            half.front.tyre_stiffness,
-            half.rear.tyre_stiffness,
-        ),
-    )
+    quarter, half = quarter_car_values(parameters.quarter_car), half_car_values(parameters.half_car)
     result: dict[str, Any] = {}
     road, bands = parameters.highway, parameters.bands
-    heavy = (*starts[1][:1], 1.5 * HEAVY_INDEX, *starts[1][2:])
+    heavy = np.where(np.arange(half.size) == HALF_FREE.index("inertia_index"), 1.5 * HEAVY_INDEX, half)
     for name, names, (values, residuals) in (
-        ("quarter_car", QUARTER_FREE, fit_quarter_car(starts[0], road, bands)),
-        ("half_car", HALF_FREE, fit_half_car(starts[1], road, bands)),
+        ("quarter_car", QUARTER_FREE, fit_quarter_car(quarter, road, bands)),
+        ("half_car", HALF_FREE, fit_half_car(half, road, bands)),
         ("half_car_heavy", HALF_FREE, fit_half_car(heavy, road, bands, least_index=HEAVY_INDEX)),
     ):
         result[name] = {

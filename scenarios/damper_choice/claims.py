@@ -6,10 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim
+from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
 from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
-from vehicle.lumped.damper_fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
-from vehicle.lumped.road_holding import printed_load_fluctuation
-from vehicle.lumped.road_holding_models import quarter_car_model
+from vehicle.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.parameters.damper_choice import DamperChoiceParameters
 
 Array = npt.NDArray[np.float64]
@@ -30,12 +29,9 @@ ASIDE = 1500.0
 def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
     """Rows on the damping ratios: the fit of sqrt(k m) to several printed ratios at once."""
     quarter, half = parameters.quarter_car, parameters.half_car
-    wheelbase = half.front_arm + half.rear_arm
-    ends = (
-        ("quarter car", QUARTER_RATIOS, quarter.wheel.suspension_stiffness, quarter.sprung_mass),
-        ("half car front", FRONT_RATIOS, half.front.suspension_stiffness, half.sprung_mass * half.rear_arm / wheelbase),
-        ("half car rear", REAR_RATIOS, half.rear.suspension_stiffness, half.sprung_mass * half.front_arm / wheelbase),
-    )
+    tyres = (*quarter_car_model(quarter).tyres, *half_car_model(half).tyres)
+    names = (("quarter car", QUARTER_RATIOS), ("half car front", FRONT_RATIOS), ("half car rear", REAR_RATIOS))
+    ends = [(*one, t.axle.suspension_stiffness, t.sprung_share) for one, t in zip(names, tyres, strict=True)]
     why = "c / (2 sqrt(k m)); one sqrt(k m) is fitted to four printed ratios, so each may be off by its last digit"
     return [
         FITTED.number(f"{name}: damping ratio at {c:.0f} N s/m", printed, c / (2.0 * np.sqrt(k * m)), 0.011, why)
@@ -187,18 +183,20 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
         ),
     ]
     for step, printed, figure in ((first, 4250.0, 11), (second, 3000.0, 12), (third, 4250.0, 13)):
-        ours = step.front if step.changed == "front" else step.rear
         rows.append(
             kind.number(
-                f"figure {figure}: {step.changed} damping, {measure} measure [N s/m]", printed, ours, READING, why
+                f"figure {figure}: {step.changed} damping, {measure} measure [N s/m]",
+                printed,
+                step.damping,
+                READING,
+                why,
             )
         )
     rows.append(
         kind.statement(
             f"iteration converges in three steps, {measure} measure",
             "3 steps",
-            f"{len(found.read_off)} steps: "
-            + ", ".join(f"{s.changed} {s.front if s.changed == 'front' else s.rear:.0f}" for s in found.read_off),
+            f"{len(found.read_off)} steps: " + ", ".join(f"{s.changed} {s.damping:.0f}" for s in found.read_off),
             len(found.read_off) == 3,
             "each end read among multiples of 250 N s/m, as printed",
         )

@@ -8,36 +8,50 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.charts import chart, lines
+from scenarios.damper_choice.optimum import Fluctuation
 from scenarios.damper_choice.runs import READ_OFF, SPEED, START_REAR, RoadHolding, TradeOff
-from vehicle.lumped.damper_optimum import Fluctuation
-from vehicle.lumped.road_spectrum import ROAD_CLASSES
+from vehicle.lumped.half_car_rider import ENDS
 from vehicle.rendering.figure import COLOURS
 
 Array = npt.NDArray[np.float64]
+
+Responses = dict[float, Array]
 
 STYLES = ("-", "--", "-.", ":")
 
 FITTED = "Vehicle parameters fitted to the printed results."
 
 
-def quarter_response_figure(folder: Path, frequency: Array, responses: dict[float, Array]) -> None:
-    """Figures 2 and 3."""
-    caption = f"Quarter car, displacement per road displacement. {FITTED}"
-    with chart(folder / "figure_02_03_quarter_car.png", caption, columns=2, size=(11.0, 4.8)) as panels:
-        for index, (panel, title) in enumerate(zip(panels, ("unsprung mass", "sprung mass"), strict=True)):
-            _responses(panel, frequency, {c: found[index] for c, found in responses.items()}, title, "[m/m]")
-            panel.set_xlim(0.0, 15.0)
-
-
-def half_response_figure(folder: Path, frequency: Array, responses: dict[float, Array]) -> None:
-    """Figures 5 to 8."""
-    caption = f"Half car, equal dampers, both wheels on the same road in phase. {FITTED}"
-    with chart(folder / "figure_05_to_08_half_car.png", caption, rows=2, columns=2, size=(11.0, 8.4)) as panels:
-        titles = ("front unsprung mass", "rear unsprung mass", "heave", "pitch")
-        for index, (panel, title) in enumerate(zip(panels, titles, strict=True)):
-            unit = "[rad/m]" if title == "pitch" else "[m/m]"
-            _responses(panel, frequency, {c: found[index] for c, found in responses.items()}, title, unit)
-            panel.set_xlim(0.0, 30.0)
+def response_figures(folder: Path, narrow: Array, quarter: Responses, wide: Array, half: Responses) -> None:
+    """Figures 2 and 3, figures 5 to 8: responses over the frequency [Hz], damping -> (coordinates, lines)."""
+    for name, caption, titles, frequency, responses in (
+        (
+            "02_03_quarter_car",
+            "Quarter car, displacement per road displacement.",
+            ("unsprung mass", "sprung mass"),
+            narrow,
+            quarter,
+        ),
+        (
+            "05_to_08_half_car",
+            "Half car, equal dampers, both wheels on the same road in phase.",
+            ("front unsprung mass", "rear unsprung mass", "heave", "pitch"),
+            wide,
+            half,
+        ),
+    ):
+        rows = len(titles) // 2
+        size = (11.0, 4.8 if rows == 1 else 8.4)
+        with chart(folder / f"figure_{name}.png", f"{caption} {FITTED}", rows=rows, columns=2, size=size) as panels:
+            for index, (panel, title) in enumerate(zip(panels, titles, strict=True)):
+                curves = [
+                    (f"{c:.0f} N s/m", found[index], color, style)
+                    for (c, found), color, style in zip(responses.items(), COLOURS, STYLES, strict=False)
+                ]
+                label = f"transmissibility {'[rad/m]' if title == 'pitch' else '[m/m]'}"
+                lines(panel, frequency, curves, xlabel="frequency [Hz]", ylabel=label, title=title)
+                panel.set_ylim(bottom=0.0)
+                panel.set_xlim(0.0, 15.0 * rows)
 
 
 def optimum_figure(folder: Path, found: dict[str, RoadHolding], road: str) -> None:
@@ -67,29 +81,18 @@ def iteration_figure(folder: Path, found: RoadHolding, measure: Fluctuation) -> 
         f"dots at the best multiple of 250 N s/m. {FITTED}"
     )
     with chart(folder / "figure_11_12_13_iteration.png", caption, columns=3, size=(14.0, 4.8)) as panels:
-        rear, front = START_REAR, float("nan")
+        held = {"front": float("nan"), "rear": START_REAR}
         for panel, step, number in zip(panels, found.read_off[:3], (11, 12, 13), strict=True):
-            end = 0 if step.changed == "front" else 1
-            held = rear if end == 0 else front
-            pairs = [(c, held) if end == 0 else (held, c) for c in READ_OFF]
-            values = [float(measure(float(a), float(b))[end]) for a, b in pairs]
-            other = "rear" if end == 0 else "front"
-            title = f"figure {number}: {other} held at {held:.0f} N s/m"
+            end = ENDS.index(step.changed)
+            other = ENDS[1 - end]
+            pairs = ({**held, step.changed: float(c)} for c in READ_OFF)
+            values = [float(measure(pair["front"], pair["rear"])[end]) for pair in pairs]
+            title = f"figure {number}: {other} held at {held[other]:.0f} N s/m"
             curve = (step.changed, values, COLOURS[1 + end], "-")
             lines(panel, READ_OFF, [curve], xlabel=f"{step.changed} damping [N s/m]", ylabel="R [-]", title=title)
-            best = step.front if end == 0 else step.rear
-            panel.plot(best, step.fluctuation[end], "o", color=COLOURS[1 + end], markersize=5)
+            panel.plot(step.damping, step.fluctuation[end], "o", color=COLOURS[1 + end], markersize=5)
             panel.set_ylim(bottom=0.0)
-            front, rear = step.front, step.rear
-
-
-def _responses(panel: object, frequency: Array, curves: dict[float, Array], title: str, unit: str) -> None:
-    drawn = [
-        (f"{c:.0f} N s/m", values, color, style)
-        for (c, values), color, style in zip(curves.items(), COLOURS, STYLES, strict=False)
-    ]
-    lines(panel, frequency, drawn, xlabel="frequency [Hz]", ylabel=f"transmissibility {unit}", title=title)
-    panel.set_ylim(bottom=0.0)  # type: ignore[attr-defined]
+            held[step.changed] = step.damping
 
 
 def trade_off_figure(path: Path, found: TradeOff, name: str) -> None:
@@ -101,7 +104,7 @@ def trade_off_figure(path: Path, found: TradeOff, name: str) -> None:
         "values. Ring: the car's own damper; square: least tyre load; triangle: best comfort. Above the dashed line "
         "(1/3 of the static load) the tyre leaves the road now and then and the linear values no longer hold."
     )
-    colors = colormaps["viridis"](np.linspace(0.0, 0.9, len(ROAD_CLASSES)))
+    colors = colormaps["viridis"](np.linspace(0.0, 0.9, len(found.measures)))
     quantities = (
         ("tyre_load", 1.0, "RMS tyre force / static load [-]"),
         ("acceleration", 1.0, "RMS body acceleration, Wk [m/s$^2$]"),
@@ -128,8 +131,8 @@ def trade_off_figure(path: Path, found: TradeOff, name: str) -> None:
                 size, fill = (9, "none") if ring else (4, "full")
                 last.plot(x, y, marker, color=color, markersize=size, fillstyle=fill)
             last.annotate(road, (values["acceleration"][-1], values["tyre_load"][-1]), fontsize=9, color=color)
-        panels[0].axhline(1.0 / 3.0, color="#888888", linestyle="--", linewidth=0.9)
-        panels[3].axhline(1.0 / 3.0, color="#888888", linestyle="--", linewidth=0.9)
+        for panel in (panels[0], panels[3]):
+            panel.axhline(1.0 / 3.0, color="#888888", linestyle="--", linewidth=0.9)
         for panel in panels[:3]:
             panel.axvline(found.own, color="#888888", linestyle=":", linewidth=0.9)
         panels[3].set_xlabel("RMS body acceleration, Wk [m/s$^2$]")

@@ -8,12 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.damper_choice.optimum import Fluctuation, Optimum, Step, iterate, joint_optimum, optimum
 from vehicle.analysis.weighting import weighting
-from vehicle.lumped.damper_optimum import Fluctuation, Optimum, Step, iterate, joint_optimum, optimum
-from vehicle.lumped.ride_measures import RideMeasures, ride_measures
-from vehicle.lumped.road_holding import printed_load_fluctuation, tyre_load_ratio
-from vehicle.lumped.road_holding_models import RoadHoldingModel, half_car_model, quarter_car_model
-from vehicle.lumped.road_spectrum import ROAD_CLASSES, iso_8608_density
+from vehicle.excitation.iso_road import CLASSES, REFERENCE
+from vehicle.lumped.road_holding import (
+    RideMeasures,
+    RoadHoldingModel,
+    half_car_model,
+    printed_load_fluctuation,
+    quarter_car_model,
+    ride_measures,
+    tyre_load_ratio,
+)
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.damper_choice import (
     DamperChoiceParameters,
@@ -186,15 +192,14 @@ def trade_off(car: RoadHoldingQuarterCar, damping: npt.ArrayLike) -> TradeOff:
     lines = np.asarray(np.sqrt(EDGES[1:] * EDGES[:-1]), dtype=np.float64)
     width = np.diff(EDGES)
     coefficients = np.asarray(damping, dtype=np.float64)
+    # Gd(n) = Gd(n0) (n / n0)^-2 with n = f / v, hence G(f) = Gd(n0) n0^2 v / f^2.
+    road = {name: level * REFERENCE**2 * SPEED / lines**2 for name, level in CLASSES.items()}
     weight = weighting("Wk").spectrum_factor(lines)
     return TradeOff(
         damping=coefficients,
         measures={
-            name: [
-                ride_measures(car, c, lines, iso_8608_density(name, SPEED, lines), width, weight)
-                for c in coefficients.tolist()
-            ]
-            for name in ROAD_CLASSES
+            name: [ride_measures(car, c, lines, spectrum, width, weight) for c in coefficients.tolist()]
+            for name, spectrum in road.items()
         },
         own=car.wheel.suspension_damping,
     )

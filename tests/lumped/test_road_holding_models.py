@@ -7,7 +7,7 @@ import pytest
 import sympy
 
 from vehicle.errors import ConfigurationError
-from vehicle.lumped.road_holding_models import half_car_model, quarter_car_model
+from vehicle.lumped.road_holding import half_car_model, quarter_car_model
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.damper_choice import RoadHoldingHalfCar, RoadHoldingQuarterCar, damper_choice_parameters
 

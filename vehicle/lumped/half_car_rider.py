@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.linear.parts import Link, Network, masses_of, spring_damper
-from vehicle.linear.system import LinearSystem
+from vehicle.linear.system import LinearSystem, Row
 from vehicle.lumped.history import Array, History
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters, Limb
@@ -83,10 +83,8 @@ def half_car_rider(parameters: HalfCarRiderParameters) -> LinearSystem:
         _on(parameters.upper_limb, {"upper_limb": 1.0, "seat": -1.0}),
         _on(parameters.lower_limb, {"lower_limb": 1.0, "seat": -1.0}),
         _on(parameters.seat, {"seat": 1.0, **{name: -value for name, value in place["seat_base"].items()}}),
-        _suspension(parameters.front, place["front_travel"]),
-        _suspension(parameters.rear, place["rear_travel"]),
-        _tyre(parameters.front, "front"),
-        _tyre(parameters.rear, "rear"),
+        *axle_links(parameters.front, place["front_travel"], "front_wheel", "front_road"),
+        *axle_links(parameters.rear, place["rear_travel"], "rear_wheel", "rear_road"),
     )
     coordinates, extra = tuple(masses), {name: form for name, form in place.items() if name not in masses}
     return Network(coordinates=coordinates, masses=masses_of(masses), links=links, outputs=extra, inputs=ROADS).system()
@@ -143,13 +141,21 @@ def lift_off(time: npt.ArrayLike, load: npt.ArrayLike) -> list[tuple[float, floa
     return [(float(instants[a]), float(instants[b])) for a, b in zip(starts, ends, strict=True)]
 
 
-def _on(limb: Limb, extension: Mapping[str, float]) -> Link:
+def axle_links(axle: Axle, travel: Row, wheel: str, road: str, damping: float | None = None) -> tuple[Link, Link]:
+    """Suspension and tyre of one axle.
+
+    Args:
+        axle: its parameters.
+        travel: extension of the suspension.
+        wheel: coordinate of the unsprung mass.
+        road: input under it.
+        damping: damper coefficient in place of the axle's own [N s/m].
+    """
+    return (
+        spring_damper(travel, axle.suspension_stiffness, axle.suspension_damping if damping is None else damping),
+        spring_damper({wheel: 1.0, road: -1.0}, axle.tyre_stiffness, axle.tyre_damping),
+    )
+
+
+def _on(limb: Limb, extension: Row) -> Link:
     return spring_damper(extension, limb.stiffness, limb.damping)
-
-
-def _suspension(axle: Axle, travel: Mapping[str, float]) -> Link:
-    return spring_damper(travel, axle.suspension_stiffness, axle.suspension_damping)
-
-
-def _tyre(axle: Axle, end: str) -> Link:
-    return spring_damper({f"{end}_wheel": 1.0, f"{end}_road": -1.0}, axle.tyre_stiffness, axle.tyre_damping)

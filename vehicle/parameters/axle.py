@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vehicle.parameters.quantity import quantity, validate
+from vehicle.parameters.quantity import Validated, quantity
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Axle:
+class Axle(Validated):
     """Wheel mass, linear suspension and linear tyre of one end."""
 
     unsprung_mass: float = quantity("kg", "unsprung mass", above=0.0)
@@ -16,6 +16,3 @@ class Axle:
     suspension_damping: float = quantity("N s/m", "suspension damper coefficient", at_least=0.0)
     tyre_stiffness: float = quantity("N/m", "tyre stiffness", above=0.0)
     tyre_damping: float = quantity("N s/m", "tyre damper coefficient", at_least=0.0)
-
-    def __post_init__(self) -> None:
-        validate(self)

@@ -7,25 +7,22 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.axle import Axle
-from vehicle.parameters.quantity import quantity, validate
+from vehicle.parameters.quantity import Validated, quantity, validate
 from vehicle.parameters.toml_file import build, read_table
 
 FITTED = Path(__file__).with_name("damper_choice.toml")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RoadHoldingQuarterCar:
+class RoadHoldingQuarterCar(Validated):
     """Sprung mass on one wheel."""
 
     sprung_mass: float = quantity("kg", "sprung mass Ms", above=0.0)
     wheel: Axle
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RoadHoldingHalfCar:
+class RoadHoldingHalfCar(Validated):
     """Body in heave and pitch on a front and a rear axle."""
 
     sprung_mass: float = quantity("kg", "sprung mass Ms", above=0.0)
@@ -35,19 +32,13 @@ class RoadHoldingHalfCar:
     front: Axle
     rear: Axle
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ExponentialRoad:
+class ExponentialRoad(Validated):
     """Road displacement density G(f) = a exp(-b f) at one speed."""
 
     roughness: float = quantity("m2/Hz", "a", above=0.0)
     decay: float = quantity("s", "b", above=0.0)
-
-    def __post_init__(self) -> None:
-        validate(self)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -7,14 +7,14 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.axle import Axle
-from vehicle.parameters.quantity import quantity, validate
+from vehicle.parameters.quantity import Validated, quantity, validate
 from vehicle.parameters.toml_file import build, read_table
 
 PUBLISHED = Path(__file__).with_name("half_car_rider.toml")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class RiderBody:
+class RiderBody(Validated):
     """Sprung mass in heave and pitch; arms are measured from its centre of gravity."""
 
     mass: float = quantity("kg", "sprung mass mb", above=0.0)
@@ -23,31 +23,22 @@ class RiderBody:
     rear_arm: float = quantity("m", "centre of gravity to rear suspension a2", above=0.0)
     seat_arm: float = quantity("m", "centre of gravity to seat a3, forward positive")
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Limb:
+class Limb(Validated):
     """A mass on a spring and a damper: the seat on the body, or one half of the rider on the seat."""
 
     mass: float = quantity("kg", "mass", above=0.0)
     stiffness: float = quantity("N/m", "stiffness of its support", above=0.0)
     damping: float = quantity("N s/m", "damper coefficient of its support", at_least=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class BumpShape:
+class BumpShape(Validated):
     """Half-sine bump."""
 
     height: float = quantity("m", "bump height h0; negative is a dip")
     length: float = quantity("m", "bump length wb", above=0.0)
-
-    def __post_init__(self) -> None:
-        validate(self)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

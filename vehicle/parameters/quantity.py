@@ -73,6 +73,15 @@ def validate(instance: Any, where: str = "") -> None:
         _check(f"{place}.{entry.name}", value, entry.metadata)
 
 
+class Validated:
+    """Parameters that are checked against the descriptions of their fields when they are made."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
 def _check(path: str, value: Any, metadata: Any) -> None:
     """Check one value against the metadata of its field."""
     if metadata["choices"] is not None:

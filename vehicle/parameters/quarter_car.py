@@ -2,153 +2,111 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle.parameters.quantity import quantity, validate
+from vehicle.parameters.quantity import Validated, quantity
 from vehicle.parameters.toml_file import build, read_table
 
 PUBLISHED = Path(__file__).with_name("quarter_car.toml")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Body:
+class Body(Validated):
     """Quarter of the body."""
 
     mass: float = quantity("kg", "body mass Mb", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Wheel:
+class Wheel(Validated):
     """Unsprung mass on its tyre."""
 
     mass: float = quantity("kg", "unsprung mass Mt", above=0.0)
     tyre_stiffness: float = quantity("N/m", "vertical tyre stiffness Kt", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Spring:
+class Spring(Validated):
     """Main spring between body and wheel."""
 
     stiffness: float = quantity("N/m", "main spring stiffness Km", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Mount:
+class Mount(Validated):
     """Suspension mount: the spring in series with the damper."""
 
     stiffness: float = quantity("N/m", "suspension mount stiffness Kd", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Damper:
+class Damper(Validated):
     """Shock absorber without its friction."""
 
     mass: float = quantity("kg", "damper mass Md between damper and mount", above=0.0)
     damping: float = quantity("N s/m", "viscous damping constant D", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Friction:
+class Friction(Validated):
     """Coulomb friction of the shock absorber, smoothed by an arc tangent."""
 
     limit: float = quantity("N", "Coulomb friction force Fd", at_least=0.0)
     steepness: float = quantity("s/m", "smoothing parameter eps", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Engine:
+class Engine(Validated):
     """Half of the engine."""
 
     mass: float = quantity("kg", "engine mass Me", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class EngineMount:
+class EngineMount(Validated):
     """Linear engine mount."""
 
     stiffness: float = quantity("N/m", "engine mount stiffness Ke", above=0.0)
     damping: float = quantity("N s/m", "engine mount damping De", at_least=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Elastomer:
+class Elastomer(Validated):
     """Engine mount with a Maxwell branch."""
 
     stiffness: float = quantity("N/m", "static stiffness Ke1", above=0.0)
     branch_stiffness: float = quantity("N/m", "stiffness Ke2 of the Maxwell branch", above=0.0)
     branch_damping: float = quantity("N s/m", "damping constant De of the Maxwell branch", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Degressive:
+class Degressive(Validated):
     """Degressive characteristic: a larger damping constant at small velocities."""
 
     low_damping: float = quantity("N s/m", "damping constant Ddeg below the knee", at_least=0.0)
     knee_velocity: float = quantity("m/s", "velocity Vdeg of the knee", at_least=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Strut:
+class Strut(Validated):
     """Inclined strut and longitudinal bedding of the wheel."""
 
     angle: float = quantity("deg", "angle of the strut axis from the vertical", at_least=0.0, at_most=45.0)
     longitudinal_stiffness: float = quantity("N/m", "longitudinal stiffness Kh of the wheel", above=0.0)
     longitudinal_damping: float = quantity("N s/m", "longitudinal damping Dh of the wheel", at_least=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SmallMass:
+class SmallMass(Validated):
     """Small mass on the body that stands for the highest flexible mode."""
 
     mass: float = quantity("kg", "small mass", above=0.0)
     frequency: float = quantity("Hz", "natural frequency on the body", above=0.0)
 
-    def __post_init__(self) -> None:
-        validate(self)
-
-    @property
-    def stiffness(self) -> float:
-        """Stiffness m (2 pi f)^2 [N/m] of its spring."""
-        return self.mass * (2.0 * math.pi * self.frequency) ** 2
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class MassOnDamper:
+class MassOnDamper(Validated):
     """Single mass on a damper with friction, driven by a sine force."""
 
     mass: float = quantity("kg", "mass m", above=0.0)
@@ -159,9 +117,6 @@ class MassOnDamper:
     return_time: float = quantity("s", "time constant tau of the return to zero velocity", above=0.0)
     force_amplitude: float = quantity("N", "amplitude A of the force", at_least=0.0)
     force_frequency: float = quantity("Hz", "frequency f of the force", above=0.0)
-
-    def __post_init__(self) -> None:
-        validate(self)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

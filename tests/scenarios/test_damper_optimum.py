@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
+from scenarios.damper_choice.optimum import iterate, joint_optimum, optimum
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.lumped.damper_optimum import iterate, joint_optimum, optimum
-from vehicle.lumped.road_holding import printed_load_fluctuation
-from vehicle.lumped.road_holding_models import half_car_model, quarter_car_model
+from vehicle.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.parameters.damper_choice import damper_choice_parameters
 
 P = damper_choice_parameters()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ import numpy.typing as npt
 from scipy.optimize import minimize, minimize_scalar
 
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.lumped.half_car_rider import ENDS
 
 Array = npt.NDArray[np.float64]
 
@@ -43,6 +45,11 @@ class Step:
     """Rear damper coefficient after the step [N s/m]."""
     fluctuation: tuple[float, float]
     """Measure of the front and the rear tyre after the step [-]."""
+
+    @property
+    def damping(self) -> float:
+        """Coefficient of the damper that was optimised [N s/m]."""
+        return self.front if self.changed == "front" else self.rear
 
 
 def optimum(measure: Callable[[float], float], grid: npt.ArrayLike | None = None) -> Optimum:
@@ -86,23 +93,17 @@ def iterate(measure: Fluctuation, *, rear: float, grid: npt.ArrayLike | None = N
     if not rear > 0.0:
         raise ConfigurationError(f"iteration: rear: found {rear!r} N s/m, must be greater than 0.0")
     steps: list[Step] = []
-    damping = {"front": float("nan"), "rear": rear}
-    tolerance = 0.0 if grid is not None else 5.0
-    for changed in itertools.islice(itertools.cycle(("front", "rear")), limit):
-        end = 0 if changed == "front" else 1
-        old = damping[changed]
-        other = damping["rear" if changed == "front" else "front"]
-        damping[changed] = optimum(_own(measure, end, other), grid).damping
-        values = measure(damping["front"], damping["rear"])
-        steps.append(
-            Step(
-                changed=changed,
-                front=damping["front"],
-                rear=damping["rear"],
-                fluctuation=(float(values[0]), float(values[1])),
-            )
-        )
-        if abs(damping[changed] - old) <= tolerance:
+    damping, tolerance = [math.nan, rear], 0.0 if grid is not None else 5.0
+    for end in itertools.islice(itertools.cycle((0, 1)), limit):
+        old, other = damping[end], damping[1 - end]
+
+        def own(c: float, end: int = end, other: float = other) -> float:
+            return float(measure(c, other)[0] if end == 0 else measure(other, c)[1])
+
+        damping[end] = optimum(own, grid).damping
+        front, back = (float(value) for value in measure(*damping))
+        steps.append(Step(changed=ENDS[end], front=damping[0], rear=damping[1], fluctuation=(front, back)))
+        if abs(damping[end] - old) <= tolerance:
             return steps
     raise SimulationError(f"front/rear iteration: still changing after {limit} steps; give a coarser grid")
 
@@ -131,10 +132,3 @@ def joint_optimum(measure: Fluctuation, *, start: tuple[float, float]) -> tuple[
         raise SimulationError(f"joint optimum of the dampers: {found.message}")
     front, rear = (float(value) for value in found.x)
     return front, rear, measure(front, rear)
-
-
-def _own(measure: Fluctuation, end: int, other: float) -> Callable[[float], float]:
-    """Measure of one end's tyre over its own damper, the other end held."""
-    if end == 0:
-        return lambda damping: float(measure(damping, other)[0])
-    return lambda damping: float(measure(other, damping)[1])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehicle.lumped.damper_fit import (
+from scenarios.damper_choice.fit import (
     FRONT_RATIOS,
     HALF_FREE,
     QUARTER_FREE,
@@ -12,8 +12,10 @@ from vehicle.lumped.damper_fit import (
     fit_quarter_car,
     half_car_of,
     half_car_residuals,
+    half_car_values,
     quarter_car_of,
     quarter_car_residuals,
+    quarter_car_values,
     root_stiffness_mass,
 )
 from vehicle.parameters.damper_choice import damper_choice_parameters
@@ -22,19 +24,7 @@ from vehicle.parameters.toml_file import as_table
 P = damper_choice_parameters()
 Q, H = P.quarter_car, P.half_car
 BASE = H.front_arm + H.rear_arm
-QUARTER = np.array([Q.sprung_mass, Q.wheel.unsprung_mass, Q.wheel.tyre_stiffness])
-HALF = np.array(
-    [
-        H.sprung_mass,
-        H.pitch_inertia / (H.sprung_mass * H.front_arm * H.rear_arm),
-        BASE,
-        H.front_arm / BASE,
-        H.front.unsprung_mass,
-        H.rear.unsprung_mass,
-        H.front.tyre_stiffness,
-        H.rear.tyre_stiffness,
-    ]
-)
+QUARTER, HALF = quarter_car_values(Q), half_car_values(H)
 
 
 def flat(table, prefix=""):

@@ -15,8 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
-from vehicle.lumped.road_holding import printed_load_fluctuation
-from vehicle.lumped.road_holding_models import half_car_model, quarter_car_model
+from vehicle.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.damper_choice import (
     ExponentialRoad,
@@ -116,6 +115,19 @@ def half_car_of(values: npt.ArrayLike) -> RoadHoldingHalfCar:
         front=_axle(front, front_stiffness, 4250.0, front_tyre),
         rear=_axle(rear, rear_stiffness, 3000.0, rear_tyre),
     )
+
+
+def quarter_car_values(car: RoadHoldingQuarterCar) -> Array:
+    """Values of a quarter car in the order of `QUARTER_FREE`."""
+    return np.array([car.sprung_mass, car.wheel.unsprung_mass, car.wheel.tyre_stiffness])
+
+
+def half_car_values(car: RoadHoldingHalfCar) -> Array:
+    """Values of a half car in the order of `HALF_FREE`."""
+    base = car.front_arm + car.rear_arm
+    ends = [getattr(axle, name) for name in ("unsprung_mass", "tyre_stiffness") for axle in (car.front, car.rear)]
+    index = car.pitch_inertia / (car.sprung_mass * car.front_arm * car.rear_arm)
+    return np.array([car.sprung_mass, index, base, car.front_arm / base, *ends])
 
 
 def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> Array:
