@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.bump.runs import FULL, HIGH, QUICK, relative_acceleration
+from scenarios.bump.runs import FULL, QUICK, SIZES, relative_acceleration
 from scenarios.car_runs import CarRuns, Case
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings
@@ -51,7 +51,7 @@ AFTER = BUMP_DURATION_S + 0.2
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the bump with both laws, draw the figures into the folder, and compare."""
     record = QUICK if options.quick else FULL
-    signal = bump(amplitude=HIGH, duration=record.noisy, start=record.start)
+    signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start)
     step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.timestep)!r}"
     cases = [Case(signal=signal, overrides=(*law, step)) for law in LAWS.values()]
     found = dict(zip(LAWS, runs(cases), strict=True))

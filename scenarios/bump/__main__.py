@@ -9,14 +9,14 @@ import argparse
 import sys
 from pathlib import Path
 
-from scenarios.bump.claims import bump_claims, slip_table
+from scenarios.bump.claims import bump_claims, ring_down_claims, slip_table
 from scenarios.bump.figures import friction_figure, history_figures, ring_down_figure, side_by_side
-from scenarios.bump.runs import FRICTIONS, FULL, HIGH, LOW, OTHER, QUICK, QUICK_FRICTIONS, bump_signal, numbers
+from scenarios.bump.runs import FRICTIONS, FULL, OTHER, QUICK, fastest, run_bumps, slip_after, when
 from scenarios.car_runs import CarRuns, Case
 from scenarios.claims import Findings
 from scenarios.study import car_study, setting
+from vehicle.car import SATURATED_VELOCITY
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.bump import Reading
 
 RING_DOWN = (
     "Ring-down time: from the end of the bump until the vertical acceleration last exceeds 20 % of its largest value "
@@ -27,46 +27,37 @@ RING_DOWN = (
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the bumps, draw the figures (and the film) into the folder, and compare."""
-    quick, video = options.quick, options.video
-    reading: Reading = options.reading
-    if video is not None:
+    if options.video is not None:
         from vehicle.rendering.backend import require_film
 
-        if Path(video).suffix != ".mp4":
-            raise ConfigurationError(f"--video {video}: a film is written as .mp4; give FILE.mp4")
+        if Path(options.video).suffix != ".mp4":
+            raise ConfigurationError(f"--video {options.video}: a film is written as .mp4; give FILE.mp4")
         require_film()
-    record = QUICK if quick else FULL
-    frictions = QUICK_FRICTIONS if quick else FRICTIONS
-    noisy = [Case(signal=bump_signal(record, size, reading, noise=True)) for size in (LOW, HIGH)]
-    quiet = [Case(signal=bump_signal(record, size, reading, noise=False)) for size in (LOW, HIGH)]
-    varied = [
-        Case(signal=noisy[1].signal, overrides=(f"damper.coulomb_friction={friction!r}",)) for friction in frictions
-    ]
-    other = [Case(signal=bump_signal(record, size, OTHER[reading], noise=True)) for size in (LOW, HIGH)]
-    found = runs([*noisy, *quiet, *varied, *other])
-    bumps, still = found[:2], found[2:4]
-    by_friction = dict(zip(frictions, found[4 : 4 + len(frictions)], strict=True))
-    values = numbers(bumps, still, by_friction, found[-2:], OTHER[reading], start=record.start, end=record.end)
-    history_figures(folder, bumps, still, (LOW, HIGH), record.start)
-    friction_figure(folder / "friction.png", by_friction, values, record.start)
-    ring_down_figure(folder / "ring_down.png", still, (LOW, HIGH), record.end)
-    if video is not None:
-        cases = [Case(signal=case.signal, engine="mujoco") for case in noisy]
-        side_by_side(folder / video, runs(cases), (LOW, HIGH), start=record.start - 0.1, duration=record.film)
-    claims, unjudged = bump_claims(values, quick=quick)
+    record = QUICK if options.quick else FULL
+    bumps = run_bumps(runs, record, options.reading, FRICTIONS[::2] if options.quick else FRICTIONS)
+    history_figures(folder, bumps)
+    friction_figure(folder / "friction.png", bumps)
+    ring_down_figure(folder / "ring_down.png", bumps)
+    if options.video is not None:
+        shown = runs([Case(signal=run.signal, engine="mujoco") for run in bumps.noisy])
+        side_by_side(folder / options.video, shown, start=record.start - 0.1, duration=record.film)
+    ringing = list(ring_down_claims(bumps))
+    too_short = "the record ends before the motion has rung down"
+    low, high = bumps.other
+    slip, end = (when(slip_after(high, record.start, limit)) for limit in (bumps.slip_velocity, SATURATED_VELOCITY))
     return Findings(
-        title=f"Bumps of 1.5 and 7.5 mm, {reading} reading (source 1, section 3.2.2)",
-        claims=claims,
-        unjudged=unjudged,
+        title=f"Bumps of 1.5 and 7.5 mm, {options.reading} reading (source 1, section 3.2.2)",
+        claims=[*bump_claims(bumps), *ringing],
+        unjudged={claim.name: too_short for claim in ringing} if options.quick else {},
         notes=[
-            slip_table(values),
+            slip_table(bumps),
             RING_DOWN,
-            f"The other reading of the printed formula ({OTHER[reading]}): first slip {values.other_first_slip} with "
-            f"7.5 mm; with 1.5 mm largest damper velocity {1e3 * values.other_low_velocity:.1f} mm/s "
-            f"({'slips' if values.other_low_slips else 'does not slip'}).",
-            *setting(runs, found[0], quick),
+            f"The other reading of the printed formula ({bumps.other_reading}): first slip {slip} (above 1 mm/s {end}) "
+            f"with 7.5 mm; with 1.5 mm largest damper velocity {1e3 * fastest(low):.1f} mm/s "
+            f"({'slips' if fastest(low) > bumps.slip_velocity else 'does not slip'}).",
+            *setting(runs, bumps.noisy[0], options.quick),
         ],
-        data=values.data(),
+        data=bumps.data(),
     )
 
 
@@ -79,7 +70,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 main = car_study("bump", study, add_options)
-
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from scenarios.bump.runs import FIGURE_AXES, RELATIVE, SHOWN_S, BumpNumbers, when
-from scenarios.claims import CHOSEN, OWN_CHECK, PREDICTED, Claim, interval_claim
+from scenarios.bump.runs import (
+    FIGURE_AXES,
+    RELATIVE,
+    SHOWN_S,
+    Bumps,
+    extremes,
+    fastest,
+    ring_down_times,
+    saturated_time,
+    when,
+)
+from scenarios.claims import CHOSEN, OWN_CHECK, PREDICTED, Claim, interval_claim, markdown
+from vehicle.car import SATURATED_VELOCITY
 
 FIRST_SLIP, FIRST_SLIP_TOLERANCE = 5.035, 0.010
 """First slip after the 7.5 mm bump with Fd 125 N [s], read off figure 3.12."""
@@ -19,31 +30,20 @@ RATIO = 2.0
 """'Much more time' to ring down: at least this ratio."""
 
 
-def bump_claims(values: BumpNumbers, *, quick: bool) -> tuple[list[Claim], dict[str, str]]:
-    """Rows of the bumps, and the statements that a short record cannot judge."""
-    claims = [
-        *_slip_claims(values),
-        _low_claim(values),
-        *extreme_claims(values.extremes, values.other_extremes, values.other_reading),
-    ]
-    if quick:
-        names = [ring_down_name(point) for point in (*SHOWN_POINTS, WEAKEST)]
-        return claims, dict.fromkeys(names, "the record ends before the motion has rung down")
-    return [*claims, *_ring_down_claims(values.ring_down)], {}
-
-
-def _slip_claims(values: BumpNumbers) -> list[Claim]:
-    times = values.first_slip
+def slip_claims(bumps: Bumps) -> list[Claim]:
+    """Rows about the first slip of both bumps."""
+    times = bumps.first_slip(bumps.slip_velocity)
+    slip, end = (bumps.first_slip(limit)[PUBLISHED_FRICTION] for limit in (bumps.slip_velocity, SATURATED_VELOCITY))
     ordered = [times[friction] for friction in sorted(times)]
     rising = all(time is not None for time in ordered) and bool(np.all(np.diff(np.array(ordered, dtype=float)) > 0.0))
-    slip, end = (found[PUBLISHED_FRICTION] for found in (times, values.stick_end))
+    limit = f"{1e3 * bumps.slip_velocity:g} mm/s"
     return [
         PREDICTED.number(
             "bump 7.5 mm, first slip with Fd 125 N [s]",
             FIRST_SLIP,
             float("inf") if slip is None else slip,
             FIRST_SLIP_TOLERANCE,
-            f"first sample above {1e3 * values.slip_velocity:g} mm/s, the velocity of all slip shares; read off a "
+            f"first sample above {limit}, the velocity of all slip shares; read off a "
             "figure: 10 ms. The figure shows the end of stick, before the damper is that fast: the next row",
         ),
         CHOSEN.number(
@@ -61,19 +61,16 @@ def _slip_claims(values: BumpNumbers) -> list[Claim]:
             rising,
             "rising from value to value",
         ),
+        CHOSEN.statement(
+            "bump 1.5 mm",
+            "no slip",
+            f"largest damper velocity {1e3 * fastest(bumps.noisy[0]):.1f} mm/s",
+            fastest(bumps.noisy[0]) <= bumps.slip_velocity,
+            f"slip is above {limit}, the velocity fitted to the slip shares of the random "
+            f"inputs; the friction is saturated, above 1 mm/s, for {1e3 * saturated_time(bumps.noisy[0]):.0f} ms. "
+            "The reading of the printed amplitude as height was chosen by it",
+        ),
     ]
-
-
-def _low_claim(values: BumpNumbers) -> Claim:
-    return CHOSEN.statement(
-        "bump 1.5 mm",
-        "no slip",
-        f"largest damper velocity {1e3 * values.low_velocity:.1f} mm/s",
-        values.low_velocity <= values.slip_velocity,
-        f"slip is above {1e3 * values.slip_velocity:g} mm/s, the velocity fitted to the slip shares of the random "
-        f"inputs; the friction is saturated, above 1 mm/s, for {1e3 * values.low_saturated:.0f} ms. The reading of the "
-        "printed amplitude as height was chosen by it",
-    )
 
 
 SHOWN_POINTS = {
@@ -87,66 +84,58 @@ SHOWN_POINTS = {
 WEAKEST = "the weakest of all points and of the body as a whole"
 
 
-def ring_down_name(point: str) -> str:
-    """Name of the row of a point."""
-    return f"ring-down to 20 %, 1.5 mm against 7.5 mm, {point.replace('_', ' ')}"
-
-
-def _ring_down_claims(times: Sequence[Mapping[str, float]]) -> list[Claim]:
-    low, high = times
-    weakest = min(low, key=lambda point: low[point] / high[point])
+def ring_down_claims(bumps: Bumps) -> Iterator[Claim]:
+    """Rows: the low bump rings down more slowly."""
+    low, high = (ring_down_times(run, bumps.record.end) for run in bumps.quiet)
     after = (
         "our own check: when the damper sticks again after 7.5 mm, what is left rings on as slowly as after 1.5 mm, "
         "and here more than 20 % are left"
     )
-    rows = [
-        *((point, point, f"definition below the table; figure {figure}") for point, figure in SHOWN_POINTS.items()),
-        (WEAKEST, weakest, after),
-    ]
-    return [
-        (PREDICTED if name == "engine" else OWN_CHECK).statement(
-            ring_down_name(name),
+    figures = {point: f"definition below the table; figure {figure}" for point, figure in SHOWN_POINTS.items()}
+    for name, why in (*figures.items(), (WEAKEST, after)):
+        point = min(low, key=lambda one: low[one] / high[one]) if name == WEAKEST else name
+        ratio = low[point] / high[point]
+        yield (PREDICTED if name == "engine" else OWN_CHECK).statement(
+            f"ring-down to 20 %, 1.5 mm against 7.5 mm, {name.replace('_', ' ')}",
             "much longer (at least twice)",
-            f"{point.replace('_', ' ')}: {low[point]:.2f} s against {high[point]:.2f} s, "
-            f"{low[point] / high[point]:.1f} times",
-            low[point] / high[point] >= RATIO,
+            f"{point.replace('_', ' ')}: {low[point]:.2f} s against {high[point]:.2f} s, {ratio:.1f} times",
+            ratio >= RATIO,
             why,
         )
-        for name, point, why in rows
-    ]
 
 
-def slip_table(values: BumpNumbers) -> str:
+def slip_table(bumps: Bumps) -> str:
     """First slip by friction limit, and ring-down times, as tables."""
-    lines = [
+    slip, end = (bumps.first_slip(velocity) for velocity in (bumps.slip_velocity, SATURATED_VELOCITY))
+    low, high = (ring_down_times(run, bumps.record.end) for run in bumps.quiet)
+    times = {point: (time, high[point], time / high[point]) for point, time in low.items()}
+    tables = (
         "First slip after the 7.5 mm bump that begins at 5 s [s]:",
-        "",
-        f"| Fd [N] | slip, above {1e3 * values.slip_velocity:g} mm/s | end of stick, above 1 mm/s |",
-        "|---|---|---|",
-        *(
-            f"| {friction:g} | {when(time)} | {when(values.stick_end[friction])} |"
-            for friction, time in values.first_slip.items()
+        markdown(
+            ("Fd [N]", f"slip, above {1e3 * bumps.slip_velocity:g} mm/s", "end of stick, above 1 mm/s"),
+            [(f"{friction:g}", when(time), when(end[friction])) for friction, time in slip.items()],
         ),
-        "",
         "Ring-down to 20 % [s]:",
-        "",
-        "| point | 1.5 mm | 7.5 mm | ratio |",
-        "|---|---|---|---|",
-    ]
-    low, high = values.ring_down
-    for point, time in low.items():
-        cells = [f"{value:.2f}" if np.isfinite(value) else "-" for value in (time, high[point], time / high[point])]
-        lines.append(f"| {point.replace('_', ' ')} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+        markdown(
+            ("point", "1.5 mm", "7.5 mm", "ratio"),
+            [
+                (point.replace("_", " "), *(f"{value:.2f}" if np.isfinite(value) else "-" for value in row))
+                for point, row in times.items()
+            ],
+        ),
+    )
+    return "\n\n".join(tables)
 
 
-def extreme_claims(
-    found: dict[str, tuple[float, float]], literal: dict[str, tuple[float, float]], name: str
-) -> list[Claim]:
+Extremes = Mapping[str, tuple[float, float]]
+"""Point to lowest and highest acceleration [m/s2]."""
+
+
+def extreme_claims(found: Extremes, literal: Extremes, name: str) -> list[Claim]:
     """A row for each end of each axis.
 
     Args:
-        found: point to lowest and highest acceleration [m/s2].
+        found: ours.
         literal: the same with the other reading of the printed amplitude, as evidence for a deviation.
         name: of the other reading.
     """
@@ -163,3 +152,9 @@ def extreme_claims(
         for point, (figure, _, *ends) in FIGURE_AXES.items()
         for word, interval, ours, other in zip(("lowest", "highest"), ends, found[point], literal[point], strict=True)
     ]
+
+
+def bump_claims(bumps: Bumps) -> list[Claim]:
+    """All rows but those about ring-down, which needs a long record."""
+    found, other = (extremes(pair[1], bumps.record.start) for pair in (bumps.noisy, bumps.other))
+    return [*slip_claims(bumps), *extreme_claims(found, other, bumps.other_reading)]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.bump.claims import PUBLISHED_FRICTION
-from scenarios.bump.runs import RUNG_DOWN, BumpNumbers, relative_acceleration, ring_down_time
+from scenarios.bump.claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
+from scenarios.bump.runs import RUNG_DOWN, SIZES, Bumps, relative_acceleration, ring_down_time
 from scenarios.charts import figure_file, rows_of
 from scenarios.study import computed_by
-from vehicle.car import Run
+from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_START_S
 from vehicle.output.folder import write_whole
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
@@ -20,6 +20,8 @@ from vehicle.rendering.figure import COLOURS
 from vehicle.rendering.film import write_film
 from vehicle.rendering.overlay import Layout, font
 from vehicle.rendering.shot import Shot
+
+Vector = npt.NDArray[np.float64]
 
 VERTICAL = {
     "seat rail (3.13)": "seat_rail_acc_z",
@@ -38,99 +40,102 @@ RINGING = {"seat rail": "seat_rail", "engine": "engine", "roof left rear": "roof
 NOISY, QUIET = "#9dbbe0", "#12365f"
 """Colours of the run with noise and of the same bump alone."""
 
-SHOWN = 3.5
-"""Length of the time histories [s]; the source shows 3 s."""
+SHOWN = (-0.25, 3.25)
+"""Ends of the time histories after the start of the bump [s]; the source shows 3 s."""
 
 
-def history_figures(
-    folder: Path, bumps: Sequence[Run], still: Sequence[Run], sizes: Sequence[float], start: float
-) -> None:
-    """Write the time histories of all points, the low bump at the left and the high one at the right.
+def excerpt(run: Run, start: float, shown: tuple[float, float], values: Vector) -> tuple[Vector, Vector]:
+    """Times, as if the bump began at 5 s, and values of a stretch.
 
     Args:
-        folder: where to.
-        bumps: low and high bump with noise.
-        still: the same without noise.
-        sizes: A of each [m].
+        run: on a bump.
         start: of the bump [s].
+        shown: ends of the stretch after the start [s].
+        values: of every sample, (n,).
     """
+    keep = (run.time >= start + shown[0]) & (run.time <= start + shown[1])
+    return run.time[keep] + BUMP_START_S - start, values[keep]
+
+
+def history_figures(folder: Path, bumps: Bumps) -> None:
+    """Write the time histories of all points into a folder, the low bump at the left and the high one at the right."""
+    start = bumps.record.start
     for name, title, channels in (
         ("histories_vertical", "Vertical accelerations", VERTICAL),
         ("histories_horizontal", "Horizontal accelerations of the seat rail", HORIZONTAL),
     ):
-        note = _caption(bumps[0], "light: with the random noise of 0.05 mm RMS, dark: the bump alone")
+        note = _caption(bumps, "light: with the random noise of 0.05 mm RMS, dark: the bump alone")
         with figure_file(folder / f"{name}.png", (13.0, 1.0 + 1.45 * len(channels)), title, note) as figure:
             axes = rows_of(figure, len(channels), 2)
-            for column, (noisy, quiet, size) in enumerate(zip(bumps, still, sizes, strict=True)):
-                axes[0, column].set_title(f"A = {1e3 * size:g} mm")
-                for axis, (label, channel) in zip(axes[:, column], channels.items(), strict=True):
-                    for run, colour, width in ((noisy, NOISY, 0.7), (quiet, QUIET, 1.1)):
-                        keep = (run.time >= start - 0.25) & (run.time <= start - 0.25 + SHOWN)
-                        shift = BUMP_START_S - start
-                        axis.plot(run.time[keep] + shift, run[channel][keep], color=colour, linewidth=width)
-                    if column == 0:
-                        axis.set_ylabel(f"{label}\n[m/s²]")
-    note = _caption(bumps[1], "relative acceleration along the strut axis; zero while the damper sticks")
+            for column, size, *pair in zip(axes.T, SIZES, bumps.noisy, bumps.quiet, strict=True):
+                column[0].set_title(f"A = {1e3 * size:g} mm")
+                for axis, channel in zip(column, channels.values(), strict=True):
+                    for run, colour, width in zip(pair, (NOISY, QUIET), (0.7, 1.1), strict=True):
+                        axis.plot(*excerpt(run, start, SHOWN, run[channel]), color=colour, linewidth=width)
+            for axis, label in zip(axes[:, 0], channels, strict=True):
+                axis.set_ylabel(f"{label}\n[m/s²]")
+    note = _caption(bumps, "relative acceleration along the strut axis; zero while the damper sticks")
     title = "Acceleration of the damper top relative to the knuckle (figure 3.16)"
     with figure_file(folder / "relative_acceleration.png", (11.0, 5.6), title, note) as figure:
         axes = rows_of(figure, 2, 1)[:, 0]
-        for axis, run, size in zip(axes, bumps, sizes, strict=True):
-            keep = (run.time >= start - 0.05) & (run.time <= start + 0.8)
-            values = relative_acceleration(run)[keep]
-            axis.plot(run.time[keep] + BUMP_START_S - start, values, color=COLOURS[0])
+        for axis, run, size in zip(axes, bumps.noisy, SIZES, strict=True):
+            axis.plot(*excerpt(run, start, (-0.05, 0.8), relative_acceleration(run)), color=COLOURS[0])
             axis.set(ylabel="relative acceleration\n[m/s²]", title=f"A = {1e3 * size:g} mm")
 
 
-def friction_figure(path: Path, runs: Mapping[float, Run], values: BumpNumbers, start: float) -> None:
+def friction_figure(path: Path, bumps: Bumps) -> None:
     """Write the relative acceleration for every friction limit, and the time of the first slip over it."""
     from matplotlib import colormaps
 
-    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(runs)))
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(bumps.by_friction)))
     note = _caption(
-        next(iter(runs.values())),
+        bumps,
         "A = 7.5 mm; left: relative acceleration along the strut axis; right: first sample of the damper above "
-        f"{1e3 * values.slip_velocity:g} mm/s, which is slip, and above 1 mm/s, where stick has ended",
+        f"{1e3 * bumps.slip_velocity:g} mm/s, which is slip, and above 1 mm/s, where stick has ended",
     )
     with figure_file(
         path, (12.5, 4.6), "First slip after the 7.5 mm bump against friction (figure 3.12)", note
     ) as figure:
         history, times = figure.subplots(1, 2, width_ratios=(2.2, 1.0))
-        for (friction, run), shade in zip(runs.items(), shades, strict=True):
-            keep = (run.time >= start) & (run.time <= start + 0.15)
+        for (friction, run), shade in zip(bumps.by_friction.items(), shades, strict=True):
             history.plot(
-                run.time[keep] + BUMP_START_S - start,
-                relative_acceleration(run)[keep],
+                *excerpt(run, bumps.record.start, (0.0, 0.15), relative_acceleration(run)),
                 color=shade,
                 linewidth=2.0 if friction == PUBLISHED_FRICTION else 1.1,
                 label=f"Fd {friction:g} N",
             )
-        history.axvline(5.035, color="#555555", linewidth=0.9, linestyle="--", label="published, 125 N")
+        history.axvline(FIRST_SLIP, color="#555555", linewidth=0.9, linestyle="--", label="published, 125 N")
         history.set(xlabel="time [s]", ylabel="relative acceleration [m/s²]")
         history.legend(loc="best")
-        for found, style, label in ((values.first_slip, "o-", "first slip"), (values.stick_end, "o:", "end of stick")):
-            known = [(friction, time) for friction, time in found.items() if time is not None]
+        for velocity, style, label in (
+            (bumps.slip_velocity, "o-", "first slip"),
+            (SATURATED_VELOCITY, "o:", "end of stick"),
+        ):
+            known = [(friction, time) for friction, time in bumps.first_slip(velocity).items() if time is not None]
             times.plot(*zip(*known, strict=True), style, color=COLOURS[0], label=label)
-        times.errorbar([PUBLISHED_FRICTION], [5.035], yerr=[0.01], fmt="s", color=COLOURS[1], label="published, ±10 ms")
+        read_off = {"yerr": [FIRST_SLIP_TOLERANCE], "fmt": "s", "label": "published, ±10 ms"}
+        times.errorbar([PUBLISHED_FRICTION], [FIRST_SLIP], color=COLOURS[1], **read_off)
         times.set(xlabel="friction limit Fd [N]", ylabel="time [s]")
         times.ticklabel_format(axis="y", useOffset=False)
         times.legend(loc="upper left")
 
 
-def ring_down_figure(path: Path, still: Sequence[Run], sizes: Sequence[float], end: float) -> None:
+def ring_down_figure(path: Path, bumps: Bumps) -> None:
     """Write how seat rail, engine and roof ring down after both bumps, relative to their largest value after it."""
+    end = bumps.record.end
     note = _caption(
-        still[0],
+        bumps,
         "vertical acceleration without noise over its largest value after the bump; band: 20 %; dotted: the last time "
         "outside it",
     )
     with figure_file(path, (12.5, 6.6), "Ring-down after the bump", note) as figure:
         axes = rows_of(figure, len(RINGING), 1, sharey=True)[:, 0]
         for axis, (label, place) in zip(axes, RINGING.items(), strict=True):
-            for run, size, colour in zip(still, sizes, COLOURS, strict=False):
+            for run, size, colour in zip(bumps.quiet, SIZES, COLOURS, strict=False):
                 motion = run[f"{place}_acc_z"]
-                after = (run.time >= end) & (run.time <= end + 4.0)
                 relative = motion / np.max(np.abs(motion[run.time >= end]))
-                axis.plot(run.time[after] - end, relative[after], color=colour, label=f"A = {1e3 * size:g} mm")
+                time, shown = excerpt(run, end, (0.0, 4.0), relative)
+                axis.plot(time - BUMP_START_S, shown, color=colour, label=f"A = {1e3 * size:g} mm")
                 axis.axvline(ring_down_time(run.time, motion, end), color=colour, linestyle=":", linewidth=1.3)
             axis.axhspan(-RUNG_DOWN, RUNG_DOWN, color="#e2e2e2", zorder=0)
             axis.set(ylim=(-1.1, 1.1), ylabel=f"{label}\n[-]")
@@ -138,10 +143,10 @@ def ring_down_figure(path: Path, still: Sequence[Run], sizes: Sequence[float], e
         axes[-1].set_xlabel("time after the bump [s]")
 
 
-def _caption(run: Run, what: str) -> str:
+def _caption(bumps: Bumps, what: str) -> str:
     return (
         f"{what}. Bump under the right front wheel from t = {BUMP_START_S:g} s; time histories, no averages; "
-        f"{computed_by(run)}"
+        f"{computed_by(bumps.noisy[0])}"
     )
 
 
@@ -159,13 +164,12 @@ SHOWN_BUMP = 0.06
 """Height [m] to which every bump is exaggerated: a linear car would look alike in both halves."""
 
 
-def side_by_side(path: Path, runs: Sequence[Run], sizes: Sequence[float], *, start: float, duration: float) -> None:
+def side_by_side(path: Path, runs: Sequence[Run], *, start: float, duration: float) -> None:
     """Write the film as H.264 in MP4.
 
     Args:
         path: MP4 file.
-        runs: with poses, in the order from left to right.
-        sizes: A of the bumps [m].
+        runs: low and high bump, with poses.
         start: first time shown [s].
         duration: length of the film [s].
 
@@ -173,22 +177,13 @@ def side_by_side(path: Path, runs: Sequence[Run], sizes: Sequence[float], *, sta
         MissingPartError: no off-screen OpenGL library or no ffmpeg.
         OutputError: the file cannot be written.
     """
-    ffmpeg, backend = find_ffmpeg(), choose_backend()
+    ffmpeg, backend, layout = find_ffmpeg(), choose_backend(), Layout(width=HALF[0], height=HALF[1])
     shots = [
-        Shot(
-            run,
-            Layout(width=HALF[0], height=HALF[1]),
-            start=start,
-            duration=duration,
-            slow=SLOW,
-            exaggeration=SHOWN_BUMP / size,
-            fps=FPS,
-        )
-        for run, size in zip(runs, sizes, strict=True)
+        Shot(run, layout, start=start, duration=duration, slow=SLOW, exaggeration=SHOWN_BUMP / size, fps=FPS)
+        for run, size in zip(runs, SIZES, strict=True)
     ]
-    captions = [f"bump of {1e3 * size:g} mm, motion {SHOWN_BUMP / size:g} times" for size in sizes]
+    captions = [f"bump of {1e3 * size:g} mm, motion {SHOWN_BUMP / size:g} times" for size in SIZES]
     banner = np.concatenate([_banner(text) for text in captions], axis=1)
-
     pairs = zip(*(shot.frames(backend) for shot in shots), strict=True)
     frames = (np.concatenate([banner, np.concatenate(halves, axis=1)], axis=0) for halves in pairs)
     shape = (banner.shape[0] + HALF[1], banner.shape[1])

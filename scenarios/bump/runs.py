@@ -10,14 +10,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.car_runs import CarRuns, Case
 from scenarios.claims import Interval
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES
 
+Vector = npt.NDArray[np.float64]
 
-def relative_acceleration(run: Run, wheel: str = "fr") -> npt.NDArray[np.float64]:
+
+def relative_acceleration(run: Run, wheel: str = "fr") -> Vector:
     """Acceleration of the damper top less that of the knuckle, along the strut axis.
 
     a = n (a_top - a_knuckle), n from the damper bottom to the strut top in the design position. In the vertical alone
@@ -39,13 +42,11 @@ def relative_acceleration(run: Run, wheel: str = "fr") -> npt.NDArray[np.float64
     return np.asarray(direction @ (top - knuckle))
 
 
-LOW, HIGH = 1.5e-3, 7.5e-3
+SIZES = (1.5e-3, 7.5e-3)
 """A of the bumps [m]."""
 
 FRICTIONS = (75.0, 100.0, 125.0, 150.0, 175.0)
 """Friction limits Fd of figure 3.12 [N]."""
-
-QUICK_FRICTIONS = (75.0, 125.0, 175.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -62,6 +63,13 @@ class Record:
         """End of the bump [s]."""
         return self.start + BUMP_DURATION_S
 
+    def signal(self, size: float, reading: Reading, *, noise: bool = True) -> Signal:
+        """Bump of an amplitude A [m], with or without the random noise of the source."""
+        duration, level = (self.noisy, NOISE_RMS) if noise else (self.quiet, 0.0)
+        signal = bump(amplitude=size, reading=reading, duration=duration, start=self.start, noise_rms=level)
+        # The film writes the source over its picture, where the text of the generator has no room.
+        return replace(signal, source=f"bump {1e3 * size:g} mm")
+
 
 FULL = Record(start=BUMP_START_S, noisy=10.0, quiet=14.0, film=9.0)
 """As shipped; without noise long enough to ring down."""
@@ -71,94 +79,81 @@ QUICK = Record(start=0.6, noisy=1.5, quiet=1.5, film=0.5)
 OTHER: dict[Reading, Reading] = {"height": "literal", "literal": "height"}
 
 
-def bump_signal(record: Record, amplitude: float, reading: Reading, *, noise: bool) -> Signal:
-    """Bump of an amplitude A [m], with or without the random noise of the source."""
-    duration, level = (record.noisy, NOISE_RMS) if noise else (record.quiet, 0.0)
-    signal = bump(amplitude=amplitude, reading=reading, duration=duration, start=record.start, noise_rms=level)
-    # The film writes the source over its picture, where the text of the generator has no room.
-    return replace(signal, source=f"bump {1e3 * amplitude:g} mm")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class BumpNumbers:
-    """What is read off the bumps; times as if the bump began at 5 s, low bump before high one.
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Bumps:
+    """Runs of the study, low bump before high one; times read off them are as if the bump began at 5 s.
 
     Attributes:
-        first_slip: friction limit [N] to the first slip [s] after the start of the bump, None for never.
-        stick_end: the same above 1 mm/s, where the friction is saturated.
-        slip_velocity: that of the parameters [m/s].
-        extremes, other_extremes: point to lowest and highest acceleration after the high bump [m/s2], in both readings.
-        other_reading: name of the other one.
-        low_velocity: largest damper velocity in the low bump [m/s].
-        low_saturated: time above 1 mm/s in the low bump [s].
-        ring_down: ring-down times of both bumps [s], by point.
-        other_first_slip: first slip with the other reading, high bump, in words.
-        other_low_velocity, other_low_slips: damper in the low bump with the other reading.
+        record: times of the bump.
+        noisy, quiet: with and without the random noise.
+        other: with noise, in the other reading of the printed formula.
+        other_reading: name of it.
+        by_friction: friction limit [N] to the high bump.
     """
 
-    first_slip: Mapping[float, float | None]
-    stick_end: Mapping[float, float | None]
-    slip_velocity: float
-    extremes: dict[str, tuple[float, float]]
-    other_extremes: dict[str, tuple[float, float]]
-    other_reading: str
-    low_velocity: float
-    low_saturated: float
-    ring_down: Sequence[Mapping[str, float]]
-    other_first_slip: str
-    other_low_velocity: float
-    other_low_slips: bool
+    record: Record
+    noisy: Sequence[Run]
+    quiet: Sequence[Run]
+    other: Sequence[Run]
+    other_reading: Reading
+    by_friction: Mapping[float, Run]
+
+    @property
+    def slip_velocity(self) -> float:
+        """That of the parameters [m/s]."""
+        return self.noisy[0].car.vehicle.damper.slip_velocity
+
+    def first_slip(self, velocity: float) -> dict[float, float | None]:
+        """Friction limit [N] to the first time above a velocity [s], None for never."""
+        return {friction: slip_after(run, self.record.start, velocity) for friction, run in self.by_friction.items()}
 
     def data(self) -> dict[str, Any]:
         """For `results.json`."""
+        low = fastest(self.noisy[0])
+        times = {"first_slip_s": self.slip_velocity, "first_saturated_s": SATURATED_VELOCITY}
         return {
-            "first_slip_s": {f"{friction:g} N": time for friction, time in self.first_slip.items()},
-            "first_saturated_s": {f"{friction:g} N": time for friction, time in self.stick_end.items()},
+            **{
+                name: {f"{friction:g} N": time for friction, time in self.first_slip(velocity).items()}
+                for name, velocity in times.items()
+            },
             "slip_velocity": self.slip_velocity,
-            "low_bump": {"largest_velocity": self.low_velocity, "time_above_1_mm_s": self.low_saturated},
-            "extremes": self.extremes,
-            "ring_down_s": {"1.5 mm": dict(self.ring_down[0]), "7.5 mm": dict(self.ring_down[1])},
+            "low_bump": {"largest_velocity": low, "time_above_1_mm_s": saturated_time(self.noisy[0])},
+            "extremes": extremes(self.noisy[1], self.record.start),
+            "ring_down_s": {
+                f"{1e3 * size:g} mm": ring_down_times(run, self.record.end)
+                for size, run in zip(SIZES, self.quiet, strict=True)
+            },
         }
 
 
-def numbers(
-    bumps: Sequence[Run],
-    still: Sequence[Run],
-    by_friction: Mapping[float, Run],
-    other: Sequence[Run],
-    other_reading: str,
-    *,
-    start: float,
-    end: float,
-) -> BumpNumbers:
-    """Read the numbers off the runs.
-
-    Args:
-        bumps: low and high bump with noise.
-        still: the same without noise.
-        by_friction: friction limit [N] to the high bump.
-        other: low and high bump in the other reading.
-        other_reading: name of it.
-        start, end: of the bump [s].
-    """
-    low = np.abs(bumps[0]["damper_fr_velocity"])
-    slip_velocity = bumps[0].car.vehicle.damper.slip_velocity
-    slips = [slip_after(other[1], start, velocity) for velocity in (slip_velocity, SATURATED_VELOCITY)]
-    other_low = float(np.max(np.abs(other[0]["damper_fr_velocity"])))
-    return BumpNumbers(
-        first_slip={friction: slip_after(run, start, slip_velocity) for friction, run in by_friction.items()},
-        stick_end={friction: slip_after(run, start, SATURATED_VELOCITY) for friction, run in by_friction.items()},
-        slip_velocity=slip_velocity,
-        extremes=extremes(bumps[1], start),
-        other_extremes=extremes(other[1], start),
-        other_reading=other_reading,
-        low_velocity=float(np.max(low)),
-        low_saturated=float(np.mean(low > SATURATED_VELOCITY)) * bumps[0].signal.duration,
-        ring_down=[ring_down_times(run, end) for run in still],
-        other_first_slip=f"{when(slips[0])} (above 1 mm/s {when(slips[1])})",
-        other_low_velocity=other_low,
-        other_low_slips=other_low > slip_velocity,
+def run_bumps(runs: CarRuns, record: Record, reading: Reading, frictions: Sequence[float]) -> Bumps:
+    """All runs of the study, independent ones at once."""
+    other = OTHER[reading]
+    cases = [
+        Case(signal=record.signal(size, kind, noise=noise))
+        for kind, noise in ((reading, True), (reading, False), (other, True))
+        for size in SIZES
+    ]
+    varied = [Case(signal=cases[1].signal, overrides=(f"damper.coulomb_friction={value!r}",)) for value in frictions]
+    found = runs([*cases, *varied])
+    return Bumps(
+        record=record,
+        noisy=found[:2],
+        quiet=found[2:4],
+        other=found[4:6],
+        other_reading=other,
+        by_friction=dict(zip(frictions, found[6:], strict=True)),
     )
+
+
+def fastest(run: Run) -> float:
+    """Largest velocity of the right damper [m/s]."""
+    return float(np.max(np.abs(run["damper_fr_velocity"])))
+
+
+def saturated_time(run: Run) -> float:
+    """Time with the right damper above 1 mm/s, where the friction is saturated [s]."""
+    return run.slip_share("fr", SATURATED_VELOCITY) * run.signal.duration
 
 
 def slip_after(run: Run, start: float, velocity: float) -> float | None:
@@ -193,28 +188,21 @@ ticks at -5, 0 and 5 only; the upper end of 3.17 is unreadable above 0.5."""
 def extremes(run: Run, start: float) -> dict[str, tuple[float, float]]:
     """Lowest and highest vertical acceleration [m/s2] of every point, from the start of the bump on [s]."""
     shown = (run.time >= start) & (run.time <= start + SHOWN_S)
-    found = {}
-    for point, (_, channel, _, _) in FIGURE_AXES.items():
-        values = (run[channel] if channel else relative_acceleration(run))[shown]
-        found[point] = (float(np.min(values)), float(np.max(values)))
-    return found
+    motions = {
+        point: (run[channel] if channel else relative_acceleration(run))[shown]
+        for point, (_, channel, _, _) in FIGURE_AXES.items()
+    }
+    return {point: (float(np.min(values)), float(np.max(values))) for point, values in motions.items()}
 
-
-Vector = npt.NDArray[np.float64]
 
 RUNG_DOWN = 0.2
 """Rung down when the motion stays below this share of its largest value after the bump."""
 
 BODY = ("seat_rail", "seat", "roof_left_rear", "body_front")
-"""Output points on the body, whose RMS stands for its vertical motion."""
+"""Output points on the body; the RMS over them stands for its vertical motion."""
 
 POINTS = (*BODY, "suspension_mount_fr", "suspension_mount_fl", "engine")
 """Points whose ring-down times are told."""
-
-
-def body_envelope(run: Run) -> Vector:
-    """Root mean square of the vertical acceleration over the output points of the body [m/s2], shape (n,)."""
-    return np.asarray(np.sqrt(np.mean([run[f"{place}_acc_z"] ** 2 for place in BODY], axis=0)))
 
 
 def ring_down_time(time: Vector, motion: Vector, end: float, share: float = RUNG_DOWN) -> float:
@@ -237,5 +225,6 @@ def ring_down_time(time: Vector, motion: Vector, end: float, share: float = RUNG
 
 def ring_down_times(run: Run, end: float) -> dict[str, float]:
     """Ring-down times [s] of the body as a whole and of single points."""
-    points = {place: ring_down_time(run.time, run[f"{place}_acc_z"], end) for place in POINTS}
-    return {"body": ring_down_time(run.time, body_envelope(run), end), **points}
+    body = np.sqrt(np.mean([run[f"{place}_acc_z"] ** 2 for place in BODY], axis=0))
+    motions = {"body": body, **{place: run[f"{place}_acc_z"] for place in POINTS}}
+    return {name: ring_down_time(run.time, motion, end) for name, motion in motions.items()}

@@ -98,7 +98,7 @@ def test_the_film_shows_both_bumps_in_step(car, tmp_path):
         pytest.skip(reason)
     runs = [car.run(bump(amplitude=size, duration=1.0, start=0.3)) for size in (1.5e-3, 7.5e-3)]
     path = tmp_path / "film.mp4"
-    side_by_side(path, runs, (1.5e-3, 7.5e-3), start=0.4, duration=0.1)
+    side_by_side(path, runs, start=0.4, duration=0.1)
     command = [find_ffmpeg(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
     done = subprocess.run(command, capture_output=True, check=True)
     frames = np.frombuffer(done.stdout, dtype=np.uint8).reshape(-1, BANNER + HALF[1], 2 * HALF[0], 3)
