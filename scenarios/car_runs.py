@@ -2,40 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.car import Car, Run
-from vehicle.excitation.signal import Signal
 from vehicle.simulation.recording import Recording
+from vehicle.sweeps.case import Case, Input, digest, signal_of
 from vehicle.sweeps.executors import process_pool
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Case:
-    """A signal on the car with some parameters changed.
-
-    Attributes:
-        signal: displacement of the plates.
-        overrides: texts like "damper.coulomb_friction=75"; they win over those of the command line.
-        engine: another engine than that of the other runs; a film needs "mujoco".
-    """
-
-    signal: Signal
-    overrides: tuple[str, ...] = ()
-    engine: str | None = None
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Task:
-    """What a worker process needs to know to carry out one run."""
-
-    vehicle: Path | None
-    overrides: tuple[str, ...]
-    signal: Signal
-    engine: str
+from vehicle.sweeps.worker import run_of
 
 
 class CarRuns:
@@ -53,49 +27,46 @@ class CarRuns:
     ) -> None:
         self.vehicle, self.overrides, self.engine, self.jobs = vehicle, tuple(overrides), engine, jobs
         self._cars: dict[tuple[str, ...], Car] = {}
-        self._done: dict[tuple[object, ...], Run] = {}
+        self._done: dict[str, Run] = {}
+
+    def case(self, source: Input, overrides: Sequence[str] = (), *, engine: str | None = None) -> Case:
+        """A signal on the car with some parameters changed.
+
+        Args:
+            source: the signal, or another input.
+            overrides: texts like "damper.coulomb_friction=75"; they win over those of all cars.
+            engine: another one than that of the other runs; a film needs "mujoco".
+        """
+        changes = (*self.overrides, *overrides)
+        return Case(source=source, overrides=changes, engine=engine or self.engine, vehicle=self.vehicle)
 
     def car(self, overrides: Sequence[str] = ()) -> Car:
         """The car with some parameters changed; built once."""
-        changes = (*self.overrides, *overrides)
+        return self.car_of((*self.overrides, *overrides))
+
+    def car_of(self, changes: tuple[str, ...]) -> Car:
+        """The car with all the overrides of a case; built once."""
         if changes not in self._cars:
             self._cars[changes] = Car.load(self.vehicle, changes)
         return self._cars[changes]
 
     def __call__(self, cases: Sequence[Case]) -> list[Run]:
-        """Runs of the cases, in their order; what was computed before is not computed again."""
-        keys = [self._key(case) for case in cases]
+        """Runs of cases of this car, in their order; what was computed before is not computed again."""
+        keys = [digest([case.overrides, case.engine, case.source.identity()]) for case in cases]
         missing = {key: case for key, case in zip(keys, cases, strict=True) if key not in self._done}
-        tasks = [
-            Task(
-                vehicle=self.vehicle,
-                overrides=(*self.overrides, *case.overrides),
-                signal=case.signal,
-                engine=case.engine or self.engine,
-            )
-            for case in missing.values()
-        ]
-        if self.jobs > 1 and len(tasks) > 1:
-            recordings = carry_out(tasks, self.jobs)
-            for (key, case), recording in zip(missing.items(), recordings, strict=True):
-                self._done[key] = Run(car=self.car(case.overrides), signal=case.signal, recording=recording)
-        else:
-            for (key, case), task in zip(missing.items(), tasks, strict=True):
-                self._done[key] = self.car(case.overrides).run(case.signal, engine=task.engine)
+        recordings: list[Recording | None] = [None] * len(missing)
+        if self.jobs > 1 and len(missing) > 1:
+            with process_pool(min(self.jobs, len(missing))) as pool:
+                recordings = list(pool.map(recording_of, missing.values()))
+        for (key, case), recording in zip(missing.items(), recordings, strict=True):
+            car, signal = self.car_of(case.overrides), signal_of(case.source)
+            if recording is None:
+                self._done[key] = car.run(signal, engine=case.engine)
+            else:
+                self._done[key] = Run(car=car, signal=signal, recording=recording)
         return [self._done[key] for key in keys]
 
-    def _key(self, case: Case) -> tuple[object, ...]:
-        content = hashlib.sha256()
-        for wheel, values in case.signal.displacement.items():
-            content.update(wheel.encode() + values.tobytes())
-        return case.overrides, case.engine or self.engine, case.signal.timestep, content.hexdigest()
 
-
-def carry_out(tasks: Sequence[Task], jobs: int) -> list[Recording]:
-    """Carry out independent runs in worker processes with one thread each; results in the order of the tasks."""
-    with process_pool(min(jobs, len(tasks))) as pool:
-        return list(pool.map(_carry_out_one, tasks))
-
-
-def _carry_out_one(task: Task) -> Recording:
-    return Car.load(task.vehicle, task.overrides).run(task.signal, engine=task.engine).recording
+def recording_of(case: Case) -> Recording:
+    """What a worker process sends back of a run."""
+    return run_of(case).recording

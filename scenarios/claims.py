@@ -16,7 +16,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.output_folder import write_text
+from vehicle.output.folder import write_text
 
 Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate"]
 """`predicted`: nothing was adjusted to it. `fitted`: what the source leaves open was fitted to it. `chosen`: one of

@@ -186,9 +186,8 @@ class ComfortRuns:
             count: fewer records.
         """
         return [
-            Case(
-                overrides=tuple(_path_and_value(text) for text in (*self.runs.overrides, *car)),
-                source=RoadInput(
+            self.runs.case(
+                RoadInput(
                     name=f"{road} road, seed {seed}",
                     rms=ROAD_RMS[road],
                     seed=seed,
@@ -196,8 +195,8 @@ class ComfortRuns:
                     lead=self.records.lead,
                     lower_band_edge=edge,
                 ),
+                car,
                 engine=engine or self.engine,
-                vehicle=self.runs.vehicle,
             )
             for seed in range(count or self.records.count)
         ]
@@ -248,11 +247,6 @@ class ComfortRuns:
         """Points of a variation on both roads, relative to the car with `base` alone."""
         cars = self.cars(variation, base)
         return {road: [self.point(value, car, road, base) for value, car in cars.items()] for road in ROAD_RMS}
-
-
-def _path_and_value(text: str) -> tuple[str, str]:
-    path, _, value = text.partition("=")
-    return path, value
 
 
 RECORDS = 4

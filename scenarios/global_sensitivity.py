@@ -17,13 +17,12 @@ import numpy.typing as npt
 from scenarios.charts import figure_file
 from scenarios.claims import markdown
 from scenarios.comfort_runs import chosen_engine
-from scenarios.output_folder import write_text
 from scenarios.study import study_parser
 from vehicle.commands.command_line import ProgressLine, parse_and_run
 from vehicle.commands.options import engine_option
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.output.folder import write_json
+from vehicle.output.folder import prepare_folder, write_json, write_text
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle
@@ -33,7 +32,7 @@ from vehicle.sweeps.executors import executor_factory
 from vehicle.sweeps.indices import morris_effects, morris_sample, sobol_indices, sobol_sample
 from vehicle.sweeps.road import RoadInput, RoadMeasure
 from vehicle.sweeps.sample import sample
-from vehicle.sweeps.store import sweep_folder
+from vehicle.sweeps.store import ROWS
 from vehicle.sweeps.sweep import sweep
 from vehicle.sweeps.table import SweepTable
 
@@ -132,7 +131,7 @@ def _job(options: argparse.Namespace) -> None:
     )
     engine = chosen_engine(options.engine)
     cases = table_cases([one.path for one in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle)
-    folder = sweep_folder(options.output, resume=options.resume, force=options.force)
+    folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=ROWS)
     started = clock.perf_counter()
     table = sweep(
         cases,

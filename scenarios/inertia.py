@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.car_runs import CarRuns, Case
+from scenarios.car_runs import CarRuns
 from scenarios.charts import LEVEL_COLOURS, draw_frf, measured_curve
 from scenarios.claims import COMPARED, FITTED, INFERRED, PREDICTED, Claim, Findings
 from scenarios.levels import TOO_SHORT, level_signal
@@ -30,7 +30,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the low level with both inertias, draw the FRFs into the folder, and compare."""
     signal = level_signal("low", quick=options.quick)
     changes = [(f"body.inertia_variant={name}",) for name in VARIANTS.values()]
-    found = runs([Case(signal=signal, overrides=change) for change in changes])
+    found = runs([runs.case(signal, change) for change in changes])
     cars = [runs.car(change) for change in changes]
     responses = [run.frf(CHANNELS) for run in found]
     rolls = [roll_mode(car) for car in cars]

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.car_runs import CarRuns, Case
+from scenarios.car_runs import CarRuns
 from scenarios.charts import LEVEL_COLOURS, FrfCurve, draw_frf, measured_curve
 from scenarios.claims import FITTED, PREDICTED, Claim, Findings, Kind, interval_claim
 from scenarios.inputs.make_inputs import LEVELS, SEED
@@ -52,7 +52,7 @@ def level_signal(level: str, *, quick: bool) -> Signal:
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the three levels, draw the figures into the folder, and compare."""
-    found = runs([Case(signal=level_signal(level, quick=options.quick)) for level in LEVELS])
+    found = runs([runs.case(level_signal(level, quick=options.quick)) for level in LEVELS])
     by_level = dict(zip(LEVELS, found, strict=True))
     responses = {level: run.frf(CHANNELS) for level, run in by_level.items()}
     level_figures(folder, by_level, responses, QUICK_OUTPUTS if options.quick else tuple(OUTPUTS))

@@ -19,11 +19,11 @@ from scenarios.bump.claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FR
 from scenarios.claims import LEGEND, claim_table, headline
 from scenarios.comfort_sensitivity.claims import PUBLISHED_SLIP as PUBLISHED_ROAD_SLIP
 from scenarios.levels import PUBLISHED_SLIP, SLIP_TOLERANCE
-from scenarios.output_folder import prepare_folder, write_text
 from scenarios.study import main_of
 from vehicle.commands.command_line import Parser, parse_and_run
 from vehicle.commands.options import FORCE_HELP, jobs_option, message_options
 from vehicle.errors import DataError, SimulationError
+from vehicle.output.folder import prepare_folder, write_text
 
 CAR_SCENARIOS = ("levels", "inertia", "bump", "stribeck", "comfort_sensitivity", "tornado", "tuning")
 LUMPED_SCENARIOS = ("quarter_car",)

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.bump.runs import FULL, QUICK, SIZES, relative_acceleration
-from scenarios.car_runs import CarRuns, Case
+from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings
 from scenarios.study import car_study, computed_by, setting
@@ -53,7 +53,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     record = QUICK if options.quick else FULL
     signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start)
     step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.timestep)!r}"
-    cases = [Case(signal=signal, overrides=(*law, step)) for law in LAWS.values()]
+    cases = [runs.case(signal, (*law, step)) for law in LAWS.values()]
     found = dict(zip(LAWS, runs(cases), strict=True))
     phases = {
         name: slip_phases(

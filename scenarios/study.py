@@ -14,11 +14,11 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
-from scenarios.output_folder import prepare_folder
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
 from vehicle.commands.command_line import Parser, parse_and_run
 from vehicle.commands.options import engine_option, jobs_option, message_options, output_options, vehicle_options
+from vehicle.output.folder import prepare_folder
 
 STUDIES = {
     "levels": "Low, mid and high random input: FRFs, slip shares, wheel mode.",

@@ -12,7 +12,7 @@ from pathlib import Path
 from scenarios.bump.claims import bump_claims, ring_down_claims, slip_table
 from scenarios.bump.figures import friction_figure, history_figures, ring_down_figure, side_by_side
 from scenarios.bump.runs import FRICTIONS, FULL, OTHER, QUICK, fastest, run_bumps, slip_after, when
-from scenarios.car_runs import CarRuns, Case
+from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
 from scenarios.study import car_study, setting
 from vehicle.car import SATURATED_VELOCITY
@@ -39,7 +39,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     friction_figure(folder / "friction.png", bumps)
     ring_down_figure(folder / "ring_down.png", bumps)
     if options.video is not None:
-        shown = runs([Case(signal=run.signal, engine="mujoco") for run in bumps.noisy])
+        shown = runs([runs.case(run.signal, engine="mujoco") for run in bumps.noisy])
         side_by_side(folder / options.video, shown, start=record.start - 0.1, duration=record.film)
     ringing = list(ring_down_claims(bumps))
     too_short = "the record ends before the motion has rung down"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.car_runs import CarRuns, Case
+from scenarios.car_runs import CarRuns
 from scenarios.claims import Interval
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
@@ -130,11 +130,11 @@ def run_bumps(runs: CarRuns, record: Record, reading: Reading, frictions: Sequen
     """All runs of the study, independent ones at once."""
     other = OTHER[reading]
     cases = [
-        Case(signal=record.signal(size, kind, noise=noise))
+        runs.case(record.signal(size, kind, noise=noise))
         for kind, noise in ((reading, True), (reading, False), (other, True))
         for size in SIZES
     ]
-    varied = [Case(signal=cases[1].signal, overrides=(f"damper.coulomb_friction={value!r}",)) for value in frictions]
+    varied = [runs.case(cases[1].source, [f"damper.coulomb_friction={value!r}"]) for value in frictions]
     found = runs([*cases, *varied])
     return Bumps(
         record=record,

@@ -17,7 +17,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from scenarios.car_runs import CarRuns, Case
+from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
 from scenarios.study import car_study
 from scenarios.tuning.claims import data_note, demonstration_claims, fit_notes, fit_numbers, frozen_note, own_claims
@@ -93,7 +93,7 @@ class Tuning:
                 engine=engine or self.runs.engine,
                 jobs=self.runs.jobs,
             )
-            return again([Case(signal=one.signal, overrides=changes) for one in measurements])
+            return again([again.case(one.signal, changes) for one in measurements])
 
         return full_steps(result, [one.target for one in measurements], simulate)
 

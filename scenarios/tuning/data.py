@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.car_runs import CarRuns, Case
+from scenarios.car_runs import CarRuns
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
 from vehicle.errors import ConfigurationError
@@ -85,7 +85,7 @@ def make_measurements(
     """
     changes = overrides_of(runs.car().vehicle, {path: HIDDEN[path] for path in fitted})
     signals = [read_signal(find_input(f"{name}.csv")) for name in (*levels, *bumps)]
-    done = runs([Case(signal=signal, overrides=changes, engine=engine) for signal in signals])
+    done = runs([runs.case(signal, changes, engine=engine) for signal in signals])
     found = []
     for name, signal, run in zip((*levels, *bumps), signals, done, strict=True):
         noise = np.random.default_rng([SEED, INPUTS.index(name)])

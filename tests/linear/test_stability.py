@@ -16,7 +16,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.random_road import random_road
 from vehicle.linear.modes import grows
 from vehicle.simulation.judgement import require_finite
-from vehicle.sweeps.case import Case, RandomRoad
+from vehicle.sweeps.case import Case
 from vehicle.sweeps.program import program_digest
 from vehicle.sweeps.worker import carry_out
 
@@ -91,9 +91,8 @@ class Endless:
 
 
 def test_a_sweep_writes_a_reason_where_it_would_write_inf():
-    road = RandomRoad(name="road", rms=1e-4, seed=1, duration=1.0, lower_band_edge=1.0)
-    result = carry_out(Case(overrides=(), source=road, engine="reduced"), Endless(), program_digest())
+    road = random_road(rms=1e-4, seed=1, duration=1.0, lower_band_edge=1.0)
+    result = carry_out(Case(source=road, engine="reduced"), Endless(), program_digest())
     assert result.reason == "SimulationError: loud: infinite; the run left the range of numbers" and not result.values
-    falling = tuple((path, value) for path, _, value in (setting.partition("=") for setting in FALLING))
-    result = carry_out(Case(overrides=falling, source=road, engine="reduced"), Endless(), program_digest())
+    result = carry_out(Case(overrides=tuple(FALLING), source=road, engine="reduced"), Endless(), program_digest())
     assert result.reason.startswith("ConfigurationError: this car does not stand")

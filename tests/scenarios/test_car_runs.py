@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios import car_runs
-from scenarios.car_runs import CarRuns, Case, Task
+from scenarios.car_runs import CarRuns
 from scenarios.claims import PREDICTED, Findings
 from scenarios.study import car_study
 from vehicle.errors import ConfigurationError
@@ -19,8 +19,8 @@ SHORT = bump(amplitude=7.5e-3, duration=1.0, start=0.1)
 
 def test_a_case_is_computed_once_and_overrides_of_the_case_win():
     runs = CarRuns(overrides=["damper.coulomb_friction=75"])
-    changed = Case(signal=SHORT, overrides=("damper.coulomb_friction=150",))
-    first, other, again = runs([Case(signal=SHORT), changed, Case(signal=dataclasses.replace(SHORT, source="again"))])
+    changed = runs.case(SHORT, ["damper.coulomb_friction=150"])
+    first, other, again = runs([runs.case(SHORT), changed, runs.case(dataclasses.replace(SHORT, source="again"))])
     assert first is again
     assert runs([changed])[0] is other
     assert first.car.vehicle.damper.coulomb_friction == 75.0
@@ -32,7 +32,7 @@ def test_another_signal_of_the_same_name_is_another_run():
     runs = CarRuns()
     higher = Signal(time=SHORT.time, displacement={"fr": 1.01 * SHORT.displacement["fr"]}, source=SHORT.source)
     left = Signal(time=SHORT.time, displacement={"fl": SHORT.displacement["fr"]}, source=SHORT.source)
-    found = runs([Case(signal=signal) for signal in (SHORT, higher, left)])
+    found = runs([runs.case(signal) for signal in (SHORT, higher, left)])
     assert len({id(run) for run in found}) == 3
     assert found[2].wheel == "fl"
 
@@ -40,9 +40,10 @@ def test_another_signal_of_the_same_name_is_another_run():
 def test_worker_processes_give_the_same_numbers_with_one_thread_each(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
     monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
-    cases = [Case(signal=SHORT), Case(signal=SHORT, overrides=("damper.coulomb_friction=75",))]
     changes = ["damper.viscous=2000"]
-    serial, parallel = CarRuns(overrides=changes)(cases), CarRuns(overrides=changes, jobs=2)(cases)
+    runs = CarRuns(overrides=changes)
+    cases = [runs.case(SHORT), runs.case(SHORT, ["damper.coulomb_friction=75"])]
+    serial, parallel = runs(cases), CarRuns(overrides=changes, jobs=2)(cases)
     for one, other in zip(serial, parallel, strict=True):
         assert other.car.vehicle == one.car.vehicle
         for name, values in one.recording.channels.items():
@@ -53,22 +54,14 @@ def test_worker_processes_give_the_same_numbers_with_one_thread_each(monkeypatch
 
 
 def test_one_process_is_asked_for_where_several_would_not_help(monkeypatch):
-    asked = []
-    monkeypatch.setattr(car_runs, "carry_out", lambda tasks, jobs: asked.append((tasks, jobs)))
-    CarRuns(jobs=4)([Case(signal=SHORT)])
-    assert not asked
+    monkeypatch.setattr(car_runs, "process_pool", lambda jobs: pytest.fail("a process for one run"))
+    runs = CarRuns(jobs=4)
+    assert runs([runs.case(SHORT)])
 
 
-def test_tasks_know_the_engine_of_the_case(monkeypatch):
-    seen: list[Task] = []
-
-    def record(tasks, jobs):
-        seen.extend(tasks)
-        return [None for _ in tasks]
-
-    monkeypatch.setattr(car_runs, "carry_out", record)
-    CarRuns(engine="reduced", jobs=2)([Case(signal=SHORT), Case(signal=SHORT, engine="mujoco")])
-    assert [task.engine for task in seen] == ["reduced", "mujoco"]
+def test_cases_know_the_engine_that_is_asked_for():
+    runs = CarRuns(engine="reduced")
+    assert [runs.case(SHORT).engine, runs.case(SHORT, engine="mujoco").engine] == ["reduced", "mujoco"]
 
 
 def findings(runs, folder, options):
@@ -103,5 +96,6 @@ def test_wrong_options_are_refused_before_the_folder_is_made(arguments, words, t
 
 def test_an_error_of_a_worker_reaches_the_user():
     broken = ("solver.record_rate=333",)
+    runs = CarRuns(overrides=broken)
     with pytest.raises(ConfigurationError, match="record_rate"):
-        CarRuns(overrides=broken)([Case(signal=SHORT)])
+        runs([runs.case(SHORT)])

@@ -22,9 +22,9 @@ from scenarios.claims import (
     interval_claim,
     spread_claim,
 )
-from scenarios.output_folder import prepare_folder, write_text
 from scenarios.study import STUDIES, lumped_study, main_of, study_parser
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
+from vehicle.output.folder import prepare_folder, write_text
 
 HOME = Path(scenarios.__file__).parent
 

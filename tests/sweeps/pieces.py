@@ -7,9 +7,11 @@ import signal
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
+from itertools import product
 from pathlib import Path
 
 from vehicle.excitation.random_road import random_road
+from vehicle.sweeps.case import table_cases
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,6 +37,11 @@ class ShortRoad:
 
     def identity(self):
         return asdict(self)
+
+
+def grid(variations, inputs, **options):
+    """Every combination of parameter values on every input."""
+    return table_cases(list(variations), product(*variations.values()), inputs, **options)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -10,10 +10,9 @@ from typing import ClassVar
 
 import pytest
 
-from tests.sweeps.pieces import Peak, ShortRoad
+from tests.sweeps.pieces import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.sweeps import executors
-from vehicle.sweeps.case import grid
 from vehicle.sweeps.executors import process_pool, workers_of
 from vehicle.sweeps.program import program_digest
 from vehicle.sweeps.sweep import PER_WORKER, case_keys, sweep

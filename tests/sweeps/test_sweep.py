@@ -15,12 +15,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.sweeps.pieces import Peak, ShortRoad, threads
+from tests.sweeps.pieces import Peak, ShortRoad, grid, threads
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.excitation.random_road import random_road
 from vehicle.sweeps import executors
-from vehicle.sweeps.case import GivenSignal, RandomRoad, SignalFile, grid, table_cases
+from vehicle.sweeps.case import SignalFile, table_cases
 from vehicle.sweeps.executors import executor_factory
 from vehicle.sweeps.measure import ComfortMeasure
 from vehicle.sweeps.sweep import DIED, case_keys, sweep
@@ -39,24 +39,24 @@ def in_threads():
 
 
 def test_grid_and_table_put_the_cases_in_order():
-    cases = grid({"a.b": [1.0, 2.0], "c": ["x"]}, [ShortRoad(name="one"), ShortRoad(name="two")], fixed=[("d", "4")])
+    cases = grid({"a.b": [1.0, 2.0], "c": ["x"]}, [ShortRoad(name="one"), ShortRoad(name="two")], fixed=["d=4"])
     assert [case.label for case in cases] == [
         "one, d=4, a.b=1.0, c=x",
         "one, d=4, a.b=2.0, c=x",
         "two, d=4, a.b=1.0, c=x",
         "two, d=4, a.b=2.0, c=x",
     ]
-    assert cases[1].texts() == ["d=4", "a.b=2.0", "c=x"]
+    assert cases[1].overrides == ("d=4", "a.b=2.0", "c=x")
     pairs = table_cases(["a", "b"], [(1.0, 2.0), (3.0, 4.0)], [ShortRoad()], engine="mujoco")
-    assert [case.overrides for case in pairs] == [(("a", 1.0), ("b", 2.0)), (("a", 3.0), ("b", 4.0))]
+    assert [case.overrides for case in pairs] == [("a=1.0", "b=2.0"), ("a=3.0", "b=4.0")]
 
 
 def test_numbers_are_those_of_the_run():
-    source = RandomRoad(name="road", rms=5e-4, seed=3, duration=3.0, lower_band_edge=2.0)
+    source = random_road(rms=5e-4, seed=3, duration=3.0, lower_band_edge=2.0)
     case = grid({"damper.coulomb_friction": [80.0]}, [source], engine="reduced")
     measure = ComfortMeasure(skip=1.0, rms_of=("knuckle_fr_acc_z",))
     table = sweep(case, measure, executor=in_threads)
-    run = Car.load(None, ["damper.coulomb_friction=80"]).run(source.signal(), engine="reduced")
+    run = Car.load(None, ["damper.coulomb_friction=80"]).run(source, engine="reduced")
     (values,) = [result.values for result in table.results]
     assert set(values) == set(measure.units)
     rate = 1.0 / run.recording.timestep
@@ -153,7 +153,7 @@ def test_the_key_tells_car_input_engine_and_measure(tmp_path):
         *grid({"damper.viscous": [2000.0]}, [ShortRoad()], engine="mujoco"),
         *grid({"damper.viscous": [2000.0]}, [ShortRoad()], vehicle=other),
         *grid({"damper.viscous": [2000.0]}, [SignalFile(path=file)]),
-        *grid({"damper.viscous": [2000.0]}, [GivenSignal(name="given", value=signal)]),
+        *grid({"damper.viscous": [2000.0]}, [signal]),
     ]
     keys = case_keys(variants, Peak())
     assert len(set(keys)) == len(keys)
@@ -179,7 +179,7 @@ def test_a_killed_worker_takes_nothing_with_it(tmp_path):
 SCRIPT = """
 from pathlib import Path
 from tests.sweeps.pieces import Peak, ShortRoad
-from vehicle.sweeps.case import grid
+from tests.sweeps.pieces import grid
 from vehicle.sweeps.sweep import sweep
 
 if __name__ == "__main__":

@@ -10,10 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.output_folder import prepare_folder, write_text
 from vehicle.assembly.mjcf_files import write_mjcf
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.output.folder import check_film, folder_lock, output_folder
+from vehicle.output.folder import check_film, folder_lock, output_folder, prepare_folder, write_text
 from vehicle.output.written_files import MARKER, discard, foreign, written
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -63,11 +63,12 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.excitation.input_files import find_input
+    from vehicle.output.folder import prepare_folder
     from vehicle.parameters.vehicle import load_vehicle
     from vehicle.sweeps.case import SignalFile, signal_of, table_cases
     from vehicle.sweeps.executors import executor_factory
     from vehicle.sweeps.measure import ComfortMeasure
-    from vehicle.sweeps.store import sweep_folder
+    from vehicle.sweeps.store import ROWS
     from vehicle.sweeps.sweep import sweep
 
     if bool(options.vary) == bool(options.table):
@@ -75,7 +76,6 @@ def _job(options: argparse.Namespace) -> None:
     paths, rows = read_table(options.table) if options.table else every_combination(options.vary)
     load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
-    fixed = [tuple(text.split("=", 1)) for text in options.overrides]
     wheel = WHEEL_OF_OPTION[options.wheel or "front_right"]
     inputs = [
         SignalFile(path=find_input(name).resolve(), wheel=wheel, accept_implausible=options.road)
@@ -87,9 +87,9 @@ def _job(options: argparse.Namespace) -> None:
             raise ConfigurationError(
                 f"--skip {options.skip:g} s: allowed is 0 s to less than {source.name}, {duration:g} s"
             )
-    cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=fixed)
+    cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
-    folder = sweep_folder(options.output, resume=options.resume, force=options.force)
+    folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=ROWS)
     try:
         table = sweep(
             cases,

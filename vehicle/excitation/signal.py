@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -106,6 +107,22 @@ class Signal:
     def duration(self) -> float:
         """Time from the first to the last sample [s]."""
         return float(self.time[-1])
+
+    @property
+    def name(self) -> str:
+        """Name as the input of a case."""
+        return self.source
+
+    def signal(self) -> Signal:
+        """The signal itself, as the input of a case."""
+        return self
+
+    def identity(self) -> dict[str, object]:
+        """Digest of all that tells it from other signals."""
+        content = hashlib.sha256(self.time.tobytes())
+        for wheel, values in self.displacement.items():
+            content.update(wheel.encode() + values.tobytes())
+        return {"sha256": content.hexdigest()}
 
     def rms(self, wheel: str) -> float:
         """Root mean square of the displacement about its mean [m]; 0 for a plate at rest."""

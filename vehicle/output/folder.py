@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.output.written_files import discard, mark, note, refuse_foreign
+from vehicle.output.written_files import MARKER, discard, mark, note, refuse_foreign
 
 
 @contextmanager
@@ -57,6 +57,46 @@ def output_folder(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) ->
             raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing is left behind") from None
         finally:
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def prepare_folder(folder: Path, *, force: bool, resume: bool = False, rows: str = "") -> Path:
+    """Make, or take up, a folder whose files are written one after the other: of a study, or of a sweep.
+
+    Args:
+        folder: where to.
+        force: write into a folder that holds results already.
+        resume: go on with the rows that are there.
+        rows: name of the file of finished rows, which `force` throws away; empty where nothing can be gone on with.
+
+    Returns:
+        The folder.
+
+    Raises:
+        ConfigurationError: it holds results, and neither or both is asked for; or files that no run wrote; or another
+            process writes there.
+        OutputError: it cannot be made or is not a folder.
+    """
+    if resume and force:
+        raise ConfigurationError("--resume keeps the finished rows, --force throws them away: give one of them")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        begun = (folder / rows).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
+        if begun and not (resume or force):
+            ways = (
+                "a sweep; --resume goes on, --force starts anew"
+                if rows
+                else ("files already; give another folder, or --force to overwrite")
+            )
+            raise ConfigurationError(f"--output {folder}: holds {ways}")
+        with folder_lock(folder.resolve()):
+            if not (resume and begun):
+                refuse_foreign(folder)
+            mark(folder)
+            if force and rows:
+                (folder / rows).unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None
+    return folder
 
 
 def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> Path:
@@ -178,10 +218,11 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
         temporary.unlink(missing_ok=True)
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, as `write_whole` does."""
+    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
 def write_json(path: Path, content: Any) -> None:
     """Write JSON with sorted structure kept, two blanks of indent, and no NaN."""
-    write_whole(path, lambda file: _write_text(file, json.dumps(content, indent=2, allow_nan=False) + "\n"))
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
+    write_text(path, json.dumps(content, indent=2, allow_nan=False) + "\n")

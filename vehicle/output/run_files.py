@@ -18,9 +18,9 @@ from vehicle.errors import SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.names import AXES, WHEELS, acceleration_channels
-from vehicle.output.folder import write_json, write_whole
+from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.parameters.idle import idle_parameters
-from vehicle.parameters.toml_file import write_text
+from vehicle.parameters.toml_file import write_text as vehicle_text
 from vehicle.records.formats import FORMATS
 from vehicle.records.frf import write_frf
 from vehicle.records.table import Record
@@ -77,7 +77,7 @@ def write_run(
         "time_plot": "time.png",
     }
     header = f"parameters of this run, as used\nframe: {FRAME}"
-    write_whole(folder / "vehicle.toml", lambda path: _write(path, write_text(run.car.vehicle, header)))
+    write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, FRAME))
     write_whole(folder / "frf.csv", lambda path: write_frf(path, response, acceleration_channels(), FRAME))
@@ -251,7 +251,3 @@ def _caption(run: Run, response: FrequencyResponse) -> str:
         f"{run.signal.duration:g} s; estimator: {response.estimator}, "
         f"resolution {response.resolution_hz:.2g} Hz; engine: {run.recording.statistics.engine}"
     )
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")

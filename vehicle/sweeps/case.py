@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
-from itertools import product
 from pathlib import Path
 from typing import Protocol
 
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
 
@@ -61,50 +59,6 @@ class SignalFile:
         return {"sha256": digest, "wheel": self.wheel, "accept_implausible": self.accept_implausible}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RandomRoad:
-    """A generated road as an input; arguments as of `random_road`."""
-
-    name: str
-    rms: float
-    seed: int
-    duration: float
-    lower_band_edge: float
-    upper_band_edge: float = 50.0
-    roll_off_order: int = 0
-    taper_length: float = 0.5
-    wheel: str = "fr"
-
-    def signal(self) -> Signal:
-        """Generate the road."""
-        arguments = asdict(self)
-        arguments.pop("name")
-        return random_road(**arguments)
-
-    def identity(self) -> dict[str, object]:
-        """What the runs depend on."""
-        return asdict(self)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class GivenSignal:
-    """A signal that exists already as an input; it travels with every case."""
-
-    name: str
-    value: Signal
-
-    def signal(self) -> Signal:
-        """The signal."""
-        return self.value
-
-    def identity(self) -> dict[str, object]:
-        """What the runs depend on."""
-        digest = hashlib.sha256(self.value.time.tobytes())
-        for wheel, values in self.value.displacement.items():
-            digest.update(wheel.encode() + values.tobytes())
-        return {"sha256": digest.hexdigest()}
-
-
 # A worker meets the same few inputs in thousands of cases.
 @lru_cache(maxsize=8)
 def signal_of(source: Input) -> Signal:
@@ -117,57 +71,31 @@ class Case:
     """A run.
 
     Attributes:
-        overrides: parameter path to value text or number, applied in this order.
-        source: the input.
+        source: the input; a `Signal` is one.
+        overrides: texts "path=value" as `Car.load` takes them, applied in this order.
         engine: as of `Car.run`.
         vehicle: vehicle file; the car of source 1 by default.
     """
 
-    overrides: tuple[tuple[str, object], ...]
     source: Input
+    overrides: tuple[str, ...] = ()
     engine: str = "auto"
     vehicle: Path | None = None
-
-    def texts(self) -> list[str]:
-        """Overrides as `Car.load` takes them."""
-        return [
-            f"{path}={value!r}" if isinstance(value, float) else f"{path}={value}" for path, value in self.overrides
-        ]
 
     @property
     def label(self) -> str:
         """The case in words."""
-        return ", ".join([self.source.name, *self.texts()])
-
-
-def grid(
-    variations: Mapping[str, Sequence[object]],
-    inputs: Sequence[Input],
-    *,
-    engine: str = "auto",
-    vehicle: Path | None = None,
-    fixed: Sequence[tuple[str, object]] = (),
-) -> list[Case]:
-    """Every combination of parameter values on every input, the last parameter varying fastest.
-
-    Args:
-        variations: parameter path to its values.
-        inputs: the inputs, varying slowest.
-        engine, vehicle: as of `Case`.
-        fixed: overrides of every case, before the varied ones.
-    """
-    values = list(product(*variations.values()))
-    return table_cases(list(variations), values, inputs, engine=engine, vehicle=vehicle, fixed=fixed)
+        return ", ".join([self.source.name, *self.overrides])
 
 
 def table_cases(
     paths: Sequence[str],
-    rows: Sequence[Sequence[object]],
+    rows: Iterable[Sequence[object]],
     inputs: Sequence[Input],
     *,
     engine: str = "auto",
     vehicle: Path | None = None,
-    fixed: Sequence[tuple[str, object]] = (),
+    fixed: Sequence[str] = (),
 ) -> list[Case]:
     """A case for every row of parameter values on every input.
 
@@ -175,13 +103,11 @@ def table_cases(
         paths: parameter paths, the columns.
         rows: values.
         inputs: the inputs, varying slowest.
-        engine, vehicle, fixed: as of `grid`.
+        engine, vehicle: as of `Case`.
+        fixed: overrides of every case, before the varied ones.
     """
-    return [
-        Case(overrides=(*fixed, *zip(paths, row, strict=True)), source=source, engine=engine, vehicle=vehicle)
-        for source in inputs
-        for row in rows
-    ]
+    changes = [(*fixed, *(f"{path}={value}" for path, value in zip(paths, row, strict=True))) for row in rows]
+    return [Case(source=one, overrides=each, engine=engine, vehicle=vehicle) for one in inputs for each in changes]
 
 
 def digest(parts: object) -> str:

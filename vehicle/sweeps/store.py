@@ -7,43 +7,11 @@ import os
 from dataclasses import asdict
 from pathlib import Path
 
-from vehicle.errors import ConfigurationError, DataError, OutputError
-from vehicle.output.folder import folder_lock
-from vehicle.output.written_files import mark, note, refuse_foreign
+from vehicle.errors import DataError, OutputError
+from vehicle.output.written_files import note
 from vehicle.sweeps.worker import Result
 
 ROWS = "rows.jsonl"
-
-
-def sweep_folder(folder: Path, *, resume: bool, force: bool) -> Path:
-    """Make or take up the folder of a sweep.
-
-    Args:
-        folder: where to.
-        resume: keep the rows that are there.
-        force: throw them away.
-
-    Raises:
-        ConfigurationError: it holds rows, and neither or both is asked for; or files that no sweep wrote; or another
-            process writes there.
-        OutputError: it cannot be made.
-    """
-    if resume and force:
-        raise ConfigurationError("--resume keeps the finished rows, --force throws them away: give one of them")
-    rows = folder / ROWS
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if rows.exists() and not (resume or force):
-            raise ConfigurationError(f"--output {folder}: holds a sweep; --resume goes on, --force starts anew")
-        with folder_lock(folder.resolve()):
-            if not resume or not rows.exists():
-                refuse_foreign(folder)
-            mark(folder)
-            if force:
-                rows.unlink(missing_ok=True)
-    except OSError as error:
-        raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None
-    return folder
 
 
 class Store:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.output.folder import write_json, write_whole
+from vehicle.output.folder import write_json, write_text
 from vehicle.sweeps.case import Case
 from vehicle.sweeps.worker import Result
 
@@ -49,7 +49,7 @@ class SweepTable:
 
     def paths(self) -> list[str]:
         """All parameter paths that are changed in some case, in the order of their first use."""
-        return list(dict.fromkeys(path for case in self.cases for path, _ in case.overrides))
+        return list(dict.fromkeys(path for case in self.cases for path in _changes(case)))
 
     def text(self) -> str:
         """The table as CSV, units in the header; the same bytes for the same cases, whoever computed them."""
@@ -59,7 +59,7 @@ class SweepTable:
             ["input", *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), "engine", "failed because"]
         )
         for case, result in zip(self.cases, self.results, strict=True):
-            changed = dict(case.overrides)
+            changed = _changes(case)
             numbers = [repr(result.values[name]) if name in result.values else "" for name in self.units]
             writer.writerow(
                 [case.source.name, *(changed.get(path, "") for path in paths), *numbers, result.engine, result.reason]
@@ -69,11 +69,12 @@ class SweepTable:
     def write(self, folder: Path) -> None:
         """Write `table.csv`, `sweep.json` and `timing.csv`."""
         text = self.text()
-        write_whole(folder / "table.csv", lambda path: _put(path, text))
+        write_text(folder / "table.csv", text)
         write_json(folder / "sweep.json", {**self.made, "failed": [case.label for case, _ in self.failed]})
         times = "case,seconds [s]\n" + "".join(f"{i},{r.seconds:.4f}\n" for i, r in enumerate(self.results))
-        write_whole(folder / "timing.csv", lambda path: _put(path, times))
+        write_text(folder / "timing.csv", times)
 
 
-def _put(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
+def _changes(case: Case) -> dict[str, str]:
+    """Parameter path to value text; of a path that is changed twice the last."""
+    return {path: value for path, _, value in (text.partition("=") for text in case.overrides)}

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import threading
 import time as clock
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from vehicle.car import Car
+from vehicle.car import Car, Run
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.sweeps.case import Case, signal_of
 from vehicle.sweeps.measure import Measure
@@ -48,6 +49,12 @@ def _changed(vehicle: Path | None) -> int:
     return 0 if vehicle is None or not vehicle.exists() else vehicle.stat().st_mtime_ns
 
 
+def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:
+    """Carry out the run of a case; channels as of `Car.run`."""
+    car = _car(case.vehicle, case.overrides, _changed(case.vehicle))
+    return car.run(signal_of(case.source), engine=case.engine, channels=channels)
+
+
 def carry_out(case: Case, measure: Measure, program: str) -> Result:
     """Carry out one run of a sweep.
 
@@ -62,9 +69,7 @@ def carry_out(case: Case, measure: Measure, program: str) -> Result:
     started = clock.perf_counter()
     try:
         with _ONE_AT_A_TIME:
-            run = _car(case.vehicle, tuple(case.texts()), _changed(case.vehicle)).run(
-                signal_of(case.source), engine=case.engine, channels=measure.channels
-            )
+            run = run_of(case, measure.channels)
         values = {name: float(value) for name, value in measure(run).items()}
         # NaN is a number that does not exist, as the first slip of a damper that never slips.
         endless = [name for name, value in values.items() if math.isinf(value)]
