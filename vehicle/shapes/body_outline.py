@@ -1,32 +1,27 @@
 """The outline of an estate car: plan curve, waist, sill and roof rails, fitted to the hardpoints.
 
-The curves are drawn in coordinates of a reference car that stands on its wheels (X from the front bumper, Y to the
-right, H above the road; drawn by eye after a Ford Focus Mk1 estate) and mapped piecewise linearly onto the vehicle:
-the wheel arches onto the wheels, the roof onto its output point.
+The curves of `estate.toml` are drawn in coordinates of a reference car that stands on its wheels (X from the front
+bumper, Y to the right, H above the road) and mapped piecewise linearly onto the vehicle: the wheel arches onto the
+wheels, the roof onto its output point.
 """
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass
+from importlib import resources
 
 import numpy as np
 
 from vehicle.shapes.shape import Array, Points, Sizes
 from vehicle.shapes.surface import spline
 
-REFERENCE_X = (0.0, 0.85, 3.465, 4.45)  # [m] front, front axle, rear axle, rear
-REFERENCE_H = (0.0, 0.295, 1.45)  # [m] road, wheel centre, roof above the rear seats' left end
-REFERENCE_HALF_WIDTH = 0.850  # [m]
+DRAWING = tomllib.loads((resources.files(__package__) / "estate.toml").read_text(encoding="utf-8"))
 WHEEL_TO_SIDE = 0.103  # [m] the body's side lies this far outside the wheel's middle plane
 ARCH_GAP = 0.036  # [m] between free tyre and edge of the arch
 
-PLAN_POINTS = np.array(  # largest outline (X, Y) of the right half, front middle to rear middle
-    [
-        (0.0, 0.0), (0.008, 0.20), (0.035, 0.42), (0.105, 0.62), (0.21, 0.735), (0.36, 0.805), (0.60, 0.842),
-        (0.85, 0.850), (1.6, 0.850), (2.5, 0.850), (3.465, 0.848), (3.95, 0.825), (4.22, 0.775), (4.36, 0.68),
-        (4.425, 0.50), (4.445, 0.25), (4.45, 0.0),
-    ]
-)  # fmt: skip
+PLAN_POINTS, WAIST, SILL, CANT_RAIL = (np.array(DRAWING[name]) for name in ("plan", "waist", "sill", "cant_rail"))
+INSETS = [np.array(DRAWING[f"{name}_inset"]) for name in ("front", "rear", "side")]
 MIRROR = np.array([1.0, -1.0])
 _WHOLE = spline(np.vstack([PLAN_POINTS[1:3][::-1] * MIRROR, PLAN_POINTS, PLAN_POINTS[-3:-1][::-1] * MIRROR]), 1201)
 # drawn past the middle at both ends, so that the halves meet without a crease
@@ -35,45 +30,6 @@ NORMAL = np.column_stack([-np.gradient(PLAN[:, 1]), np.gradient(PLAN[:, 0])])
 NORMAL[[0, -1], 1] = 0.0  # ends lie in the middle plane
 NORMAL = NORMAL / np.linalg.norm(NORMAL, axis=1)[:, None]
 STATION = np.linspace(0, 1, len(PLAN))  # runs along the plan curve
-
-# how far the surface lies inside the plan curve at a height H: side, front, rear
-SIDE_INSET = np.array(
-    [
-        (0.15, 0.06), (0.18, 0.036), (0.25, 0.012), (0.42, 0.0), (0.58, 0.0), (0.72, 0.01), (0.86, 0.03),
-        (0.94, 0.05), (0.99, 0.072), (1.02, 0.092),
-    ]
-)  # fmt: skip
-FRONT_INSET = np.array(
-    [
-        (0.15, 0.09), (0.18, 0.06), (0.24, 0.02), (0.34, 0.0), (0.48, 0.0), (0.525, 0.012), (0.55, 0.032),
-        (0.66, 0.06), (0.72, 0.1), (0.8, 0.15), (0.95, 0.25),
-    ]
-)  # fmt: skip
-REAR_INSET = np.array(
-    [
-        (0.15, 0.1), (0.24, 0.035), (0.32, 0.006), (0.42, 0.0), (0.54, 0.0), (0.58, 0.016), (0.62, 0.034),
-        (0.8, 0.046), (0.95, 0.066), (1.02, 0.085),
-    ]
-)  # fmt: skip
-WAIST = np.array(  # upper edge of the lower body: (X, H); its bonnet edge, cowl and waist line
-    [
-        (0.0, 0.69), (0.105, 0.702), (0.21, 0.73), (0.36, 0.775), (0.6, 0.828), (0.85, 0.868), (1.1, 0.902),
-        (1.36, 0.93), (1.8, 0.945), (2.5, 0.962), (3.4, 0.984), (4.2, 1.002), (4.45, 1.005),
-    ]
-)  # fmt: skip
-SILL = np.array(
-    [(0.0, 0.190), (0.21, 0.175), (0.55, 0.175), (1.2, 0.170), (3.1, 0.175), (3.8, 0.21), (4.2, 0.25), (4.45, 0.27)]
-)
-COWL_X, TAIL_X = 1.36, 4.335  # [m] where bonnet and tailgate end at the waist
-CANT_RAIL = np.array(  # lower edge of the roof's rounding: (X, Y, H)
-    [
-        (2.0, 0.612, 1.352), (2.3, 0.622, 1.388), (2.8, 0.628, 1.402), (3.4, 0.622, 1.4), (3.9, 0.606, 1.39),
-        (4.1, 0.596, 1.378),
-    ]
-)  # fmt: skip
-ROOF_EDGE_STEP = np.array([0.0, -0.085, 0.046])  # from the lower edge of the rounding to the flat of the roof
-ROOF_CORNER_STEP = np.array([0.0, -0.018, 0.040])
-ROOF_CROWN = 0.034  # [m] the middle of the roof above its edges
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,16 +49,21 @@ class Outline:
         """Reference points (X, Y, H), shape (..., 3), as vehicle points; linear beyond the outermost knots too."""
         X, Y, H = np.moveaxis(np.asarray(reference, dtype=float), -1, 0)
         return np.stack(
-            [_linear(X, REFERENCE_X, self.x_knots), Y * self.widen, _linear(H, REFERENCE_H, self.z_knots)], axis=-1
+            [
+                _linear(X, DRAWING["reference_x"], self.x_knots),
+                Y * self.widen,
+                _linear(H, DRAWING["reference_h"], self.z_knots),
+            ],
+            axis=-1,
         )
 
     def height(self, z: float | Array) -> Array:
         """Reference height H [m] of a vehicle height z."""
-        return _linear(np.asarray(z, dtype=float), self.z_knots, REFERENCE_H)
+        return _linear(np.asarray(z, dtype=float), self.z_knots, DRAWING["reference_h"])
 
     def along(self, x: float | Array) -> Array:
         """Reference X [m] of a vehicle x."""
-        return _linear(np.asarray(x, dtype=float), self.x_knots, REFERENCE_X)
+        return _linear(np.asarray(x, dtype=float), self.x_knots, DRAWING["reference_x"])
 
     def arch_centre(self, axle: int) -> tuple[float, float]:
         """Vehicle x and z [m] of the middle of the front (0) or rear (1) arch."""
@@ -124,7 +85,7 @@ class Outline:
         """
         X, Y = (np.interp(station, STATION, PLAN[:, k]) for k in (0, 1))
         nx, ny = (np.interp(station, STATION, NORMAL[:, k]) for k in (0, 1))
-        front, rear, side = (np.interp(height, *table.T) for table in (FRONT_INSET, REAR_INSET, SIDE_INSET))
+        front, rear, side = (np.interp(height, *table.T) for table in INSETS)
         inset = nx**2 * np.where(X < 2.0, front, rear) + ny**2 * side - lift
         # in a corner the inset may not pull a point across the middle plane
         x, y = X - inset * nx, np.maximum(Y - inset * ny, 0.0)
@@ -167,7 +128,7 @@ def outline(points: Points, size: Sizes) -> Outline:
     return Outline(
         np.array([0.0, wheel[0], rear, rear + size["rear_overhang"]]),
         np.array([patch[2], wheel[2], points["roof"][2]]),
-        float(wheel[1] + WHEEL_TO_SIDE) / REFERENCE_HALF_WIDTH,
+        float(wheel[1] + WHEEL_TO_SIDE) / float(DRAWING["half_width"]),
         float(wheel[2] - patch[2]) + size["tyre_deflection"] + ARCH_GAP,
     )
 

@@ -2,24 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 import trimesh
 
-from vehicle.shapes.body_outline import (
-    CANT_RAIL,
-    COWL_X,
-    ROOF_CORNER_STEP,
-    ROOF_CROWN,
-    ROOF_EDGE_STEP,
-    SILL,
-    TAIL_X,
-    Outline,
-    station_at,
-    station_front,
-    station_rear,
-)
+from vehicle.shapes.body_outline import CANT_RAIL, DRAWING, SILL, Outline, station_at, station_front, station_rear
 from vehicle.shapes.placement import both, inverted, joined
 from vehicle.shapes.shape import Array
 from vehicle.shapes.surface import bezier, coons, grid, spline
@@ -33,12 +22,14 @@ LEVELS = 7  # rows of the lower body between sill and waist
 ROOF_STATIONS = 13
 CANT_STEPS = 4
 SILL_GLASS, TOP_GLASS = 0.06, 0.93  # share of the height of the side where the glass begins and ends
-# side windows: reference X at the waist and at the roof rail of the front and the rear edge [m]
-WINDOWS = ((1.66, 2.075, 2.46, 2.50), (2.58, 2.60, 3.38, 3.30), (3.50, 3.41, 4.20, 4.01))
 MIRROR_Y = np.array([1.0, -1.0, 1.0])
 ACROSS = 9  # points across the flat of the roof, odd
 ROOF_X = (float(CANT_RAIL[0, 0]), float(CANT_RAIL[-1, 0]))
 BOW_FRONT, BOW_REAR = 0.085, -0.045  # [m] the middles of the roof's edges lie ahead by this
+COWL_X, TAIL_X, WINDOWS = DRAWING["cowl_x"], DRAWING["tail_x"], DRAWING["windows"]
+_ROUNDING = 1 - 0.13 * np.linspace(0, 1, CANT_STEPS)
+# where the points of an edge of the roof lie across the car, 1 at the right rail, -1 at the left one
+SHARES = np.concatenate([_ROUNDING[:-1], np.linspace(_ROUNDING[-1], -_ROUNDING[-1], ACROSS), -_ROUNDING[::-1][1:]])
 
 
 def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
@@ -94,7 +85,7 @@ def cant_rail(body: Outline, X: Array) -> tuple[Array, Array, Array]:
     """Lower edge, corner and upper edge of the roof's rounding at reference X [m], each shape (n, 3)."""
     rail = spline(CANT_RAIL, 200)
     low = np.column_stack([X, *(np.interp(X, rail[:, 0], rail[:, k]) for k in (1, 2))])
-    return body.place(low), body.place(low + ROOF_CORNER_STEP), body.place(low + ROOF_EDGE_STEP)
+    return body.place(low), body.place(low + DRAWING["roof_corner_step"]), body.place(low + DRAWING["roof_edge_step"])
 
 
 def header(body: Outline, X: float, bow: float) -> Array:
@@ -112,7 +103,7 @@ def header(body: Outline, X: float, bow: float) -> Array:
     rounding = bezier(low, corner, edge, CANT_STEPS)
     flat = np.linspace(1, -1, ACROSS)[:, None]
     roof = edge * (0, 0, 1) + (edge * (1, 0, 0) - (bow, 0, 0) * (1 - flat**2)) + (0, 1, 0) * flat * edge
-    roof = roof + (0, 0, ROOF_CROWN) * (1 - flat**2)
+    roof = roof + (0, 0, DRAWING["roof_crown"]) * (1 - flat**2)
     return np.vstack([rounding[:-1], roof, (rounding * MIRROR_Y)[::-1][1:]])
 
 
@@ -127,27 +118,15 @@ def roof(body: Outline) -> Array:
 
 def windscreen_grid(body: Outline) -> Array:
     """Points of the windscreen plane with the pillars, from cowl to header, shape (6, n, 3)."""
-    top = header(body, ROOF_X[0], BOW_FRONT)
-    bottom = cowl(body, len(top))
-    steps = np.linspace(0, 1, 6)[:, None]
-    left, right = (bottom[k] + steps * (top[k] - bottom[k]) for k in (0, -1))
+    bottom, top = cowl(body), header(body, ROOF_X[0], BOW_FRONT)
+    left, right = (bottom[k] + np.linspace(0, 1, 6)[:, None] * (top[k] - bottom[k]) for k in (0, -1))
     return coons(bottom, top, left, right)
 
 
-def cowl(body: Outline, count: int) -> Array:
+def cowl(body: Outline) -> Array:
     """Foot of the windscreen, bowed forward, from right to left; spaced like the header above it."""
-    side = waist_curve(body, np.array([COWL_X]))[0]
-    share = header_shares(count)
-    y = side[1] * share
-    lift, bow = 0.060 * (1 - share**2), 0.215 * (1 - share**2)
-    return np.column_stack([side[0] - bow, y, side[2] + lift])
-
-
-def header_shares(count: int) -> Array:
-    """Where the points of a header lie across the car, 1 at the right rail, -1 at the left one."""
-    rounding = 1 - 0.13 * np.linspace(0, 1, CANT_STEPS)
-    flat = np.linspace(rounding[-1], -rounding[-1], count - 2 * (CANT_STEPS - 1))
-    return np.concatenate([rounding[:-1], flat, -rounding[::-1][1:]])
+    x, y, z = waist_curve(body, np.array([COWL_X]))[0]
+    return np.column_stack([x - 0.215 * (1 - SHARES**2), y * SHARES, z + 0.060 * (1 - SHARES**2)])
 
 
 def bonnet(body: Outline) -> Array:
@@ -158,8 +137,7 @@ def bonnet(body: Outline) -> Array:
     wing_stations = edge[(edge >= station_front(CORNER_Y) - 1e-9) & (edge <= station_at(COWL_X) + 1e-9)]
     count, rows = len(half), len(wing_stations)
     shares = np.linspace(1, -1, count)
-    back = cowl(body, ACROSS + 2 * (CANT_STEPS - 1))
-    rear = np.column_stack([np.interp(-shares, -header_shares(len(back)), back[:, k]) for k in range(3)])
+    rear = np.column_stack([np.interp(-shares, -SHARES, places) for places in cowl(body).T])
     front = body.side(half, body.waist(half))
     front[:, 1] *= np.sign(shares) + (shares == 0)
     wing = body.side(wing_stations, body.waist(wing_stations))
@@ -171,50 +149,48 @@ def bonnet(body: Outline) -> Array:
 
 def tailgate_grid(body: Outline) -> Array:
     """Points of the tailgate above the waist, from the waist to the header, shape (7, n, 3)."""
-    top = header(body, ROOF_X[1], BOW_REAR)
-    shares = header_shares(len(top))
-    station = 1 - (1 - station_at(TAIL_X)) * np.abs(shares)
+    top, steps = header(body, ROOF_X[1], BOW_REAR), np.linspace(0, 1, 7)[:, None]
+    station = 1 - (1 - station_at(TAIL_X)) * np.abs(SHARES)
     bottom = body.side(station, body.waist(station))
-    bottom[:, 1] *= np.sign(shares)
-    steps = np.linspace(0, 1, 7)[:, None]
+    bottom[:, 1] *= np.sign(SHARES)
     left = bottom[0] + steps * (top[0] - bottom[0])
     surface = coons(bottom, top, left, left * MIRROR_Y)
-    bulge = np.sin(np.pi * np.linspace(0, 1, 7))[:, None] * (1 - shares**4)
-    surface[..., 0] += 0.022 * bulge
+    surface[..., 0] += 0.022 * (np.sin(np.pi * steps) * (1 - SHARES**4))
     return surface
 
 
 def side_columns(body: Outline) -> tuple[list[Array], list[Array]]:
     """Patches of the right side above the waist: sheet metal and glass, each shape (m, n, 3)."""
-    lines = [(COWL_X, ROOF_X[0])]
-    for front_low, front_top, rear_low, rear_top in WINDOWS:
-        lines += [(front_low, front_top), (rear_low, rear_top)]
-    lines.append((TAIL_X, ROOF_X[1]))
+    edges = [edge for window in WINDOWS for edge in (window[:2], window[2:])]
+    lines = [(COWL_X, ROOF_X[0]), *edges, (TAIL_X, ROOF_X[1])]
     metal: list[Array] = []
     glass: list[Array] = []
     for k, (first, last) in enumerate(pairwise(lines)):
-        window = k % 2 == 1
-        count = 6 if window else 3
-        levels = [0.0, SILL_GLASS, TOP_GLASS, 1.0] if window else [0.0, 1.0]
-        for low, high in pairwise(levels):
-            is_glass = window and low == SILL_GLASS
-            steps = 5 if is_glass or not window else 2
-            # the bulge fades in the outermost pillars, whose edges belong to windscreen and tailgate too
-            fade = (float(k > 0), float(k < len(lines) - 2))
-            patch = side_patch(body, first, last, np.linspace(low, high, steps), count, fade)
-            (glass if is_glass else metal).append(patch)
+        # the bulge fades in the outermost pillars, whose edges belong to windscreen and tailgate too
+        fade = (float(k > 0), float(k < len(lines) - 2))
+        if k % 2 == 0:
+            metal.append(side_patch(body, first, last, np.linspace(0.0, 1.0, 5), 3, fade))
+            continue
+        levels = ((0.0, SILL_GLASS, 2), (SILL_GLASS, TOP_GLASS, 5), (TOP_GLASS, 1.0, 2))
+        low, pane, high = (side_patch(body, first, last, np.linspace(*level), 6, fade) for level in levels)
+        metal += [low, high]
+        glass.append(pane)
     return metal, glass
 
 
 def side_patch(
-    body: Outline,
-    first: tuple[float, float],
-    last: tuple[float, float],
-    levels: Array,
-    count: int,
-    fade: tuple[float, float],
+    body: Outline, first: Sequence[float], last: Sequence[float], levels: Array, count: int, fade: Sequence[float]
 ) -> Array:
-    """Points between two slanted lines on the right side above the waist, with the bulge of the side glass."""
+    """Points between two slanted lines on the right side above the waist, with the bulge of the side glass.
+
+    Args:
+        body: the outline
+        first: reference X of the front line at the waist and at the roof rail [m]
+        last: the same of the rear line
+        levels: shares of the height of the side, shape (m,)
+        count: points between the lines
+        fade: share of the bulge at the front and at the rear line
+    """
     share = np.linspace(0, 1, count)
     bottom = waist_curve(body, first[0] + share * (last[0] - first[0]))
     top = cant_rail(body, first[1] + share * (last[1] - first[1]))[0]

@@ -6,8 +6,8 @@ import numpy as np
 import trimesh
 
 from vehicle.shapes import body_shell, palette
-from vehicle.shapes.body_outline import COWL_X, Outline, outline, station_at, station_front, station_rear
-from vehicle.shapes.body_shell import WINDOWS, arch_edge, bonnet, cant_rail, side_patch, waist_curve
+from vehicle.shapes.body_outline import DRAWING, Outline, outline, station_at, station_front, station_rear
+from vehicle.shapes.body_shell import COWL_X, WINDOWS, arch_edge, bonnet, cant_rail, side_patch, waist_curve
 from vehicle.shapes.placement import both, shifted
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
 from vehicle.shapes.solids import block, hull, rod, tube
@@ -81,13 +81,7 @@ def dark_trim(body: Outline) -> trimesh.Trimesh:
         parts.append(tube(body.side(station_at(X), H) - (0, 0.004, 0), 0.009, sides=4))
     pillar = side_patch(body, WINDOWS[0][2:], WINDOWS[1][:2], np.linspace(0.05, 0.94, 4), 2, (1.0, 1.0))
     parts.append(grid(shifted(pillar, 0, 0.003, 0), flip=True))
-    joints = [
-        [(1.36, 0.90), (1.31, 0.75), (1.30, 0.45), (1.335, 0.235)],
-        [(2.52, 0.945), (2.52, 0.70), (2.50, 0.235)],
-        [(3.40, 0.965), (3.40, 0.82), (3.29, 0.64), (3.06, 0.50), (2.98, 0.235)],
-        [(1.335, 0.235), (2.2, 0.233), (2.98, 0.235)],
-    ]
-    for joint in joints:
+    for joint in DRAWING["joints"]:
         X, H = spline(joint, 7).T
         parts.append(tube(body.side(station_at(X), H, 0.0005), JOINT_RADIUS, sides=3))
     waist = waist_curve(body, np.linspace(COWL_X + 0.06, 4.28, 14))
