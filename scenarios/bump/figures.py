@@ -15,11 +15,11 @@ from scenarios.study import computed_by
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_START_S
 from vehicle.output.folder import write_whole
-from vehicle.rendering.backend import choose_backend, find_ffmpeg
+from vehicle.rendering.backend import choose_backend
 from vehicle.rendering.figure import COLOURS
 from vehicle.rendering.film import write_film
 from vehicle.rendering.overlay import Layout, font
-from vehicle.rendering.shot import Shot
+from vehicle.rendering.shot import Shot, Take
 
 Vector = npt.NDArray[np.float64]
 
@@ -158,7 +158,7 @@ HALF = (960, 600)
 BANNER = 48
 """Height of the captions above the halves [pixel]."""
 
-SLOW, FPS = 3.0, 30.0
+SLOW = 3.0
 
 SHOWN_BUMP = 0.06
 """Height [m] to which every bump is exaggerated: a linear car would look alike in both halves."""
@@ -177,9 +177,9 @@ def side_by_side(path: Path, runs: Sequence[Run], *, start: float, duration: flo
         MissingPartError: no off-screen OpenGL library or no ffmpeg.
         OutputError: the file cannot be written.
     """
-    ffmpeg, backend, layout = find_ffmpeg(), choose_backend(), Layout(width=HALF[0], height=HALF[1])
+    backend, layout = choose_backend(), Layout(width=HALF[0], height=HALF[1])
     shots = [
-        Shot(run, layout, start=start, duration=duration, slow=SLOW, exaggeration=SHOWN_BUMP / size, fps=FPS)
+        Shot(run, layout, Take(start=start, duration=duration, slow=SLOW, exaggeration=SHOWN_BUMP / size))
         for run, size in zip(runs, SIZES, strict=True)
     ]
     captions = [f"bump of {1e3 * size:g} mm, motion {SHOWN_BUMP / size:g} times" for size in SIZES]
@@ -187,7 +187,7 @@ def side_by_side(path: Path, runs: Sequence[Run], *, start: float, duration: flo
     pairs = zip(*(shot.frames(backend) for shot in shots), strict=True)
     frames = (np.concatenate([banner, np.concatenate(halves, axis=1)], axis=0) for halves in pairs)
     shape = (banner.shape[0] + HALF[1], banner.shape[1])
-    write_whole(path, lambda file: write_film(file, frames, shape, FPS, ffmpeg))
+    write_whole(path, lambda file: write_film(file, frames, shape))
 
 
 def _banner(text: str) -> Picture:

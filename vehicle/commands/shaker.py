@@ -102,16 +102,15 @@ def _job(options: argparse.Namespace) -> None:
 
         def make_film(path: Path) -> None:
             from vehicle.rendering.film import film
+            from vehicle.rendering.shot import Take
 
-            film(
-                run,
-                path,
+            take = Take(
                 start=options.video_start,
                 duration=options.video_duration,
                 slow=options.slow_motion,
                 exaggeration=options.exaggeration,
-                progress=ProgressLine("film      ", enabled=not options.quiet),
             )
+            film(run, path, take, progress=ProgressLine("film      ", enabled=not options.quiet))
 
         summary = write_run(
             folder,

@@ -45,17 +45,11 @@ def probe(backend: str) -> str | None:
         None if it works, else the last line that the process said.
     """
     environment = {**os.environ, "MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
-    # MuJoCo writes its log into the working folder.
-    with tempfile.TemporaryDirectory() as folder:
+    command = [sys.executable, "-c", PROBE]
+    with tempfile.TemporaryDirectory() as folder:  # MuJoCo writes its log into the working folder
         try:
             done = subprocess.run(
-                [sys.executable, "-c", PROBE],
-                env=environment,
-                cwd=folder,
-                capture_output=True,
-                text=True,
-                timeout=PATIENCE,
-                check=False,
+                command, env=environment, cwd=folder, capture_output=True, text=True, timeout=PATIENCE, check=False
             )
         except subprocess.TimeoutExpired:
             return f"no answer within {PATIENCE:g} s"
@@ -93,10 +87,10 @@ def choose_backend(probe: Callable[[str], str | None] = probe) -> str:
             os.environ["MUJOCO_GL"] = os.environ["PYOPENGL_PLATFORM"] = name
             return name
         reasons[name] = reason
+    found = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
     raise MissingPartError(
-        "video: no off-screen OpenGL library works on this machine ("
-        + "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
-        + "). Install OSMesa, on Debian: apt-get install libosmesa6; or run without --video"
+        f"video: no off-screen OpenGL library works on this machine ({found}). "
+        "Install OSMesa, on Debian: apt-get install libosmesa6; or run without --video"
     )
 
 
@@ -109,16 +103,13 @@ def find_ffmpeg() -> str:
     Raises:
         MissingPartError: there is none, or none with the encoder.
     """
-    tried = []
-    for path in (shutil.which("ffmpeg"), _bundled_ffmpeg()):
-        if path is None:
-            continue
+    found = [path for path in (shutil.which("ffmpeg"), _bundled_ffmpeg()) if path is not None]
+    for path in found:
         if _encodes(path):
             return path
-        tried.append(path)
-    found = f"found {', '.join(tried)} without the encoder {ENCODER}" if tried else "no ffmpeg program was found"
+    what = f"found {', '.join(found)} without the encoder {ENCODER}" if found else "no ffmpeg program was found"
     raise MissingPartError(
-        f"video: {found}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
+        f"video: {what}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
         "or run without --video"
     )
 
@@ -134,10 +125,9 @@ def _bundled_ffmpeg() -> str | None:
 
 def _encodes(path: str) -> bool:
     """Whether a program lists the encoder."""
+    command = [path, "-hide_banner", "-encoders"]
     try:
-        done = subprocess.run(
-            [path, "-hide_banner", "-encoders"], capture_output=True, text=True, timeout=PATIENCE, check=False
-        )
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return False
     return done.returncode == 0 and ENCODER in done.stdout

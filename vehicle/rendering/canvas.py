@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from types import TracebackType
+from importlib import import_module
 from typing import Any
 
 import mujoco
@@ -16,7 +16,7 @@ MOST_GEOMS = 2000
 
 
 class Canvas:
-    """OpenGL context, scene and buffer; use it in a `with` block.
+    """OpenGL context, scene and buffer; close it when done.
 
     MuJoCo's own Renderer takes the backend that MUJOCO_GL named when mujoco was imported; this takes the one it is
     told, so a notebook that has imported mujoco already can make films too.
@@ -29,7 +29,7 @@ class Canvas:
 
     def __init__(self, model: mujoco.MjModel, size: tuple[int, int], backend: str) -> None:
         self.model, self.size = model, size
-        self.gl: Any = _gl_context(backend)(*size)
+        self.gl: Any = import_module(f"mujoco.{backend}").GLContext(*size)
         self.gl.make_current()
         self.context: mujoco.MjrContext | None = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self.context)
@@ -40,14 +40,6 @@ class Canvas:
         # Springs are drawn as coils, not as tendons.
         self.option.flags[mujoco.mjtVisFlag.mjVIS_TENDON] = False
         self.picture = np.zeros((size[1], size[0], 3), dtype=np.uint8)
-
-    def __enter__(self) -> Canvas:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Give all of OpenGL back; harmless a second time."""
@@ -75,13 +67,3 @@ class Canvas:
         width, height = self.size
         mujoco.mjr_readPixels(self.picture, None, mujoco.MjrRect(0, 0, width, height), self.context)
         return np.asarray(self.picture[::-1])
-
-
-def _gl_context(backend: str) -> Any:
-    if backend == "osmesa":
-        from mujoco.osmesa import GLContext as OSMesaContext
-
-        return OSMesaContext
-    from mujoco.egl import GLContext as EGLContext
-
-    return EGLContext

@@ -9,7 +9,7 @@ from vehicle.errors import OutputError
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.rendering.overlay import Layout, Picture
 from vehicle.rendering.recorded_run import RecordedRun
-from vehicle.rendering.shot import Cut, Shot
+from vehicle.rendering.shot import FPS, Cut, Shot, Take
 
 QUALITY = 20
 """Constant rate factor of the encoder; about 18 cannot be told from the original, 23 is its default."""
@@ -18,12 +18,8 @@ QUALITY = 20
 def film(
     run: RecordedRun,
     path: Path,
+    take: Take | None = None,
     *,
-    start: float | None = None,
-    duration: float = 10.0,
-    slow: float = 1.0,
-    exaggeration: float | None = None,
-    fps: float = 30.0,
     size: tuple[int, int] = (1280, 720),
     progress: Callable[[float], None] | None = None,
 ) -> Cut:
@@ -32,11 +28,7 @@ def film(
     Args:
         run: the run.
         path: MP4 file.
-        start: first time of the record [s]; the liveliest stretch by default.
-        duration: length of the film [s]; it shows duration / slow of the record, less where the record ends.
-        slow: how many times slower than the record, at least 1.
-        exaggeration: factor of all motion; by default such that the largest displacement becomes 5 to 8 cm.
-        fps: frames per second [Hz].
+        take: what to show; ten seconds of the liveliest stretch by default.
         size: width and height [pixel], even.
         progress: called with the finished fraction.
 
@@ -48,9 +40,9 @@ def film(
         MissingPartError: no off-screen OpenGL library or no ffmpeg.
         OutputError: the file cannot be written.
     """
-    ffmpeg, backend = find_ffmpeg(), choose_backend()
+    backend = choose_backend()
     layout = Layout(width=size[0], height=size[1])
-    shot = Shot(run, layout, start=start, duration=duration, slow=slow, exaggeration=exaggeration, fps=fps)
+    shot = Shot(run, layout, take or Take())
 
     def counted() -> Iterator[Picture]:
         for number, frame in enumerate(shot.frames(backend), start=1):
@@ -58,30 +50,29 @@ def film(
             if progress is not None:
                 progress(number / shot.cut.frames)
 
-    write_film(path, counted(), (layout.height, layout.width), fps, ffmpeg)
+    write_film(path, counted(), (layout.height, layout.width))
     return shot.cut
 
 
-def write_film(path: Path, frames: Iterable[Picture], shape: tuple[int, int], fps: float, ffmpeg: str) -> None:
+def write_film(path: Path, frames: Iterable[Picture], shape: tuple[int, int]) -> None:
     """Write frames as H.264 in MP4, whole or not at all.
 
     Args:
         path: MP4 file.
         frames: pictures, (height, width, 3) each.
         shape: height and width [pixel], even.
-        fps: frames per second [Hz].
-        ffmpeg: program that encodes.
 
     Raises:
+        MissingPartError: there is no ffmpeg that encodes it.
         OutputError: the file cannot be written.
     """
     import mediapy
 
-    mediapy.set_ffmpeg(ffmpeg)
+    mediapy.set_ffmpeg(find_ffmpeg())
     try:
         path.open("wb").close()
         with mediapy.VideoWriter(
-            path, shape=shape, fps=fps, codec="h264", crf=QUALITY, encoded_format="yuv420p"
+            path, shape=shape, fps=FPS, codec="h264", crf=QUALITY, encoded_format="yuv420p"
         ) as writer:
             for frame in frames:
                 writer.add_image(frame)

@@ -121,8 +121,7 @@ class Overlay:
         Returns:
             The whole frame, (height, width, 3).
         """
-        layout = self.layout
-        image = self.backdrop.copy()
+        layout, image = self.layout, self.backdrop.copy()
         image.paste(Image.fromarray(np.ascontiguousarray(picture)), (0, 0))
         pen = ImageDraw.Draw(image)
         self._head(pen, time)

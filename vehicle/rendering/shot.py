@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,6 +44,36 @@ CLEARED = (*SHELL, "body_seats", "body_dashboard", "body_floor", "body_exhaust",
 """Shapes left out of the close-up."""
 
 
+FPS = 30.0
+"""Frames per second of every film [Hz]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Take:
+    """What a film is asked to show.
+
+    Raises:
+        ConfigurationError: a number is out of range.
+    """
+
+    start: float | None = None
+    """first time of the record [s]; the liveliest stretch where it is not given"""
+    duration: float = 10.0
+    """length of the film [s]; it shows duration / slow of the record, less where the record ends"""
+    slow: float = 1.0
+    """how many times slower than the record, at least 1"""
+    exaggeration: float | None = None
+    """factor of all motion; where it is not given, the largest displacement becomes 5 to 8 cm"""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.duration < np.inf:
+            raise ConfigurationError(f"film, duration: found {self.duration:g} s, must be above 0 and finite")
+        if not 1.0 <= self.slow < np.inf:
+            raise ConfigurationError(f"film, slow motion: found {self.slow:g}, must be at least 1")
+        if self.exaggeration is not None and not 0.0 < self.exaggeration < np.inf:
+            raise ConfigurationError(f"film, exaggeration: found {self.exaggeration:g}, must be above 0 and finite")
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Cut:
     """What of a record a film shows, and how."""
@@ -52,19 +82,12 @@ class Cut:
     """first time [s]"""
     frames: int
     """number of frames"""
-    fps: float
-    """frames per second of the film [Hz]"""
-    slow: float
-    """how many times slower than the record"""
+    interval: float
+    """time of the record between two frames [s]"""
     exaggeration: float
     """factor of all motion"""
     reason: str
     """why it starts there"""
-
-    @property
-    def interval(self) -> float:
-        """Time of the record between two frames [s]."""
-        return 1.0 / (self.fps * self.slow)
 
     @property
     def end(self) -> float:
@@ -78,45 +101,37 @@ class Shot:
     Args:
         run: the run.
         layout: frame.
-        start, duration, slow, exaggeration, fps: as for `film`.
+        take: what to show.
 
     Raises:
-        ConfigurationError: an option is out of range.
+        ConfigurationError: the record does not hold the start.
     """
 
-    def __init__(
-        self,
-        run: RecordedRun,
-        layout: Layout,
-        *,
-        start: float | None,
-        duration: float,
-        slow: float,
-        exaggeration: float | None,
-        fps: float,
-    ) -> None:
+    def __init__(self, run: RecordedRun, layout: Layout, take: Take) -> None:
         self.run, self.layout, self.wheels = run, layout, wheels_of(run.recording)
         recording = run.recording
-        _check_options(float(recording.time[-1]), start, duration, slow, exaggeration, fps)
+        record, interval = float(recording.time[-1]), 1.0 / (FPS * take.slow)
         self.slip = run.car.model.vehicle.damper.slip_velocity
-        length = duration / slow
-        reason = "chosen"
-        if start is None:
+        length = take.duration / take.slow
+        if take.start is None:
             start, reason = excerpt_start(recording, run.wheel, self.slip, length)
-        length = min(length, float(recording.time[-1]) - start)
-        frames = max(int(length * slow * fps + 1e-9), 1)
+        elif 0.0 <= take.start < record:
+            start, reason = take.start, "chosen"
+        else:
+            raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
+        length = min(length, record - start)
+        frames = max(int(length * take.slow * FPS + 1e-9), 1)
         self.model = stage_model(run.car.model, (layout.width, layout.view_height))
         self.motion = Motion(self.model, recording, start, start + length)
         self.wireframe = Wireframe(run.car.model, self.motion)
-        self.exposure = 1.0 / (fps * slow)
-        largest, node = self._largest(start + np.arange(frames) / (fps * slow))
-        factor = round_factor(VISIBLE_TRAVEL / largest) if exaggeration is None else exaggeration
-        self.cut = Cut(start=start, frames=frames, fps=fps, slow=slow, exaggeration=factor, reason=reason)
-        self.visible = VISIBLE_TIME / np.sqrt(slow)
+        largest, node = self._largest(start + np.arange(frames) / (FPS * take.slow), interval)
+        factor = round_factor(VISIBLE_TRAVEL / largest) if take.exaggeration is None else take.exaggeration
+        self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=reason)
+        self.visible = VISIBLE_TIME / np.sqrt(take.slow)
         self.scale_top = 1e-3 * round_up(1e3 * node)
         self.overlay = Overlay(
             layout=layout,
-            heading=self._heading(),
+            heading=self._heading(take.slow),
             time=recording.time,
             traces=self._traces(),
             visible=self.visible,
@@ -132,10 +147,10 @@ class Shot:
             place(model, data)
         coils = [Coil(self.motion, wheel) for wheel in self.wheels]
         views = self._views()
-        with Canvas(model, (layout.width, layout.view_height), backend) as canvas:
+        with closing(Canvas(model, (layout.width, layout.view_height), backend)) as canvas:
             for number in range(self.cut.frames):
                 time = self.cut.start + number * self.cut.interval
-                state = self.motion.at(time, self.exposure)
+                state = self.motion.at(time, self.cut.interval)
                 data.geom_xpos[:], data.geom_xmat[:] = self.motion.geoms(state, factor)
                 for coil in coils:
                     coil.write(data, coil.places(state, factor))
@@ -159,21 +174,21 @@ class Shot:
             (close_up(self.motion, wheel), right, ghosts | dict.fromkeys(CLEARED, 0.0)),
         ]
 
-    def _largest(self, times: Vector) -> tuple[float, float]:
+    def _largest(self, times: Vector, exposure: float) -> tuple[float, float]:
         """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
         parts, nodes = [], []
         moving = [self.model.body(f"{part}_{wheel}").id for part in ("knuckle", "plate") for wheel in self.wheels]
         for time in times:
-            state = self.motion.at(time, self.exposure)
+            state = self.motion.at(time, exposure)
             parts.append(np.linalg.norm(state.translation[moving], axis=1))
             nodes.append(self.wireframe.displacement(state))
         largest = max(float(np.max(parts)), float(np.max(nodes)), VISIBLE_TRAVEL / LARGEST_FACTOR)
         return largest, float(np.quantile(nodes, 0.97))
 
-    def _heading(self) -> list[str]:
+    def _heading(self, slow: float) -> list[str]:
         """Input and level; factors and excerpt."""
         run, cut = self.run, self.cut
-        speed = "real time" if cut.slow == 1.0 else f"slow motion 1 : {cut.slow:g}"
+        speed = "real time" if slow == 1.0 else f"slow motion 1 : {slow:g}"
         highest = 0.5 / cut.interval
         if highest < FASTEST_MOTION:
             speed += f" (faster than {highest:g} Hz averages out)"
@@ -225,22 +240,3 @@ def _opacity(model: mujoco.MjModel, opacities: Mapping[str, float]) -> Iterator[
         yield
     finally:
         model.mat_rgba[materials, 3] = before
-
-
-def _check_options(
-    record: float, start: float | None, duration: float, slow: float, exaggeration: float | None, fps: float
-) -> None:
-    """Refuse what cannot be shown, with the name of the option."""
-    wrong = None
-    if start is not None and not 0.0 <= start < record:
-        wrong = f"start: found {start:g} s, the record goes from 0 to {record:g} s"
-    elif not 0.0 < duration < float("inf"):
-        wrong = f"duration: found {duration:g} s, must be above 0 and finite"
-    elif not 1.0 <= slow < float("inf"):
-        wrong = f"slow motion: found {slow:g}, must be at least 1"
-    elif exaggeration is not None and not 0.0 < exaggeration < float("inf"):
-        wrong = f"exaggeration: found {exaggeration:g}, must be above 0 and finite"
-    elif not 1.0 <= fps <= 240.0:
-        wrong = f"frames per second: found {fps:g}, must be between 1 and 240"
-    if wrong is not None:
-        raise ConfigurationError(f"film, {wrong}")

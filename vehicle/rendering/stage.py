@@ -11,6 +11,9 @@ from vehicle.rendering.exaggeration import Motion
 from vehicle.shapes import SHELL, car_shapes
 from vehicle.simulation.car_model import CarModel
 
+SAMPLES = 4
+"""Multisampling of the picture."""
+
 HIDDEN = ("body_lining",)
 """Shapes that only matter when the shell is opaque."""
 
@@ -27,13 +30,12 @@ OPACITY = {
 """Opacity of the shapes that would hide suspension and wireframe."""
 
 
-def stage_model(car: CarModel, size: tuple[int, int], samples: int = 4) -> mujoco.MjModel:
+def stage_model(car: CarModel, size: tuple[int, int]) -> mujoco.MjModel:
     """Compile the visible car: the same bodies and joints as the simulated one, plus shapes, lights and floor.
 
     Args:
         car: the simulated car.
         size: width and height of the largest picture [pixel].
-        samples: multisampling of the picture.
 
     Returns:
         The model; generalised positions mean the same as in the simulated one.
@@ -45,7 +47,7 @@ def stage_model(car: CarModel, size: tuple[int, int], samples: int = 4) -> mujoc
     for name, opacity in OPACITY.items():
         material = spec.material(name)
         material.rgba = [*material.rgba[:3], opacity * material.rgba[3]]
-    add_studio(spec, size, samples)
+    add_studio(spec, size, SAMPLES)
     return spec.compile()
 
 

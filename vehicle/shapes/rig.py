@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 import trimesh
@@ -35,18 +36,10 @@ def square(centre: Array, half: float, low: float, high: float, bevel: float = 0
     return block(centre, (-half, -half, low), (half, half, high), bevel)
 
 
-def ribs(
-    base: Array, turns: Array, corners: list[tuple[float, float]], half: float, beside: tuple[float, ...]
+def _ribs(
+    base: Array, turns: Array, corners: Sequence[tuple[float, float]], half: float, beside: Sequence[float]
 ) -> list[trimesh.Trimesh]:
-    """Upright sheets around a column.
-
-    Args:
-        base: foot of the column, shape (3,) [m]
-        turns: unit vectors from the column outward, shape (n, 3)
-        corners: distance from the axis and height of each corner [m]
-        half: half thickness [m]
-        beside: distances of the sheets of one turn from the axis, across it [m]
-    """
+    """Upright sheets around a column, by the directions outward, (radius, height) of the corners, places beside it."""
     sheets = []
     for along in turns:
         across = np.array([-along[1], along[0], 0.0])
@@ -117,16 +110,11 @@ def fixed_plate(points: Points, size: Sizes) -> list[Piece]:
 
 def pedestal(points: Points, size: Sizes) -> list[Piece]:
     """Welded steel pedestal under a plate: column, gussets, head and foot plates with screws."""
-    patch = points["tyre_patch"]
-    base, top = foot(patch), float(patch[2]) - TABLE
-    column = box(shifted(base, -0.11, -0.11, 0.02), (patch[0] + 0.11, patch[1] + 0.11, top), 0.008)
-    head = box((patch[0] - 0.18, patch[1] - 0.18, top - 0.022), (patch[0] + 0.18, patch[1] + 0.18, top), 0.004)
+    base, height = foot(points["tyre_patch"]), float(points["tyre_patch"][2]) - TABLE - BED_TOP
     turns = np.array([(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)])
-    corners = [(0.11, 0.02), (0.22, 0.02), (0.11, 0.6 * (top - BED_TOP)), (0.22, 0.05)]
-    gussets = ribs(base, turns, corners, 0.005, (-0.06, 0.06))
-    steel = joined(
-        column, square(base, 0.24, 0, 0.025, 0.005), head, gussets, screws(shifted(base, 0, 0, 0.025), 0.205)
-    )
+    corners = [(0.11, 0.02), (0.22, 0.02), (0.11, 0.6 * height), (0.22, 0.05)]
+    gussets = _ribs(base, turns, corners, 0.005, (-0.06, 0.06))
+    steel = _stand(base, height, square(base, 0.11, 0.02, height, 0.008), (0.24, 0.18, 0.022, 0.205), gussets)
     return [Piece("", steel, palette.STAND, held=True)]
 
 
@@ -135,17 +123,24 @@ def rear_block(points: Points, size: Sizes) -> list[Piece]:
     support = points["support"]
     half = [(0.076, -0.8 * RUBBER), (0.080, -0.5 * RUBBER), (0.076, -0.2 * RUBBER)]
     rubber = lathe([(0, -RUBBER), (0.066, -RUBBER), *half, (0.066, 0), (0, 0)], sections=18)
-    base, top = foot(support), float(support[2]) - RUBBER
-    column = placed(drum(0.058, 0.02, top - BED_TOP - 0.01, sections=14), base)
-    head = box((support[0] - 0.10, support[1] - 0.10, top - 0.020), (support[0] + 0.10, support[1] + 0.10, top), 0.004)
+    base, height = foot(support), float(support[2]) - RUBBER - BED_TOP
     phi = np.pi / 4 + np.pi / 2 * np.arange(4)
     turns = np.column_stack([np.cos(phi), np.sin(phi), 0 * phi])
-    braces = ribs(base, turns, [(0.05, 0.02), (0.20, 0.02), (0.05, 0.34), (0.20, 0.045)], 0.006, (0.0,))
-    steel = joined(column, square(base, 0.20, 0, 0.025, 0.005), head, braces, screws(shifted(base, 0, 0, 0.025), 0.165))
+    braces = _ribs(base, turns, [(0.05, 0.02), (0.20, 0.02), (0.05, 0.34), (0.20, 0.045)], 0.006, (0.0,))
+    column = placed(drum(0.058, 0.02, height - 0.01, sections=14), base)
     return [
         Piece("", placed(rubber, support), palette.RUBBER, held=True),
-        Piece("stand", steel, palette.STAND, held=True),
+        Piece("stand", _stand(base, height, column, (0.20, 0.10, 0.020, 0.165), braces), palette.STAND, held=True),
     ]
+
+
+def _stand(
+    base: Array, height: float, column: trimesh.Trimesh, plates: Sequence[float], sheets: Sequence[trimesh.Trimesh]
+) -> trimesh.Trimesh:
+    """Column and sheets on a screwed foot plate: half widths of foot and head, thickness, half distance of screws."""
+    wide, head, thick, reach = plates
+    feet = [square(base, wide, 0, 0.025, 0.005), square(base, head, height - thick, height, 0.004)]
+    return joined(column, feet, sheets, screws(shifted(base, 0, 0, 0.025), reach))
 
 
 def bed_plate(points: Points, size: Sizes) -> list[Piece]:
