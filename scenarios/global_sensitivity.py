@@ -29,9 +29,8 @@ from vehicle.parameters.vehicle import Vehicle
 from vehicle.rendering.figure import COLOURS
 from vehicle.sweeps.case import table_cases
 from vehicle.sweeps.executors import executor_factory
-from vehicle.sweeps.indices import morris_effects, morris_sample, sobol_indices, sobol_sample
+from vehicle.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
 from vehicle.sweeps.road import RoadInput, RoadMeasure
-from vehicle.sweeps.sample import sample
 from vehicle.sweeps.store import ROWS
 from vehicle.sweeps.sweep import sweep
 from vehicle.sweeps.table import SweepTable
@@ -109,7 +108,7 @@ def points_of(method: str, runs: int, seed: int) -> Matrix:
         return sobol_sample(RANGES, base, seed=seed)
     if method == "morris":
         return morris_sample(RANGES, max(runs // (size + 1), 2), seed=seed)
-    return sample(RANGES, runs, method="lhs", seed=seed)
+    return latin_hypercube(RANGES, runs, seed=seed)
 
 
 def _job(options: argparse.Namespace) -> None:

@@ -33,7 +33,7 @@ ROOMS: dict[str, set[str]] = {
     "rendering": {"simulation", "analysis", "assembly", "shapes"},
     "car": {"analysis", "excitation", "flexbody", "linear", "parameters", "reduced", "simulation"},
     "output": {"analysis", "car", "excitation", "flexbody", "parameters", "records", "rendering"},
-    "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "threads"},
+    "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
     "commands": {"analysis", "assembly", "car", "excitation", "output", "parameters"}
     | {"records", "rendering", "sweeps"},

@@ -10,8 +10,7 @@ import pytest
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.parameters.ranges import Range
 from vehicle.sweeps import indices
-from vehicle.sweeps.indices import morris_effects, morris_sample, sobol_indices, sobol_sample
-from vehicle.sweeps.sample import sample
+from vehicle.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
 
 ANGLES = [Range(path=f"x{i}", low=-np.pi, high=np.pi) for i in range(3)]
 UNIT = [Range(path=f"x{i}", low=0.0, high=2.0) for i in range(3)]
@@ -57,30 +56,20 @@ def test_morris_effects_of_a_linear_function_are_its_slopes():
     assert np.all(bent.scatter[:2] > 0.1)
 
 
-@pytest.mark.parametrize("method", ["sobol", "lhs"])
-def test_samples_fill_the_box(method):
-    box = [
-        Range(path="a", low=10.0, high=20.0),
-        Range(path="b", low=-1.0, high=0.0),
-    ]
-    points = sample(box, 64, method=method, seed=5)
-    assert points.shape == (64, 2)
+def test_a_latin_hypercube_fills_the_box():
+    box = [Range(path="a", low=10.0, high=20.0), Range(path="b", low=-1.0, high=0.0)]
+    points = latin_hypercube(box, 64, seed=5)
     for column, one in enumerate(box):
         # One point in each of 64 equal slices, which a random sample would miss.
         slices = np.floor((points[:, column] - one.low) / (one.high - one.low) * 64).astype(int)
         assert sorted(slices) == list(range(64))
-    assert np.array_equal(points, sample(box, 64, method=method, seed=5))
-    assert not np.array_equal(points, sample(box, 64, method=method, seed=6))
-    assert sample(box, 50, method=method).shape == (50, 2)
+    assert np.array_equal(points, latin_hypercube(box, 64, seed=5))
+    assert not np.array_equal(points, latin_hypercube(box, 64, seed=6))
 
 
 def test_bad_arguments():
     with pytest.raises(ConfigurationError, match="must be ascending"):
         Range(path="a", low=1.0, high=1.0)
-    with pytest.raises(ConfigurationError, match="found 'random', allowed are sobol, lhs"):
-        sample(UNIT, 8, method="random")
-    with pytest.raises(ConfigurationError, match="found 1 points of 3 parameters"):
-        sample(UNIT, 1)
     with pytest.raises(ConfigurationError, match="found 100, must be a power of two"):
         sobol_sample(UNIT, 100)
     with pytest.raises(DataError, match="found 7, needed is a multiple of 5"):

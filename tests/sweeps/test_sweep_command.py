@@ -6,7 +6,8 @@ import csv
 
 import pytest
 
-from vehicle.commands.sweep import every_combination, main, read_table
+from vehicle.commands.sweep import every_combination, main
+from vehicle.sweeps.table import read_variations
 
 
 @pytest.fixture
@@ -32,6 +33,8 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     assert main([*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]) == 0
     assert "2 runs, 0 failed" in capsys.readouterr().out
     rows = table_of(output)
+    varied = ["damper.viscous", "damper.coulomb_friction", "bushings.suspension_mount.stiffness.z"]
+    assert read_variations(output / "table.csv") == (varied, [("2000", "62.5", "7e5"), ("2000", "250", "7e5")])
     assert [row["damper.coulomb_friction"] for row in rows] == ["62.5", "250"]
     assert {row["damper.viscous"] for row in rows} == {"2000"} and {row["input"] for row in rows} == {"road"}
     assert float(rows[0]["comfort_overall [m/s2]"]) != float(rows[1]["comfort_overall [m/s2]"]) > 0.0
@@ -48,7 +51,7 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
 def test_a_table_of_variations(tmp_path):
     file = tmp_path / "variations.csv"
     file.write_text("damper.viscous, damper.coulomb_friction\n# a remark\n1500,75\n2250,125\n", encoding="utf-8")
-    assert read_table(file) == (["damper.viscous", "damper.coulomb_friction"], [("1500", "75"), ("2250", "125")])
+    assert read_variations(file) == (["damper.viscous", "damper.coulomb_friction"], [("1500", "75"), ("2250", "125")])
     assert every_combination(["a=1,2", "b=x"]) == (["a", "b"], [("1", "x"), ("2", "x")])
     vectors = every_combination(["a=[1, 2, 3],[4,5,6]", "b=7,8"])[1]
     assert vectors == [("[1, 2, 3]", "7"), ("[1, 2, 3]", "8"), ("[4,5,6]", "7"), ("[4,5,6]", "8")]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehicle.tuning.log_response import FLOOR, LEAST_COHERENCE, log_deviation, log_ratio
+from vehicle.tuning.frf_target import FLOOR, LEAST_COHERENCE, log_deviation, log_ratio
 
 
 def test_magnitude_and_phase_of_the_ratio():

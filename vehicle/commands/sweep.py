@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import re
 import sys
 from collections.abc import Sequence
@@ -35,7 +34,10 @@ def parser() -> Parser:
         "bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: every combination",
     )
     found.add_argument(
-        "--table", type=Path, metavar="FILE.csv", help="columns are parameter paths, rows are variations"
+        "--table",
+        type=Path,
+        metavar="FILE.csv",
+        help="columns are parameter paths, rows are variations; or the table.csv of another sweep",
     )
     vehicle_options(found)
     engine_option(found, "auto")
@@ -70,10 +72,11 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.sweeps.measure import ComfortMeasure
     from vehicle.sweeps.store import ROWS
     from vehicle.sweeps.sweep import sweep
+    from vehicle.sweeps.table import read_variations
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
-    paths, rows = read_table(options.table) if options.table else every_combination(options.vary)
+    paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
     load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
     wheel = WHEEL_OF_OPTION[options.wheel or "front_right"]
@@ -158,32 +161,3 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
         paths.append(path.strip())
         values.append(items)
     return paths, list(product(*values))
-
-
-def read_table(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
-    """Paths and rows of a CSV file of variations.
-
-    Raises:
-        DataError: it cannot be read, has no rows, a column twice, or a row has another number of cells than the header.
-    """
-    from vehicle.errors import DataError
-
-    if not path.is_file():
-        raise DataError(f"--table {path}: cannot be read: no such file, or not a file")
-    try:
-        with path.open(encoding="utf-8", newline="") as file:
-            lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise DataError(f"--table {path}: cannot be read ({error})") from None
-    if len(lines) < 2:
-        raise DataError(f"--table {path}: needed are a header of parameter paths and at least one row of values")
-    header = [cell.strip() for cell in lines[0]]
-    twice = sorted({cell for cell in header if header.count(cell) > 1})
-    if twice:
-        raise DataError(f"--table {path}: column {', '.join(twice)} stands there more than once; keep one of them")
-    for number, line in enumerate(lines[1:], start=1):
-        if len(line) != len(header) or not all(cell.strip() for cell in line):
-            raise DataError(
-                f"--table {path}, row {number}: {len(line)} cells, the header has {len(header)}; none is empty"
-            )
-    return header, [tuple(cell.strip() for cell in line) for line in lines[1:]]

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.stats import qmc
 
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.parameters.ranges import Range
@@ -163,6 +164,15 @@ def morris_effects(
         mean=np.asarray(found["mu"], dtype=float),
         scatter=np.asarray(found["sigma"], dtype=float),
     )
+
+
+def latin_hypercube(ranges: Sequence[Range], count: int, *, seed: int = 0) -> Vector:
+    """Points that fill the box of the ranges evenly, (count, ranges); arguments as of `sobol_sample`.
+
+    Source: scipy.stats.qmc.
+    """
+    points = qmc.LatinHypercube(d=len(ranges), rng=np.random.default_rng(seed)).random(count)
+    return np.asarray(qmc.scale(points, [one.low for one in ranges], [one.high for one in ranges]))
 
 
 def _checked(values: npt.ArrayLike, group: int) -> Vector:

@@ -13,10 +13,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.output.folder import write_json, write_text
+from vehicle.records.text_format import read_texts
 from vehicle.sweeps.case import Case
 from vehicle.sweeps.worker import Result
+
+INPUT, ENGINE, REASON = "input", "engine", "failed because"
+"""Columns beside the parameters and the numbers, whose heads have units."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -55,9 +59,7 @@ class SweepTable:
         """The table as CSV, units in the header; the same bytes for the same cases, whoever computed them."""
         paths, file = self.paths(), io.StringIO()
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(
-            ["input", *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), "engine", "failed because"]
-        )
+        writer.writerow([INPUT, *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), ENGINE, REASON])
         for case, result in zip(self.cases, self.results, strict=True):
             changed = _changes(case)
             numbers = [repr(result.values[name]) if name in result.values else "" for name in self.units]
@@ -78,3 +80,32 @@ class SweepTable:
 def _changes(case: Case) -> dict[str, str]:
     """Parameter path to value text; of a path that is changed twice the last."""
     return {path: value for path, _, value in (text.partition("=") for text in case.overrides)}
+
+
+def read_variations(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Parameter paths and rows of a table of variations; of the table of a sweep, the parameters, each row once.
+
+    Raises:
+        DataError: it cannot be read, has no rows, a column twice, or a row has another number of cells than the header.
+    """
+    if not path.is_file():
+        raise DataError(f"--table {path}: cannot be read: no such file, or not a file")
+    try:
+        header, *rows = read_texts(path) or [[]]
+    except DataError as error:
+        raise DataError(f"--table {error}") from None
+    if not rows:
+        raise DataError(f"--table {path}: needed are a header of parameter paths and at least one row of values")
+    twice = sorted({cell for cell in header if header.count(cell) > 1})
+    if twice:
+        raise DataError(f"--table {path}: column {', '.join(twice)} stands there more than once; keep one of them")
+    # Of a sweep's own table the columns that no parameter has.
+    kept = [index for index, cell in enumerate(header) if cell not in (INPUT, ENGINE, REASON) and "[" not in cell]
+    for number, row in enumerate(rows, start=1):
+        if len(row) != len(header) or not all(row[index] for index in kept):
+            raise DataError(
+                f"--table {path}, row {number}: {len(row)} cells, the header has {len(header)}; none is empty"
+            )
+    found = [tuple(row[index] for index in kept) for row in rows]
+    # A sweep has each of them on every input.
+    return [header[index] for index in kept], list(dict.fromkeys(found)) if INPUT in header else found

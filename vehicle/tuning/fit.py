@@ -20,8 +20,7 @@ from scipy.optimize import least_squares
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.parameters.ranges import Range, checked_ranges
 from vehicle.tuning.identifiability import Unidentified, covariance, worst_direction
-from vehicle.tuning.residual_rows import RowStatistics, row_statistics
-from vehicle.tuning.result import TuningResult
+from vehicle.tuning.result import RowStatistics, TuningResult, row_statistics
 
 Vector = npt.NDArray[np.float64]
 

@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.car import Run
-from vehicle.tuning.residual_rows import row_statistics
-from vehicle.tuning.result import TuningResult
+from vehicle.tuning.result import TuningResult, row_statistics
 
 Vector = npt.NDArray[np.float64]
 
