@@ -25,7 +25,7 @@ from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.output.folder import prepare_folder, write_json, write_text
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
-from vehicle.parameters.vehicle import Vehicle
+from vehicle.parameters.vehicle import load_vehicle
 from vehicle.rendering.figure import COLOURS
 from vehicle.sweeps.case import table_cases
 from vehicle.sweeps.executors import executor_factory
@@ -149,7 +149,7 @@ def _job(options: argparse.Namespace) -> None:
     text = _evaluate(options.method, folder, table, points, caption, options.seed)
     ranges = markdown(
         ("parameter", "from", "to", "unit", "why"),
-        [(one.path, f"{one.low:g}", f"{one.high:g}", unit_of(Vehicle, one.path), one.reason) for one in RANGES],
+        [(one.path, f"{one.low:g}", f"{one.high:g}", unit_of(load_vehicle(), one.path), one.reason) for one in RANGES],
     )
     write_text(folder / "results.md", f"# Global sensitivity of comfort\n\n{caption}\n\n{text}\n\n{ranges}\n")
     print(
@@ -232,7 +232,7 @@ def _hypercube(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed
         panels = figure.subplots(-(-len(RANGES) // 5), 5, sharey=True, squeeze=False)
         for axes, one, values in zip(panels.flat, RANGES, points.T, strict=True):
             axes.plot(values, comfort, ".", markersize=3, color=COLOURS[0])
-            axes.set_xlabel(f"{_short(one.path)} [{unit_of(Vehicle, one.path)}]", fontsize=7)
+            axes.set_xlabel(f"{_short(one.path)} [{unit_of(load_vehicle(), one.path)}]", fontsize=7)
             axes.tick_params(labelsize=7)
         for axes in panels[:, 0]:
             axes.set_ylabel("comfort value [m/s2]", fontsize=8)

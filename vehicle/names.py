@@ -8,6 +8,9 @@ WHEELS = ("fr", "fl")
 WHEEL_SIGN = {"fr": 1.0, "fl": -1.0}
 """Sign of y of each wheel: +y points to the driver's right side."""
 
+SIDE_SIGN = {"right": 1.0, "left": -1.0}
+"""Sign of y of each side: +y points to the driver's right."""
+
 SIDE_OF_WHEEL = {"fr": "right", "fl": "left"}
 WHEEL_OF_OPTION = {"front_right": "fr", "front_left": "fl"}
 

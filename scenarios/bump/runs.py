@@ -33,7 +33,7 @@ def relative_acceleration(run: Run, wheel: str = "fr") -> Vector:
     Returns:
         [m/s2], shape (n,).
     """
-    points = run.car.vehicle.hardpoints.all_points()
+    points = run.car.vehicle.points
     axis = np.array(points[f"strut_top_{wheel}"]) - np.array(points[f"damper_bottom_{wheel}"])
     direction = axis / np.linalg.norm(axis)
     top, knuckle = (

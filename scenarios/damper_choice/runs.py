@@ -27,6 +27,7 @@ from vehicle.parameters.damper_choice import (
     FrequencyBands,
     RoadHoldingQuarterCar,
 )
+from vehicle.parameters.paths import value_of
 from vehicle.parameters.vehicle import Vehicle
 
 Array = npt.NDArray[np.float64]
@@ -137,24 +138,24 @@ def complete_car_quarter(vehicle: Vehicle) -> RoadHoldingQuarterCar:
     Returns:
         Its equivalent quarter car.
     """
-    points = vehicle.hardpoints
-    rear = points.rear_support[0]
-    base = rear - points.wheel_center[0]
+    points, parts = vehicle.points, {part.name: part for part in vehicle.composition.parts}
+    rear, engine = points["rear_support_right"][0], parts["engine"]
+    base = rear - points["wheel_center_fr"][0]
     front_share = (
-        vehicle.body.mass * (rear - vehicle.body.cog[0]) + vehicle.parts["engine"].mass * (rear - points.engine_cog[0])
+        vehicle.body.mass * (rear - vehicle.body.cog[0]) + engine.numbers.mass * (rear - engine.cog[0])
     ) / base
-    strut = np.subtract(points.strut_top, points.damper_bottom)
+    strut = np.subtract(points["strut_top_fr"], points["damper_bottom_fr"])
     slope = float(strut[2] / np.linalg.norm(strut)) ** 2
-    unsprung = sum(vehicle.parts[name].mass for name in WHEEL_PARTS)
-    unsprung += 0.5 * sum(vehicle.parts[name].mass for name in LINK_PARTS)
+    unsprung = sum(parts[f"{name}_fr"].numbers.mass for name in WHEEL_PARTS)
+    unsprung += 0.5 * sum(parts[f"{name}_fr"].numbers.mass for name in LINK_PARTS)
     return RoadHoldingQuarterCar(
         sprung_mass=0.5 * front_share,
         wheel=Axle(
             unsprung_mass=unsprung,
-            suspension_stiffness=slope * vehicle.main_spring.stiffness,
-            suspension_damping=slope * vehicle.damper.viscous,
-            tyre_stiffness=vehicle.bushings.tyre.stiffness[2],
-            tyre_damping=vehicle.bushings.tyre.damping[2],
+            suspension_stiffness=slope * value_of(vehicle, "front.main_spring.stiffness"),
+            suspension_damping=slope * value_of(vehicle, "front.damper.viscous"),
+            tyre_stiffness=value_of(vehicle, "front.bushings.tyre.stiffness.z"),
+            tyre_damping=value_of(vehicle, "front.bushings.tyre.damping.z"),
         ),
     )
 

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.names import WHEEL_SIGN, WHEELS
-from vehicle.parameters.parts import CENTER_PARTS, SIDE_PARTS
 from vehicle.parameters.vehicle import load_vehicle
 
 RIGHT = re.compile("_fr(?![a-z])")  # the wheel, not "front"
@@ -33,6 +31,26 @@ APPENDIX_E = {
     "suspension_mount": 0.95,
 }
 
+SIGN = {"fr": 1.0, "fl": -1.0}
+HANGS_ON = {
+    "a_arm": ("lower_ball", "arm_front", "arm_rear"),
+    "knuckle": ("lower_ball", "damper_bottom", "wheel_center"),
+    "tyre": ("wheel_center",),
+    "brake_disc": ("wheel_center",),
+    "caliper": ("wheel_center",),
+    "damper_bottom": ("damper_bottom", "spring_lower"),
+    "damper_top": ("spring_lower", "strut_top"),
+    "suspension_mount": ("strut_top",),
+    "main_spring_lower": ("spring_lower",),
+    "main_spring_upper": ("strut_top",),
+    "steering_rod": ("tie_outer", "tie_inner"),
+    "stabilizer_half": ("stab_body", "stab_end"),
+    "stabilizer_rod": ("stab_end", "stab_rod_top"),
+    "engine": ("engine_cog",),
+    "torque_arm": ("bottom_engine", "bottom_body"),
+}
+"""Points whose mean is the centre of gravity, but for an offset."""
+
 
 def full_tensor(model, name):
     """Inertia tensor of a body about its centre of gravity in vehicle axes; bodies stand upright at the start."""
@@ -46,7 +64,7 @@ def full_tensor(model, name):
 def test_masses_of_appendix_e(car):
     model = car.model.model
     for name, mass in APPENDIX_E.items():
-        for wheel in WHEELS:
+        for wheel in SIGN:
             assert model.body(f"{name}_{wheel}").mass[0] == pytest.approx(mass, rel=1e-12)
     assert model.body("engine").mass[0] == 220.0
     assert model.body("body").mass[0] == 813.0
@@ -62,21 +80,21 @@ def test_inertias_and_places_of_the_parts(car):
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
-    names = [(part, f"{part}_{wheel}", WHEEL_SIGN[wheel]) for part in SIDE_PARTS for wheel in WHEELS]
-    names += [(part, part, 1.0) for part in CENTER_PARTS]
-    assert len(names) == 26
-    for part, body, sign in names:
-        parameters = vehicle.parts[part]
-        np.testing.assert_allclose(full_tensor(model, body), np.diag(parameters.inertia), atol=1e-12)
-        x, y, z = parameters.cog(vehicle.hardpoints)
-        np.testing.assert_allclose(data.xipos[model.body(body).id], [x, sign * y, z], atol=1e-12)
+    table, points = vehicle.table, vehicle.points
+    given = {
+        f"{name}_{wheel}": (one, sign) for name, one in table["front"]["parts"].items() for wheel, sign in SIGN.items()
+    }
+    given |= {name: (one, 1.0) for name, one in table["engine"]["parts"].items()}
+    assert len(given) == 28
+    for body, (numbers, sign) in given.items():
+        np.testing.assert_allclose(full_tensor(model, body), np.diag(numbers["inertia"]), atol=1e-12)
+        name, corner = (body[:-3], body[-3:]) if body[-3:] in ("_fr", "_fl") else (body, "")
+        mean = np.mean([points[f"{point}{corner}"] for point in HANGS_ON[name]], axis=0)
+        expected = mean + np.array(numbers["offset"]) * [1.0, sign, 1.0]
+        np.testing.assert_allclose(data.xipos[model.body(body).id], expected, atol=1e-12)
     # The upper halves of the main springs are fixed to the body at the strut tops.
-    points = vehicle.hardpoints.all_points()
-    for wheel in WHEELS:
+    for wheel in SIGN:
         upper = model.body(f"main_spring_upper_{wheel}").id
-        inertia = np.diag(vehicle.parts["main_spring_lower"].inertia)
-        np.testing.assert_allclose(full_tensor(model, f"main_spring_upper_{wheel}"), inertia, atol=1e-12)
-        np.testing.assert_allclose(data.xipos[upper], points[f"strut_top_{wheel}"], atol=1e-12)
         assert model.body(model.body_parentid[upper]).name == "body"
 
 
@@ -139,7 +157,7 @@ def test_the_left_side_mirrors_the_right(car):
 
 
 def test_sites_lie_on_their_hardpoints(car):
-    model, points = car.model.model, car.vehicle.hardpoints.all_points()
+    model, points = car.model.model, car.vehicle.points
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     expected = {

@@ -5,20 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.assembly.connections import STRUCTURAL_LOSS_TIME, connections
-from vehicle.parameters.paths import override
-from vehicle.parameters.toml_file import build, read_table
-from vehicle.parameters.vehicle import FOCUS_FILE, Vehicle
+from vehicle.assembly.connections import STRUCTURAL_LOSS_TIME, element_law
+from vehicle.parameters.vehicle import load_vehicle
 
 OMEGA = 2.0 * np.pi * np.array([0.01, 1.0, 7.0, 28.0, 50.0, 1e4])
 
 
-def vehicle_with(*assignments):
-    return build(Vehicle, override(read_table(FOCUS_FILE), assignments))
-
-
-def found(vehicle, body):
-    return {connection.name: connection for connection in connections(vehicle, body)}
+def found(car, *changes):
+    """Laws of the connections by their names."""
+    vehicle = load_vehicle(None, changes)
+    return {one.name: element_law(one, vehicle.body, car.trimmed_body) for one in vehicle.composition.connections}
 
 
 def dynamic(law, axis):
@@ -28,50 +24,39 @@ def dynamic(law, axis):
 
 
 def test_the_list_is_that_of_the_source(car):
-    names = set(found(car.vehicle, car.trimmed_body))
-    both = {"tyre", "suspension_mount", "arm_rear"}
-    expected = {f"bushing/{name}_{wheel}" for name in both for wheel in ("fr", "fl")}
-    expected |= {"bushing/rear_support_right", "bushing/rear_support_left", "bushing/linear_mount"}
-    expected |= {"bushing/hydromount", "bushing/torque_arm_body", "bushing/torque_arm_engine"}
-    balls = {"arm_front", "tie_inner", "stab_body", "stab_rod_top"}
-    expected |= {f"ball/{name}_{wheel}" for name in balls for wheel in ("fr", "fl")}
-    assert names == expected
+    both = {"tyre", "suspension_mount", "arm_rear", "arm_front", "tie_inner", "stab_body", "stab_rod_top"}
+    expected = {f"{name}_{wheel}" for name in both for wheel in ("fr", "fl")}
+    expected |= {"rear_support_right", "rear_support_left", "linear_mount", "hydromount", "torque_arm_body"}
+    assert set(found(car)) == expected | {"torque_arm_engine"}
 
 
 def test_rigid_attachments_leave_the_published_laws(car):
-    vehicle = vehicle_with("body.attachment_flexibility=false")
-    laws = found(vehicle, car.trimmed_body)
-    table = vehicle.bushings
-    for name, parameters in [
-        ("bushing/suspension_mount_fr", table.suspension_mount),
-        ("bushing/arm_rear_fl", table.arm_rear),
-        ("bushing/rear_support_left", table.rear_support),
-        ("bushing/linear_mount", table.linear_mount),
-        ("bushing/torque_arm_body", table.torque_arm_body),
-    ]:
-        law = laws[name].law
-        np.testing.assert_array_equal(law.stiffness, parameters.stiffness)
-        np.testing.assert_array_equal(law.damping, parameters.damping)
-        assert not law.branch_stiffness.any() and law.rotational_stiffness == 100.0
-    mount = laws["bushing/hydromount"].law
-    np.testing.assert_array_equal(mount.branch_stiffness, [0.0, 0.0, 1e5])
-    np.testing.assert_array_equal(mount.branch_time, [0.0, 0.0, 0.02])
-    assert laws["ball/arm_front_fr"].law is None and laws["ball/stab_rod_top_fl"].law is None
+    laws, vehicle = found(car, "body.attachment_flexibility=false"), car.vehicle
+    for one in vehicle.composition.connections:
+        law = laws[one.name]
+        if one.law is None:
+            assert law is None
+            continue
+        np.testing.assert_array_equal(law.stiffness, one.law.stiffness)
+        np.testing.assert_array_equal(law.damping, one.law.damping)
+        assert law.branch_stiffness.any() == (one.name == "hydromount") and law.rotational_stiffness == 100.0
+    np.testing.assert_array_equal(laws["hydromount"].branch_stiffness, [0.0, 0.0, 1e5])
+    np.testing.assert_array_equal(laws["hydromount"].branch_time, [0.0, 0.0, 0.02])
 
 
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize("name", ["suspension_mount_fr", "arm_rear_fl", "rear_support_right", "hydromount"])
 def test_local_stiffness_in_series(car, name, axis):
     # 1/K'(jw) = 1/K0 + 1/K(jw): the body gives way behind the bushing.
-    connection = found(car.vehicle, car.trimmed_body)[f"bushing/{name}"]
-    parameters = getattr(car.vehicle.bushings, name.removesuffix("_fr").removesuffix("_fl").removesuffix("_right"))
+    placed = next(one for one in car.vehicle.composition.connections if one.name == name)
+    parameters, law = placed.law, found(car)[name]
     bushing = parameters.stiffness[axis] + 1j * OMEGA * parameters.damping[axis]
     if name == "hydromount" and axis == 2:
         k2, d2 = parameters.maxwell_stiffness, parameters.maxwell_damping
         bushing = parameters.stiffness[2] + k2 * d2 * 1j * OMEGA / (d2 * 1j * OMEGA + k2)
-    local = car.trimmed_body.attachment_stiffness[connection.hardpoint][axis]
+    local = car.trimmed_body.attachment_stiffness[placed.point][axis]
     exact = 1.0 / (1.0 / local + 1.0 / bushing)
-    found_here = dynamic(connection.law, axis)
+    found_here = dynamic(law, axis)
     if name == "hydromount" and axis < 2:
         assert parameters.damping[axis] > 0.0
     np.testing.assert_allclose(found_here, exact, rtol=1e-9)
@@ -80,37 +65,32 @@ def test_local_stiffness_in_series(car, name, axis):
 
 def test_static_series_stiffness_by_hand(car):
     # Suspension mount z: 7e5 in series with the tower top.
-    connection = found(car.vehicle, car.trimmed_body)["bushing/suspension_mount_fr"]
     tower = car.trimmed_body.attachment_stiffness["strut_top_fr"][2]
-    assert connection.law.stiffness[2] == pytest.approx(7e5 * tower / (7e5 + tower), rel=1e-12)
+    assert found(car)["suspension_mount_fr"].stiffness[2] == pytest.approx(7e5 * tower / (7e5 + tower), rel=1e-12)
 
 
 def test_ball_joints_on_the_body_get_its_local_stiffness(car):
-    law = found(car.vehicle, car.trimmed_body)["ball/tie_inner_fl"].law
+    law = found(car)["tie_inner_fl"]
     local = car.trimmed_body.attachment_stiffness["tie_inner_fl"]
     np.testing.assert_array_equal(law.stiffness, local)
     np.testing.assert_allclose(law.damping, STRUCTURAL_LOSS_TIME * local)
     assert law.averaged
     # Between stabilizer rod and damper housing there is no sheet metal: ideal.
-    assert found(car.vehicle, car.trimmed_body)["ball/stab_rod_top_fr"].law is None
+    assert found(car)["stab_rod_top_fr"] is None
 
 
 @pytest.mark.parametrize("absent", ["maxwell_damping", "maxwell_stiffness"])
 def test_item_29_a_branch_without_damper_or_spring_is_absent(car, absent):
-    vehicle = vehicle_with(f"bushings.hydromount.{absent}=0", "body.attachment_flexibility=false")
-    law = found(vehicle, car.trimmed_body)["bushing/hydromount"].law
+    law = found(car, f"bushings.hydromount.{absent}=0", "body.attachment_flexibility=false")["hydromount"]
     assert not law.branch_stiffness.any() and not law.branch_time.any()
-    np.testing.assert_array_equal(law.stiffness, vehicle.bushings.hydromount.stiffness)
-    with_local = found(vehicle_with(f"bushings.hydromount.{absent}=0"), car.trimmed_body)["bushing/hydromount"].law
+    np.testing.assert_array_equal(law.stiffness, [4e5, 8e5, 4e5])
+    with_local = found(car, f"bushings.hydromount.{absent}=0")["hydromount"]
     assert with_local.branch_stiffness[2] == 0.0 and np.isfinite(with_local.branch_time).all()
 
 
-def test_roles_and_signs(car):
-    laws = found(car.vehicle, car.trimmed_body)
-    support = laws["bushing/rear_support_right"]
-    assert (support.moving, support.carrier, support.node_sign) == ("body", "world", 1)
-    mount = laws["bushing/suspension_mount_fr"]
-    assert (mount.moving, mount.carrier, mount.node, mount.node_sign) == ("damper_top_fr", "body", "strut_top_fr", -1)
-    arm = laws["bushing/torque_arm_engine"]
-    assert (arm.moving, arm.carrier, arm.node) == ("torque_arm", "engine", None)
-    assert laws["bushing/tyre_fl"].carrier == "plate_fl"
+def test_roles_and_points(car):
+    roles = {one.name: (one.moving, one.carrier, one.point) for one in car.vehicle.composition.connections}
+    assert roles["rear_support_right"] == ("body", "world", "rear_support_right")
+    assert roles["suspension_mount_fr"] == ("damper_top_fr", "body", "strut_top_fr")
+    assert roles["torque_arm_engine"] == ("torque_arm", "engine", "bottom_engine")
+    assert roles["tyre_fl"] == ("tyre_fl", "plate_fl", "tyre_patch_fl")

@@ -43,7 +43,7 @@ def test_the_wheel_runs_in_an_empty_folder(tmp_path):
     (wheel,) = tmp_path.glob("*.whl")
     subprocess.run([*INSTALL, "--target", str(installed), str(wheel)], cwd=here, check=True, timeout=300)
     names = zipfile.ZipFile(wheel).namelist()
-    assert "vehicle/py.typed" in names and "vehicle/parameters/focus.toml" in names
+    assert "vehicle/py.typed" in names and "vehicle/vehicles/focus/vehicle.toml" in names
 
     def run(*arguments: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(

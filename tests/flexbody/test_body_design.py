@@ -11,7 +11,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
 from vehicle.flexbody.build import BODY_DESIGN
-from vehicle.names import body_nodes
 from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
 
 LINE = re.compile(r"(?P<name>\w+) = .*  # \[(?P<unit>[^\]]+)\] (?P<source>.+)$|between = \[  # \[-\] assumed: .+$")
@@ -33,11 +32,11 @@ def test_every_number_has_a_unit_and_a_source():
 
 
 def test_interface_and_output_points_are_those_of_the_vehicle_alone():
-    design, points = read_design(BODY_DESIGN), load_vehicle().hardpoints.all_points()
-    placed = design.placed(load_vehicle().hardpoints)
+    design, points = read_design(BODY_DESIGN), load_vehicle().points
+    placed = design.placed(points)
     nodes = {node: place for made in placed.values() for node, place in made.items()}
-    assert set(body_nodes()) <= set(nodes)
-    assert {name: nodes[name] for name in body_nodes()} == {name: points[name] for name in body_nodes()}
+    attached = load_vehicle().composition.attachments()
+    assert len(attached) == 19 and attached == {name: nodes[name] for name in attached}
     typed = {tuple(abs(x) for x in node.place) for node in design.nodes.values() if node.place is not None}
     assert len(typed) == 11
     assert not typed & {tuple(abs(x) for x in place) for place in points.values()}
@@ -138,4 +137,4 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
     file.write_text(head.replace("mode_count = 9", "mode_count = 13") + body + members + "width = 0.05\nwall = 0.001\n")
     vehicle = load_vehicle()
     with pytest.raises(ConfigurationError, match="mode_count: found 13, but 6 nodes have 12 elastic modes"):
-        body_frame(read_design(file), vehicle.hardpoints, vehicle.body)
+        body_frame(read_design(file), vehicle.points, vehicle.body)

@@ -9,7 +9,7 @@ import pytest
 
 from tests.flexbody.box_body import MASSES, POSITIONS, box_fields
 from vehicle.errors import DataError
-from vehicle.flexbody.superelement import Superelement, require_nodes
+from vehicle.flexbody.superelement import Superelement, attached_nodes
 
 
 def test_mass_properties_are_those_of_the_lumped_masses():
@@ -126,10 +126,13 @@ def test_one_mode_is_enough():
     assert len(Superelement(**box_fields(modes=1)).frequencies) == 1
 
 
-def test_interface_nodes_must_be_there_and_in_place():
+def test_nodes_are_found_by_place_and_never_by_name():
     body = Superelement(**box_fields())
-    require_nodes(body, {"corner_0": POSITIONS[0] + [0.0, 0.0, 9e-4]})
-    with pytest.raises(DataError, match=r"interface node 'strut_top_fr' is missing; the car is fixed to it. Its nodes"):
-        require_nodes(body, {"strut_top_fr": POSITIONS[0]})
-    with pytest.raises(DataError, match=r"node 'corner_0' at \[0.0, -0.5, 0.4\] m is 1.1 mm away from its hardpoint"):
-        require_nodes(body, {"corner_0": POSITIONS[0] + [0.0, 0.0, 1.1e-3]})
+    near, far = (tuple(POSITIONS[0] + [0.0, 0.0, up]) for up in (9e-4, 1.1e-3))
+    assert attached_nodes(body, {"strut_top_fr": near}) == {near: "corner_0"}
+    with pytest.raises(
+        DataError, match=r"no node at strut_top_fr .* node 'corner_0' at \[0.0, -0.5, 0.4\] m is 1.1 mm a"
+    ):
+        attached_nodes(body, {"strut_top_fr": far})
+    # Of a rigid body a node is asked for its local stiffness alone.
+    assert attached_nodes(body.without_modes(), {"a": far, "b": (9.0, 0.0, 0.0)}) == {far: "corner_0"}

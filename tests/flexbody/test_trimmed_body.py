@@ -33,7 +33,7 @@ def design():
 @pytest.fixture(scope="module")
 def frame(design):
     vehicle = load_vehicle()
-    return body_frame(design, vehicle.hardpoints, vehicle.body)
+    return body_frame(design, vehicle.points, vehicle.body)
 
 
 def test_the_exported_file_is_what_the_design_gives_on_the_shipped_car(body, frame):
@@ -152,7 +152,7 @@ def test_a_fit_that_misses_says_so(frame):
 
 
 def guesses(frame):
-    placed = frame.design.placed(load_vehicle().hardpoints)
+    placed = frame.design.placed(load_vehicle().points)
     entries = [frame.design.nodes[name] for name, nodes in placed.items() for _ in nodes]
     return np.array([entry.mass for entry in entries]), np.array([entry.freedom for entry in entries])
 

@@ -20,9 +20,10 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from vehicle.assembly.connections import connections
+from vehicle.assembly.connections import element_law
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.names import WHEEL_SIGN, WHEELS
+from vehicle.names import WHEELS
+from vehicle.parameters.paths import value_of
 
 COMPLEX_STEP, REAL_STEP = 1e-30, 1e-5
 X, Y, Z = np.eye(3)
@@ -73,7 +74,7 @@ class EnergyCar:
 
     def __init__(self, car):
         self.vehicle, self.body = car.vehicle, car.model.superelement
-        self.points = {name: np.array(point) for name, point in self.vehicle.hardpoints.all_points().items()}
+        self.points = {name: np.array(point) for name, point in self.vehicle.points.items()}
         self.modes = len(self.body.frequencies)
         self.parts: list[Any] = []
         self.centres: dict[str, Any] = {}
@@ -82,16 +83,13 @@ class EnergyCar:
         body = rigid_body(self.vehicle.body)
         self._part("body", body.cog, body.mass, body.inertia)
         for name in ("engine", "torque_arm"):
-            self._listed(name, name, 1.0)
+            self._listed(name)
         for wheel in WHEELS:
-            side = WHEEL_SIGN[wheel]
             for part in ("a_arm", "knuckle", "damper_top", "steering_rod", "stabilizer_half", "stabilizer_rod"):
-                self._listed(part, f"{part}_{wheel}", side)
+                self._listed(f"{part}_{wheel}")
                 for fixed in FIXED.get(part, ()):
-                    self._listed(fixed, f"{fixed}_{wheel}", side, f"{part}_{wheel}")
-            inertia = np.diag(self.vehicle.parts["main_spring_lower"].inertia)
-            at = self.points[f"strut_top_{wheel}"]
-            self._part(f"seat_{wheel}", at, self.vehicle.body.spring_seat_mass, inertia, "body")
+                    self._listed(f"{fixed}_{wheel}", f"{part}_{wheel}")
+            self._listed(f"main_spring_upper_{wheel}", "body")
         self.rigid = 6 * len(self.parts)
         self.size = self.rigid + self.modes
         self.elements = self._elements()
@@ -101,9 +99,9 @@ class EnergyCar:
         weighted += [(term, -p) for term, p in zip(self.elements, self.preload, strict=True)]
         self.geometric = sum(self._full(term, term.curvature(weights)) for term, weights in weighted)
 
-    def _listed(self, part, name, side, to=None):
-        p = self.vehicle.parts[part]
-        self._part(name, np.array(p.cog(self.vehicle.hardpoints)) * [1.0, side, 1.0], p.mass, np.diag(p.inertia), to)
+    def _listed(self, name, to=None):
+        part = next(one for one in self.vehicle.composition.parts if one.name == name)
+        self._part(name, np.array(part.cog), part.numbers.mass, np.diag(part.numbers.inertia), to)
 
     def _part(self, name, centre, mass, inertia, to=None):
         if to is None:
@@ -196,15 +194,16 @@ class EnergyCar:
             between = s.T @ r
             return [0.5 * (between[j, i] - between[i, j]) for i, j in ((1, 2), (2, 0), (0, 1))]
 
-        for c in connections(self.vehicle, self.body):
-            if c.law is None:
+        for c in self.vehicle.composition.connections:
+            law = element_law(c, self.vehicle.body, self.body)
+            if law is None:
                 continue
-            share = [SLIDING, SLIDING, 1.0] if c.name.startswith(("bushing/tyre", "bushing/rear_support")) else 1.0
-            bent = lambda r, p, s, o, at=c.hardpoint: s.T @ (p(at) - o(at))  # noqa: E731
+            share = [SLIDING, SLIDING, 1.0] if c.name.startswith(("tyre", "rear_support")) else 1.0
+            bent = lambda r, p, s, o, at=c.point: s.T @ (p(at) - o(at))  # noqa: E731
             turns = 6 * self.parts.index(self.root[c.carrier]) + np.arange(3, 6) if c.carrier in self.root else ()
-            k = np.asarray(c.law.stiffness)
-            found.append(self._pair(c.moving, c.carrier, bent, k, k * share, c.law, turns))
-            k = np.full(3, c.law.rotational_stiffness)
+            k = np.asarray(law.stiffness)
+            found.append(self._pair(c.moving, c.carrier, bent, k, k * share, law, turns))
+            k = np.full(3, law.rotational_stiffness)
             found.append(self._pair(c.moving, c.carrier, twist, k, k))
         for w in WHEELS:
 
@@ -212,9 +211,9 @@ class EnergyCar:
                 line = p(up) - o(low)
                 return [np.sqrt(line @ line) - np.linalg.norm(self.points[up] - self.points[low])]
 
-            k = np.array([self.vehicle.main_spring.stiffness])
+            k = np.array([value_of(self.vehicle, "main_spring.stiffness")])
             found.append(self._pair("body", f"main_spring_lower_{w}", longer, k, k))
-        k = np.array([self.vehicle.stabilizer.torsional_stiffness])
+        k = np.array([value_of(self.vehicle, "stabilizer.torsional_stiffness")])
         torsion = lambda r, p, s, o: [(s.T @ r)[0, 2]]  # noqa: E731
         found.append(self._pair("stabilizer_half_fr", "stabilizer_half_fl", torsion, k, k))
         k = (2.0 * np.pi * self.body.frequencies * self.vehicle.body.frequency_scale) ** 2

@@ -7,7 +7,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.parameters.paths import full_path, overrides_of, unit_of, value_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.toml_file import as_table
-from vehicle.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.parameters.vehicle import load_vehicle
 
 
 def test_values_arrive_where_their_paths_say(car):
@@ -21,7 +21,8 @@ def test_values_arrive_where_their_paths_say(car):
     changed = Car.load(overrides=texts).vehicle
     assert {path: value_of(changed, path) for path in values} == values
     # The third component is not a parameter and stays.
-    assert changed.bushings.suspension_mount.stiffness[1] == car.vehicle.bushings.suspension_mount.stiffness[1]
+    there = "front.bushings.suspension_mount.stiffness.y"
+    assert value_of(changed, there) == value_of(car.vehicle, there)
     assert overrides_of(car.vehicle, {}) == ()
 
 
@@ -45,7 +46,7 @@ def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
 
 def test_the_nearest_path_has_its_axis(car):
     for misspelt in ("bushings.suspension_mount.stifness.z", "suspension_mount.stifness.z"):
-        with pytest.raises(ConfigurationError, match=r"nearest is bushings\.suspension_mount\.stiffness\.z$"):
+        with pytest.raises(ConfigurationError, match=r"nearest is front\.bushings\.suspension_mount\.stiffness\.z$"):
             value_of(car.vehicle, misspelt)
 
 
@@ -59,23 +60,24 @@ def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
     assert changed == load_vehicle(None, whole) != car.vehicle
     assert value_of(changed, "coulomb_friction") == 80.0
     # A whole path wins over the end of another one: the point, not a group of bushings.
-    assert full_path(as_table(car.vehicle), "damper") == "damper"
+    assert full_path(as_table(car.vehicle), "damper") == "front.damper"
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(None, ["torsional_stifness=1"])
     assert str(caught.value) == (
-        "--set torsional_stifness=1: no parameter torsional_stifness; the nearest is stabilizer.torsional_stiffness"
+        "--set torsional_stifness=1: no parameter torsional_stifness; the nearest is "
+        "front.stabilizer.torsional_stiffness"
     )
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(None, ["maxwell_stiffness=1", "mass=1"])
     assert str(caught.value) == (
-        "--set mass=1: parameter mass may be body.mass, parts.a_arm.mass, parts.knuckle.mass, parts.tyre.mass or one "
-        "of 11 others; give more of its path"
+        "--set mass=1: parameter mass may be body.mass, engine.parts.engine.mass, engine.parts.torque_arm.mass, "
+        "front.parts.a_arm.mass or one of 12 others; give more of its path"
     )
     with pytest.raises(ConfigurationError, match=r"parameter stiffness\.z: no number of a vehicle; .* may"):
         value_of(car.vehicle, "stiffness.z")
 
 
-def test_units_are_those_of_the_fields():
+def test_units_are_those_of_the_fields(car):
     units = {
         "damper.viscous": "N s/m",
         "bushings.tyre.stiffness": "N/m",
@@ -83,10 +85,10 @@ def test_units_are_those_of_the_fields():
         "parts.engine.mass": "kg",
         "hardpoints.strut_top.x": "m",
     }
-    assert {path: unit_of(Vehicle, path) for path in units} == units
-    for path in ("damper", "viscous", "damper.viscous.z", "bushings.tyre.stiffness.w", "body.flexible"):
-        with pytest.raises(ConfigurationError, match=f"parameter {path}: no quantity of Vehicle"):
-            unit_of(Vehicle, path)
+    assert {path: unit_of(car.vehicle, path) for path in units} == units
+    for path in ("damper", "body.flexible", "front.template", "outputs.seat.on"):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: no quantity of a vehicle"):
+            unit_of(car.vehicle, path)
 
 
 def test_logarithmic_scale():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -99,13 +97,13 @@ def test_twice_the_input_is_twice_the_response_while_it_sticks(car):
 
 def mirror_symmetric():
     """The car with its engine mounts, products of inertia and outputs made symmetric; body rigid."""
-    vehicle = load_vehicle(
-        None, ["body.flexible=false", "body.ixy=0", "body.iyz=0", "body.attachment_flexibility=false"]
+    return load_vehicle(
+        None,
+        [
+            *("body.flexible=false", "body.ixy=0", "body.iyz=0", "body.attachment_flexibility=false"),
+            *("hardpoints.hydromount.y=0", "hardpoints.linear_mount=[0.7, 0.0, 1.02]", "hardpoints.seat_rail.y=0"),
+        ],
     )
-    points = dataclasses.replace(
-        vehicle.hardpoints, hydromount=(0.8, 0.0, 1.1), linear_mount=(0.7, 0.0, 1.02), seat_rail=(2.05, 0.0, 0.7)
-    )
-    return dataclasses.replace(vehicle, hardpoints=points)
 
 
 def test_a_symmetric_car_answers_left_as_right():

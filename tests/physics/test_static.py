@@ -63,7 +63,7 @@ def test_the_ground_pulls_nowhere_sideways(car):
     model, static = car.model.model, car.model.static
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    points = car.vehicle.hardpoints.all_points()
+    points = car.vehicle.points
     front, rear = points["tyre_patch_fr"][0], points["rear_support_right"][0]
     weight = car.vehicle.gravity * model.body_mass.sum()
     place = np.sum(model.body_mass * data.xipos[:, 0]) / model.body_mass.sum()

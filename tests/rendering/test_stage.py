@@ -67,7 +67,7 @@ def test_shapes_stand_in_their_design_place(car, stage, name):
     mesh = stage.geom_dataid[geom]
     first, count = stage.mesh_vertadr[mesh], stage.mesh_vertnum[mesh]
     vertices = stage.mesh_vert[first : first + count] @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
-    points = {name: np.array(point) for name, point in car.vehicle.hardpoints.all_points().items()}
+    points = {name: np.array(point) for name, point in car.vehicle.points.items()}
     expected = np.asarray(car_shapes(points)[name].mesh.vertices)
     # MuJoCo keeps vertices in single precision: 1e-6 of 4.5 m.
     np.testing.assert_allclose(vertices.min(axis=0), expected.min(axis=0), atol=5e-6)

@@ -144,7 +144,7 @@ def test_the_key_tells_car_input_engine_and_measure(tmp_path):
     file = tmp_path / "a.csv"
     file.write_text("time [s],displacement [m]\n0,0\n", encoding="utf-8")
     other = tmp_path / "car.toml"
-    other.write_bytes((ROOT / "vehicle/parameters/focus.toml").read_bytes())
+    other.write_bytes((ROOT / "vehicle/vehicles/focus/vehicle.toml").read_bytes())
     signal = random_road(rms=1e-4, seed=1, duration=1.0)
     variants = [
         case,

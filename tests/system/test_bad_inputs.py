@@ -72,7 +72,7 @@ SETTINGS = [
     ("26 strut below ball", "hardpoints.strut_top=[0.877, 0.548, 0.5]", "hardpoints.strut_top: found z = 0.5 m"),
     ("26 collinear arm", "hardpoints.arm_rear=[0.842, 0.2, 0.612]", "lie on one line"),
     ("27 no such body", "body.superelement=nothing.toml", "body.superelement: no file 'nothing.toml'"),
-    ("30 unknown name", "damper.coulomb_fricton=100", "the nearest is damper.coulomb_friction"),
+    ("30 unknown name", "damper.coulomb_fricton=100", "the nearest is front.damper.coulomb_friction"),
     ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, needed is a number"),
     ("31 overflow", "damper.viscous=1e400", "damper.viscous: found inf"),
     ("31 two components", "body.cog=[1, 2]", "body.cog: found (1.0, 2.0), needed is a list of 3 numbers [m]"),
@@ -90,9 +90,9 @@ def test_bad_parameters(shaker, short_signal, tmp_path, setting, piece):
 
 
 def test_item_27_bad_superelement_beside_the_vehicle_file(shaker, short_signal, tmp_path):
-    text = (ROOT / "vehicle/flexbody/trimmed_body.toml").read_text()
+    text = (ROOT / "vehicle/vehicles/focus/trimmed_body.toml").read_text()
     (tmp_path / "trimmed_body.toml").write_text(text.replace("mode_count = 9", "mode_count = 8"))
-    focus = (ROOT / "vehicle/parameters/focus.toml").read_text()
+    focus = (ROOT / "vehicle/vehicles/focus/vehicle.toml").read_text()
     (tmp_path / "car.toml").write_text(focus.replace("body_design.toml", "trimmed_body.toml"))
     outcome = shaker("--input", "short.csv", "--vehicle", "car.toml")
     assert outcome.code == 3 and "mode_count" in outcome.err
@@ -101,8 +101,8 @@ def test_item_27_bad_superelement_beside_the_vehicle_file(shaker, short_signal, 
 def test_item_33_link_out_of_the_folder(shaker, short_signal, tmp_path):
     folder = tmp_path / "cars"
     folder.mkdir()
-    (folder / "body_design.toml").symlink_to(ROOT / "vehicle/flexbody/body_design.toml")
-    (folder / "car.toml").write_text((ROOT / "vehicle/parameters/focus.toml").read_text())
+    (folder / "body_design.toml").symlink_to(ROOT / "vehicle/vehicles/focus/body_design.toml")
+    (folder / "car.toml").write_text((ROOT / "vehicle/vehicles/focus/vehicle.toml").read_text())
     outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml")
     assert outcome.code == 2 and "is a link that leads out of" in outcome.err
 

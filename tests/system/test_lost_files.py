@@ -62,7 +62,7 @@ def test_a_folder_without_a_list_is_no_run(shaker, short_signal, tmp_path):
 def test_the_vehicle_file_beside_the_run_is_kept(shaker, short_signal, tmp_path):
     car = tmp_path / "cars" / "car.toml"
     car.parent.mkdir()
-    car.write_text((ROOT / "vehicle/parameters/focus.toml").read_text())
+    car.write_text((ROOT / "vehicle/vehicles/focus/vehicle.toml").read_text())
     outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml", "--output", "cars", "--force")
     assert outcome.code == 2 and "holds the input cars/car.toml" in outcome.err and car.exists()
 

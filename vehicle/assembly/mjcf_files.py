@@ -30,7 +30,7 @@ def mjcf_files(vehicle: Vehicle, trimmed_body: Superelement) -> dict[str, bytes]
     """
     assembly = assemble(vehicle, trimmed_body)
     spec = assembly.spec
-    shapes = car_shapes({name: np.array(point) for name, point in vehicle.hardpoints.all_points().items()})
+    shapes = car_shapes({name: np.array(point) for name, point in vehicle.points.items()})
     add_shapes(spec, shapes, assembly.origins)
     spec.meshdir = "meshes"
     files: dict[str, bytes] = {}

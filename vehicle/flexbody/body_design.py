@@ -6,19 +6,18 @@ shell, the members between all of them, and what a frame of beams cannot know: g
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import BeamSection
-from vehicle.parameters.hardpoints import Hardpoints, Point, mirrored
+from vehicle.parameters.hardpoints import Point, mirrored
 from vehicle.parameters.quantity import quantity, validate
-from vehicle.parameters.toml_file import build, read_table
+from vehicle.parameters.toml_file import build, nearest, read_table
 
 FORMAT = "body design 1"
-_SIDES = (("_fr", "_fl"), ("_right", "_left"))
+_SIDES = (("_fr", "_fl"), ("_rr", "_rl"), ("_right", "_left"))
 """Endings of the right and the left node of a pair: at the wheels, elsewhere."""
 
 
@@ -115,11 +114,11 @@ class BodyDesign:
         """Member groups with a fitted factor."""
         return tuple(name for name, group in self.members.items() if group.factor is not None)
 
-    def placed(self, hardpoints: Hardpoints) -> dict[str, dict[str, Point]]:
+    def placed(self, points: Mapping[str, Point]) -> dict[str, dict[str, Point]]:
         """Nodes of every entry on a car: one, or the right and the left one.
 
         Args:
-            hardpoints: of the car.
+            points: of the car.
 
         Returns:
             Name of the entry -> name of the node -> position in the vehicle frame [m].
@@ -127,12 +126,11 @@ class BodyDesign:
         Raises:
             ConfigurationError: the car has no such hardpoint, or two nodes have one name.
         """
-        points = hardpoints.all_points()
         found: dict[str, dict[str, Point]] = {}
         for name, node in self.nodes.items():
             pair = next((ends for ends in _SIDES if f"{name}{ends[0]}" in points), None)
             if node.place is not None:
-                right, left = (f"{name}{end}" for end in _SIDES[1])
+                right, left = (f"{name}{end}" for end in _SIDES[-1])
                 pairs = {right: node.place, left: mirrored(node.place, -1.0)}
                 found[name] = pairs if node.place[1] > 0.0 else {name: node.place}
             elif node.mirror is not None and node.mirror in points:
@@ -142,7 +140,7 @@ class BodyDesign:
             else:
                 wanted, known = node.mirror or name, [*points, *(key.removesuffix("_fr") for key in points)]
                 raise ConfigurationError(
-                    f"nodes.{name}: the vehicle has no hardpoint {wanted}; the nearest is {_nearest(wanted, known)}. "
+                    f"nodes.{name}: the vehicle has no hardpoint {wanted}; the nearest is {nearest(wanted, known)}. "
                     "Give the node a place, or the name of a hardpoint"
                 )
         names = [name for nodes in found.values() for name in nodes]
@@ -170,7 +168,7 @@ class BodyDesign:
                 if name not in sides:
                     raise ConfigurationError(
                         f"members.{group}.between: {member!r} ends at no node {name!r}; the nearest is "
-                        f"{_nearest(name, sides)}"
+                        f"{nearest(name, sides)}"
                     )
             if len(names) == 1:
                 pairs = [sides[names[0]]]
@@ -203,7 +201,3 @@ def read_design(path: Path) -> BodyDesign:
     except ConfigurationError as error:
         text = str(error)
         raise ConfigurationError(text if text.startswith(str(path)) else f"{path}: {text}") from None
-
-
-def _nearest(name: str, known: Mapping[str, object] | list[str]) -> str:
-    return difflib.get_close_matches(name, list(known), n=1, cutoff=0.0)[0]

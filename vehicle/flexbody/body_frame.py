@@ -11,12 +11,13 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import FloatArray, frame_stiffness
 from vehicle.flexbody.body_design import BodyDesign
+from vehicle.flexbody.carried_nodes import with_carried_nodes
 from vehicle.flexbody.mode_names import mode_names
 from vehicle.flexbody.modes import condense_rotations, free_free_modes
 from vehicle.flexbody.node_masses import body_masses
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.body import TrimmedBody
-from vehicle.parameters.hardpoints import COINCIDENT_M, Hardpoints
+from vehicle.parameters.hardpoints import COINCIDENT_M, Point
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -61,31 +62,31 @@ class BodyFrame:
         )
 
 
-def skeleton(design: BodyDesign, hardpoints: Hardpoints) -> Superelement:
+def skeleton(design: BodyDesign, points: Mapping[str, Point]) -> Superelement:
     """The body of a design on a car without modes, its masses as guessed: all of a rigid body, the start of a frame.
 
     Args:
         design: members, joints of the shell, attachments.
-        hardpoints: interface and output points.
+        points: interface and output points.
 
     Raises:
         ConfigurationError: a name of the design leads nowhere.
     """
-    placed = design.placed(hardpoints)
+    placed = design.placed(points)
     entries = {node: design.nodes[name] for name, made in placed.items() for node in made}
-    points = {node: np.array(place) for made in placed.values() for node, place in made.items()}
-    index = {name: i for i, name in enumerate(points)}
+    places = {node: np.array(place) for made in placed.values() for node, place in made.items()}
+    index = {name: i for i, name in enumerate(places)}
     tubes = [group for group, members in design.members.items() if members.area is None]  # struts stand for panels
     lines = [ends for group in tubes for ends in design.member_ends(group, placed)]
     return Superelement(
         name=design.name,
-        nodes=tuple(points),
-        positions=np.array(list(points.values())),
+        nodes=tuple(places),
+        positions=np.array(list(places.values())),
         edges=np.array([(index[a], index[b]) for a, b in lines]),
         node_mass=np.array([entry.mass for entry in entries.values()]),
         frequencies=np.zeros(0),
         damping_ratio=np.zeros(0),
-        shapes=np.zeros((0, len(points), 3)),
+        shapes=np.zeros((0, len(places), 3)),
         mode_names=(),
         attachment_stiffness={
             node: np.array(entry.attachment) for node, entry in entries.items() if entry.attachment is not None
@@ -94,12 +95,12 @@ def skeleton(design: BodyDesign, hardpoints: Hardpoints) -> Superelement:
     )
 
 
-def body_frame(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) -> BodyFrame:
+def body_frame(design: BodyDesign, points: Mapping[str, Point], body: TrimmedBody) -> BodyFrame:
     """The frame of a design on the hardpoints of a car, with its mass, centre of gravity and inertia.
 
     Args:
         design: of the body.
-        hardpoints: interface and output points of the car.
+        points: interface and output points of the car.
         body: mass properties of the car.
 
     Returns:
@@ -109,7 +110,7 @@ def body_frame(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) ->
         ConfigurationError: as of `skeleton`; a node without a tube, or a member without length; fewer elastic modes
             than wanted; no positive node masses with the mass properties.
     """
-    rest, placed = skeleton(design, hardpoints), design.placed(hardpoints)
+    rest, placed = skeleton(design, points), design.placed(points)
     count, positions = len(rest.nodes), rest.positions
     if design.mode_count > 3 * count - 6:
         raise ConfigurationError(
@@ -142,12 +143,15 @@ def body_frame(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) ->
     )
 
 
-def design_superelement(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) -> Superelement:
+def design_superelement(
+    design: BodyDesign, points: Mapping[str, Point], attachments: Mapping[str, Point], body: TrimmedBody
+) -> Superelement:
     """The modal superelement of a design on a car, computed once for the same points and masses.
 
     Args:
         design: of the body.
-        hardpoints: of the car.
+        points: of the car.
+        attachments: those at which something acts on the body, or is measured: it has a node at each.
         body: mass properties of the car.
 
     Raises:
@@ -162,11 +166,13 @@ def design_superelement(design: BodyDesign, hardpoints: Hardpoints, body: Trimme
         iyz=0.0,
         attachment_flexibility=True,
         frequency_scale=1.0,
-        spring_seat_mass=0.0,
     )
-    return _built(design, hardpoints, known)
+    return _built(design, tuple(points.items()), tuple(attachments.items()), known)
+
+
+Places = tuple[tuple[str, Point], ...]
 
 
 @lru_cache(maxsize=32)
-def _built(design: BodyDesign, hardpoints: Hardpoints, body: TrimmedBody) -> Superelement:
-    return body_frame(design, hardpoints, body).superelement()
+def _built(design: BodyDesign, points: Places, attachments: Places, body: TrimmedBody) -> Superelement:
+    return with_carried_nodes(body_frame(design, dict(points), body).superelement(), dict(attachments))

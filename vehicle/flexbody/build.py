@@ -14,10 +14,10 @@ from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
 from vehicle.flexbody.fit import STAGES, fit_factors
 from vehicle.flexbody.superelement_file import write_superelement
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
 
-BODY_DESIGN = Path(__file__).with_name("body_design.toml")
-TRIMMED_BODY = Path(__file__).with_name("trimmed_body.toml")
+BODY_DESIGN = FOCUS_FILE.with_name("body_design.toml")
+TRIMMED_BODY = FOCUS_FILE.with_name("trimmed_body.toml")
 """The superelement of the shipped design on the shipped car, for those who want it as it was fitted."""
 
 
@@ -30,7 +30,7 @@ def main() -> None:
     parser.add_argument("--fit", action="store_true", help="fit the section factors again, from the nominal sections")
     arguments = parser.parse_args()
     vehicle, design = load_vehicle(arguments.vehicle), read_design(arguments.design)
-    frame, factors = body_frame(design, vehicle.hardpoints, vehicle.body), design.factors
+    frame, factors = body_frame(design, vehicle.points, vehicle.body), design.factors
     if arguments.fit:
         factors = fit_factors(frame, dict.fromkeys(factors, 1.0), STAGES)
         print("\n".join(f"{group}: {factors[group]:.5g}" for group in design.fitted_groups))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +14,9 @@ from vehicle.flexbody.body_frame import design_superelement, skeleton
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement
 from vehicle.flexbody.superelement_file import read_superelement
-from vehicle.names import body_nodes
-from vehicle.parameters.vehicle import Vehicle
+from vehicle.parameters.vehicle import FOCUS_FILE, Vehicle
 
-PACKAGE_FOLDER = Path(str(resources.files("vehicle.flexbody")))
+PACKAGE_FOLDER = FOCUS_FILE.parent
 _DESIGN = re.compile(r"""^format *= *["']body design""", re.MULTILINE)
 
 
@@ -37,7 +35,7 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
         ConfigurationError: no such file and the vehicle needs one; a bad design, or one that does not fit the vehicle.
         DataError: the superelement is bad.
     """
-    body, points = vehicle.body, vehicle.hardpoints
+    body, points = vehicle.body, vehicle.points
     file = None if body.superelement is None else _find(body.superelement, folder)
     if file is None:
         if body.superelement is not None and (body.flexible or body.attachment_flexibility):
@@ -55,7 +53,7 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
         if not body.flexible:
             return skeleton(source, points)
         rigid_body(body)  # says better what is wrong with an inertia
-        return design_superelement(source, points, body)
+        return design_superelement(source, points, vehicle.composition.attachments(), body)
     except ConfigurationError as error:
         text = str(error)
         raise ConfigurationError(text if text.startswith("body.") else f"{file.name}: {text}") from None
@@ -84,16 +82,16 @@ def _read_once(file: Path, modified: int, size: int) -> BodyDesign | Superelemen
 
 def _bare(vehicle: Vehicle) -> Superelement:
     """A rigid body without a file: its nodes are hardpoints, and its mass, which nothing asks for, is spread evenly."""
-    points, nodes = vehicle.hardpoints.all_points(), body_nodes()
+    points = vehicle.composition.attachments()
     return Superelement(
         name="rigid_body",
-        nodes=nodes,
-        positions=np.array([points[name] for name in nodes]),
+        nodes=tuple(points),
+        positions=np.array(list(points.values())),
         edges=np.zeros((0, 2)),
-        node_mass=np.full(len(nodes), vehicle.body.mass / len(nodes)),
+        node_mass=np.full(len(points), vehicle.body.mass / len(points)),
         frequencies=np.zeros(0),
         damping_ratio=np.zeros(0),
-        shapes=np.zeros((0, len(nodes), 3)),
+        shapes=np.zeros((0, len(points), 3)),
         mode_names=(),
         provenance="Rigid body on the hardpoints of the vehicle, attachments rigid.",
     )

@@ -15,7 +15,8 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.flexbody.beam import FloatArray
-from vehicle.flexbody.superelement_checks import check_superelement
+from vehicle.flexbody.superelement_checks import LARGEST_TOLERANCE, check_superelement
+from vehicle.parameters.hardpoints import Point
 
 
 def _frozen(array: object, dtype: type = float) -> FloatArray:
@@ -117,33 +118,35 @@ class Superelement:
         return replace(self, frequencies=none, damping_ratio=none, shapes=shapes, mode_names=())
 
 
-def require_nodes(superelement: Superelement, places: Mapping[str, FloatArray]) -> None:
-    """Refuse a body model without the nodes that the car is fixed to, or with one of them in another place.
+def attached_nodes(body: Superelement, places: Mapping[str, Point]) -> dict[Point, str]:
+    """The node of a body model at each point where something acts on it: found by its place, never by its name.
 
     Args:
-        superelement: the body model; says how far a node may be from its hardpoint.
-        places: node name -> hardpoint position in the vehicle frame [m], shape (3,).
+        body: the body model; says how far a node may be from a point of the car.
+        places: points of the car in the vehicle frame [m], by name.
+
+    Returns:
+        Point to the name of its node. What is rigid reaches everywhere: there a node is only needed for its local
+        stiffness, and may be as far as that of a body that is measured.
 
     Raises:
-        DataError: names the missing node, or the distance and both positions.
+        DataError: no node is near enough; names the nearest, the distance and both positions.
     """
-    missing = [name for name in places if name not in superelement.nodes]
-    if missing:
-        raise DataError(
-            f"superelement {superelement.name!r}: interface node {', '.join(repr(name) for name in missing)} is "
-            f"missing; the car is fixed to it. Its nodes are: {', '.join(superelement.nodes)}. "
-            "Add the node to the body model."
-        )
-    if not superelement.frequencies.size:
-        return  # what is rigid is fixed wherever the hardpoint is
-    tolerance = superelement.hardpoint_tolerance
+    found: dict[Point, str] = {}
     for name, place in places.items():
-        node = superelement.positions[superelement.node_index(name)]
-        distance = float(np.linalg.norm(node - np.asarray(place, dtype=float)))
+        gap = np.linalg.norm(body.positions - np.array(place), axis=1)
+        best = int(np.argmin(gap))
+        distance, tolerance = float(gap[best]), body.hardpoint_tolerance
+        if not body.frequencies.size:
+            if distance <= LARGEST_TOLERANCE:
+                found[place] = body.nodes[best]
+            continue
         if not distance <= tolerance:
             raise DataError(
-                f"superelement {superelement.name!r}: node {name!r} at {node.tolist()} m is {distance * 1e3:.4g} mm "
-                f"away from its hardpoint {np.asarray(place).tolist()} m; {tolerance * 1e3:g} mm is allowed. "
-                "Move the hardpoint or use a body model measured at it, or one that is computed from the hardpoints "
-                "(body.superelement = body_design.toml)."
+                f"superelement {body.name!r}: no node at {name} {list(place)} m, where the car is fixed to it: node "
+                f"{body.nodes[best]!r} at {body.positions[best].tolist()} m is {distance * 1e3:.4g} mm away; "
+                f"{tolerance * 1e3:g} mm is allowed. Move the hardpoint or use a body model measured at it, or one "
+                "that is computed from the hardpoints (body.superelement = body_design.toml)."
             )
+        found[place] = body.nodes[best]
+    return found

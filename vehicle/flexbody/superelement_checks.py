@@ -17,7 +17,8 @@ NORMALISATION = 1e-6
 _LARGEST_BODY = 30.0  # m; a road vehicle in millimetres is thousands
 _SMALLEST_BODY = 0.05  # m; a road vehicle in kilometres is below
 _HIGHEST_DAMPING = 0.3  # trimmed bodies have 0.01 to 0.08; ten times that is no vibration any more
-_LARGEST_TOLERANCE = 0.05  # m; half the distance of the two interface nodes that are nearest to each other in a car
+LARGEST_TOLERANCE = 0.05
+"""Largest distance of a node from its point [m]: half that of the two interface nodes nearest to each other."""
 _HIGHEST_FIRST_MODE = 90.0  # Hz; trimmed bodies begin between 15 and 60 Hz, which is 94 rad/s and more
 
 
@@ -88,10 +89,10 @@ def _check_values(body: Superelement) -> None:
             f"node_mass of {body.nodes[worst]!r}: {body.node_mass[worst]:g} kg; masses must not be negative and "
             "their sum must be positive.",
         )
-    if not 0.0 < body.hardpoint_tolerance <= _LARGEST_TOLERANCE:
+    if not 0.0 < body.hardpoint_tolerance <= LARGEST_TOLERANCE:
         _refuse(
             body,
-            f"hardpoint_tolerance: {body.hardpoint_tolerance:g} m; allowed is above 0, up to {_LARGEST_TOLERANCE:g} m: "
+            f"hardpoint_tolerance: {body.hardpoint_tolerance:g} m; allowed is above 0, up to {LARGEST_TOLERANCE:g} m: "
             "a node farther away is another point of the body.",
         )
     if np.any(body.frequencies <= 0.0):

@@ -42,13 +42,6 @@ class TrimmedBody:
         at_most=20.0,
         why="a body 400 times as stiff is rigid: flexible = false",
     )
-    spring_seat_mass: float = quantity(
-        "kg",
-        "mass fixed to the body at each strut top",
-        at_least=0.0,
-        at_most=50.0,
-        why="half a main spring, which has 1 to 10 kg",
-    )
 
     def __post_init__(self) -> None:
         validate(self)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from vehicle.parameters.elements import Hydromount
+from vehicle.parameters.paths import full_path
 from vehicle.parameters.vehicle import Vehicle
 
 
@@ -14,27 +16,28 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
         vehicle: the car.
         overrides: texts "path=value" that it was made with.
     """
-    damper, body, branch = vehicle.damper, vehicle.body, vehicle.bushings.hydromount
-    off: list[tuple[bool, str, str]] = [
-        (damper.friction_law != "stribeck", "damper.stribeck_", "damper.friction_law = stribeck"),
-        (damper.viscous_law != "degressive", "damper.degressive_", "damper.viscous_law = degressive"),
+    body = vehicle.body
+    off: dict[str, tuple[bool, str]] = {
         # The frame of a flexible body has this Ixx in both variants.
-        (
+        "body.ixx_improved": (
             body.inertia_variant != "improved" and not body.flexible,
-            "body.ixx_improved",
             "body.inertia_variant = improved",
         ),
-        (body.inertia_variant != "published", "body.ixx_published", "body.inertia_variant = published"),
-        (not body.flexible, "body.frequency_scale", "body.flexible = true"),
-        (
-            branch.maxwell_stiffness * branch.maxwell_damping == 0.0,
-            "bushings.hydromount.maxwell_",
-            "both of its values above zero",
-        ),
-    ]
+        "body.ixx_published": (body.inertia_variant != "published", "body.inertia_variant = published"),
+        "body.frequency_scale": (not body.flexible, "body.flexible = true"),
+    }
+    for damper in vehicle.composition.dampers:
+        law, path = damper.law, damper.path
+        off[f"{path}.stribeck_"] = (law.friction_law != "stribeck", f"{path}.friction_law = stribeck")
+        off[f"{path}.degressive_"] = (law.viscous_law != "degressive", f"{path}.viscous_law = degressive")
+    for one in vehicle.composition.connections:
+        if isinstance(one.law, Hydromount):
+            none = one.law.maxwell_stiffness * one.law.maxwell_damping == 0.0
+            off[f"{one.path}.maxwell_"] = (none, "both of its values above zero")
+    said = {text: full_path(vehicle.table, text.partition("=")[0].strip()) for text in overrides}
     return tuple(
         f"{override.strip()}: without effect; it belongs to {needed}"
-        for override in overrides
-        for idle, path, needed in off
-        if idle and override.strip().startswith(path)
+        for override, whole in said.items()
+        for path, (idle, needed) in off.items()
+        if idle and whole.startswith(path)
     )

@@ -1,22 +1,21 @@
 """Parameters by their dotted paths: which there are, what they hold, their units, and other values in their places.
 
-A path names the tables down to a value, as "bushings.suspension_mount.stiffness"; a component of a vector has its axis
-behind it, as in "bushings.suspension_mount.stiffness.z". The end of a path is enough where only one path ends so, as in
-"suspension_mount.stiffness.z".
+A path names the tables down to a value, as "front.bushings.suspension_mount.stiffness"; a component of a vector has
+its axis behind it, as in "front.bushings.suspension_mount.stiffness.z". The end of a path is enough where only one path
+ends so, as in "suspension_mount.stiffness.z". A file may give other names of its own in the table `alias`.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import difflib
 import re
 import tomllib
-import typing
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
+from vehicle.parameters.quantity import field_quantity
 from vehicle.parameters.toml_file import as_table, copy_table
 
 SHOWN = 4
@@ -35,8 +34,11 @@ def full_path(table: Mapping[str, Any], path: str) -> str:
     """
     if _at(table, path) is not None:
         return path
+    if isinstance(other := table.get("alias", {}).get(path), str):
+        return full_path({**table, "alias": {}}, other)
     known = paths(table)
-    found = [one for one in known if one.endswith(f".{path}")]
+    groups = [one.rpartition(".")[0] for one in known]
+    found = [one for one in dict.fromkeys([*known, *groups]) if one.endswith(f".{path}")]
     if not found:
         raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
     if len(found) > 1:
@@ -49,6 +51,8 @@ def paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
     """Paths of all values and of the components of all vectors, in the order of the file."""
     found: list[str] = []
     for key, value in table.items():
+        if key == "alias" and not prefix:
+            continue
         place = f"{prefix}{key}"
         if isinstance(value, Mapping):
             found += paths(value, f"{place}.")
@@ -144,36 +148,25 @@ def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
     return tuple(f"{path}={float(value)!r}" for path, value in values.items())
 
 
-def unit_of(kind: type[Any], path: str) -> str:
-    """Unit of a parameter, as its field declares it; arguments as of `quantity_of`."""
-    return str(quantity_of(kind, path)["unit"])
+def unit_of(car: Any, path: str) -> str:
+    """Unit of a parameter, as it is declared; arguments as of `quantity_of`."""
+    return str(quantity_of(car, path)["unit"])
 
 
-def quantity_of(kind: type[Any], path: str) -> Mapping[str, Any]:
-    """What the field of a parameter declares, as of `quantity`: unit, meaning, range.
+def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
+    """What is declared of a parameter, as of `quantity`: unit, meaning, range.
 
     Args:
-        kind: a parameter class, as Vehicle.
-        path: a whole path, of a value or of a component.
+        car: a vehicle, or a parameter class, as QuarterCar.
+        path: of a value or of a component; of a class the whole path.
 
     Raises:
-        ConfigurationError: the path is no quantity of the class.
+        ConfigurationError: the path is no quantity of it.
     """
-    inner: Any = kind
-    found: Mapping[str, Any] = {}
-    for key in path.split("."):
-        origin = typing.get_origin(inner)
-        if dataclasses.is_dataclass(inner) and key in (fields := {one.name: one for one in dataclasses.fields(inner)}):
-            found, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
-        elif isinstance(origin, type) and issubclass(origin, Mapping):
-            inner = typing.get_args(inner)[1]
-        elif origin is tuple and key in AXES and found.get("length") == len(AXES):
-            inner = float
-        else:
-            found = {}
-            break
+    found = field_quantity(car, path) if isinstance(car, type) else car.quantity_of(full_path(as_table(car), path))
     if "unit" not in found:
-        raise ConfigurationError(f"parameter {path}: no quantity of {kind.__name__}; give the whole path of a value")
+        what = car.__name__ if isinstance(car, type) else "a vehicle"
+        raise ConfigurationError(f"parameter {path}: no quantity of {what}; give the whole path of a value")
     return found
 
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+import typing
+from collections.abc import Mapping
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.names import AXES
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9_.-]+")
 
@@ -122,3 +125,25 @@ def _check_number(path: str, number: Any, metadata: Any) -> None:
         raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {metadata['at_least']!r}{why}")
     if metadata["at_most"] is not None and number > metadata["at_most"]:
         raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {metadata['at_most']!r}{why}")
+
+
+def field_quantity(kind: type[Any], path: str) -> Mapping[str, Any]:
+    """What the field of a parameter class declares, as of `quantity`; nothing where the path is no field of it.
+
+    Args:
+        kind: a parameter class.
+        path: of a value in it, or of a component.
+    """
+    inner: Any = kind
+    found: Mapping[str, Any] = {}
+    for key in path.split("."):
+        origin = typing.get_origin(inner)
+        if dataclasses.is_dataclass(inner) and key in (fields := {one.name: one for one in dataclasses.fields(inner)}):
+            found, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
+        elif isinstance(origin, type) and issubclass(origin, Mapping):
+            inner = typing.get_args(inner)[1]
+        elif key in AXES and found.get("length") == len(AXES):
+            found, inner = {**found, "length": None}, float
+        else:
+            return {}
+    return found

@@ -8,11 +8,12 @@ import functools
 import tomllib
 import types
 import typing
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.quantity import NAME_PATTERN, field_quantity
 
 T = TypeVar("T")
 
@@ -72,11 +73,12 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
-            raise ConfigurationError(_unknown(_join(path, key), key, fields))
+            near = f"the nearest known name is {nearest(key, fields)}"
+            raise ConfigurationError(f"{_join(path, key)}: unknown parameter; {near}")
     values: dict[str, Any] = {}
     for name, entry in fields.items():
         if name in table:
-            values[name] = _convert(hints[name], table[name], _join(path, name))
+            values[name] = convert(hints[name], table[name], _join(path, name))
         elif entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING:
             unit = entry.metadata.get("unit")
             needed = f" [{unit}]" if unit else ""
@@ -94,7 +96,9 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
 
 
 def as_table(instance: Any) -> dict[str, Any]:
-    """Nested dictionaries of a parameter object: the inverse of `build`."""
+    """Nested dictionaries of a parameter object: the inverse of `build`. A vehicle keeps the table it was made from."""
+    if isinstance(own := getattr(instance, "table", None), Mapping):
+        return copy_table(own)
     return {
         entry.name: _plain(getattr(instance, entry.name))
         for entry in dataclasses.fields(instance)
@@ -113,32 +117,27 @@ def write_text(instance: Any, header: str = "") -> str:
         The text; `build(type(instance), tomllib.loads(text))` gives an equal object.
     """
     lines = [f"# {line}".rstrip() for line in header.splitlines()]
-    _write(instance, "", lines)
+    describe = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
+    _write(as_table(instance), "", lines, describe)
     return "\n".join(lines).strip() + "\n"
 
 
-def _write(instance: Any, path: str, lines: list[str]) -> None:
-    inner: list[tuple[str, Any]] = []
-    for entry in dataclasses.fields(instance):
-        value = getattr(instance, entry.name)
-        if dataclasses.is_dataclass(value) or isinstance(value, Mapping):
-            inner.append((entry.name, value))
-        elif value is not None:
-            unit, meaning = entry.metadata.get("unit", "-"), entry.metadata.get("meaning", "")
-            lines.append(f"{entry.name} = {_literal(value)}  # [{unit}] {meaning}".rstrip())
-    for name, value in inner:
-        place = _join(path, name)
-        if dataclasses.is_dataclass(value):
-            lines.extend(["", f"[{place}]"])
-            _write(value, place, lines)
-            continue
-        if all(dataclasses.is_dataclass(member) for member in value.values()):
-            for key, member in value.items():
-                lines.extend(["", f"[{place}.{key}]"])
-                _write(member, f"{place}.{key}", lines)
-        else:
-            lines.extend(["", f"[{place}]"])
-            lines.extend(f"{key} = {_literal(member)}" for key, member in value.items())
+def _write(table: Mapping[str, Any], path: str, lines: list[str], describe: Callable[[str], Mapping[str, Any]]) -> None:
+    for key, value in table.items():
+        if not isinstance(value, Mapping):
+            known = describe(_join(path, key))
+            said = f"  # [{known['unit']}] {known['meaning']}".rstrip() if "unit" in known else ""
+            lines.append(f"{_key(key)} = {_literal(value)}{said}")
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            place = _join(path, _key(key))
+            if not value or any(not isinstance(inner, Mapping) for inner in value.values()):
+                lines.extend(["", f"[{place}]"])
+            _write(value, place, lines, describe)
+
+
+def _key(key: str) -> str:
+    return key if NAME_PATTERN.fullmatch(key) and "." not in key else _literal(key)
 
 
 def _literal(value: Any) -> str:
@@ -146,7 +145,7 @@ def _literal(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, str):
         return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return "[" + ", ".join(_literal(item) for item in value) + "]"
     return repr(value)
 
@@ -161,12 +160,23 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _convert(hint: Any, value: Any, path: str) -> Any:
-    """Turn a TOML value into the type of its field."""
+def convert(hint: Any, value: Any, path: str) -> Any:
+    """Turn a TOML value into the type of its field.
+
+    Args:
+        hint: the type: float, str, bool, dict, a tuple, a mapping, a parameter class, or one of these or None.
+        value: as read.
+        path: of the parameter, shown in messages.
+
+    Raises:
+        ConfigurationError: it is of another type.
+    """
     origin = typing.get_origin(hint)
     if origin in (types.UnionType, typing.Union):
         inner = [option for option in typing.get_args(hint) if option is not type(None)]
-        return _convert(inner[0], value, path)
+        return convert(inner[0], value, path)
+    if hint is dict and not isinstance(value, Mapping):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
     if dataclasses.is_dataclass(hint):
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{path}: found {value!r}, needed is a table of parameters")
@@ -176,13 +186,13 @@ def _convert(hint: Any, value: Any, path: str) -> Any:
             raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
         inner_hint = typing.get_args(hint)[1]
         return types.MappingProxyType(
-            {key: _convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
+            {key: convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
         )
     if origin is tuple:
         if not isinstance(value, list | tuple):
             raise ConfigurationError(f"{path}: found {value!r}, needed is a list")
         if typing.get_args(hint)[0] is str:
-            return tuple(_convert(str, item, path) for item in value)
+            return tuple(convert(str, item, path) for item in value)
         return tuple(_number(item, path) for item in value)
     if hint is float:
         return _number(value, path)
@@ -202,10 +212,9 @@ def _number(value: Any, path: str) -> float:
         raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, needed is a finite number") from None
 
 
-def _unknown(path: str, key: str, known: Iterable[str]) -> str:
-    near = difflib.get_close_matches(key, list(known), n=1, cutoff=0.0)
-    nearest = f"; the nearest known name is {near[0]}" if near else ""
-    return f"{path}: unknown parameter{nearest}"
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The known name that is spelt most like another one; of none, "nothing"."""
+    return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=0.0)), "nothing")
 
 
 def copy_table(table: Mapping[str, Any]) -> dict[str, Any]:

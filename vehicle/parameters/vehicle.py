@@ -1,23 +1,27 @@
-"""The complete parameter set of a car on the shaker rig."""
+"""The complete parameter set of a car on its rig: a file with numbers, composed from templates."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.names import AXES
 from vehicle.parameters.body import TrimmedBody
-from vehicle.parameters.elements import Bushings, Damper, MainSpring, Stabilizer
-from vehicle.parameters.hardpoints import Hardpoints
-from vehicle.parameters.parts import Part, require_parts
+from vehicle.parameters.compose import compose
+from vehicle.parameters.composition import Composition
+from vehicle.parameters.elements import Damper
+from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.paths import override
 from vehicle.parameters.plausible import require_plausible
-from vehicle.parameters.quantity import quantity, validate
-from vehicle.parameters.toml_file import build, read_table
+from vehicle.parameters.quantity import field_quantity, quantity, validate
+from vehicle.parameters.toml_file import build, convert, read_table
 
-FOCUS_FILE = Path(str(resources.files("vehicle.parameters") / "focus.toml"))
+VEHICLES = Path(str(resources.files("vehicle"))) / "vehicles"
+FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
 """The Ford-Focus-like car of source 1."""
 
 
@@ -33,26 +37,102 @@ class Solver:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Vehicle:
-    """Everything that defines a car on its rig; SI units, frame of the hardpoints."""
+class Head:
+    """What a vehicle file says of the car as a whole."""
 
     name: str = quantity("-", "name of the car")
     gravity: float = quantity(
         "m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0 leaves the weight out"
     )
-    hardpoints: Hardpoints
-    body: TrimmedBody
-    parts: Mapping[str, Part]
-    bushings: Bushings
-    main_spring: MainSpring
-    stabilizer: Stabilizer
-    damper: Damper
-    solver: Solver
 
     def __post_init__(self) -> None:
         validate(self)
-        require_parts(self.parts, self.hardpoints)
-        require_plausible(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Vehicle:
+    """Everything that defines a car on its rig; SI units, frame of the hardpoints.
+
+    Attributes:
+        table: the vehicle file as used, nested tables; two cars with the same one are equal.
+        name, gravity: as there; [m/s2].
+        body: trimmed body.
+        solver: numerics.
+        composition: everything else, placed and named.
+    """
+
+    table: Mapping[str, Any]
+    name: str = field(compare=False)
+    gravity: float = field(compare=False)
+    body: TrimmedBody = field(compare=False)
+    solver: Solver = field(compare=False)
+    composition: Composition = field(compare=False)
+
+    @property
+    def points(self) -> Mapping[str, Point]:
+        """Hardpoints by name, as "strut_top_fr" [m]."""
+        return self.composition.points
+
+    @property
+    def damper(self) -> Damper:
+        """Numbers of the first damper, which are those of all where the file gives one table.
+
+        Raises:
+            ConfigurationError: the car has none.
+        """
+        if not self.composition.dampers:
+            raise ConfigurationError(f"{self.name}: has no damper")
+        return self.composition.dampers[0].law
+
+    def quantity_of(self, path: str) -> Mapping[str, Any]:
+        """What is declared of a parameter, as of `quantity`: unit, meaning, range; nothing of a name.
+
+        Args:
+            path: whole path, of a value or of a component.
+        """
+        kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, **self.composition.kinds}
+        table, _, key = path.removesuffix(".").rpartition(".")
+        for place, inner in ((table, key), (table.rpartition(".")[0], f"{table.rpartition('.')[2]}.{key}")):
+            sideless = ".".join(word for word in place.split(".") if word not in ("right", "left"))
+            if sideless in kinds:
+                return field_quantity(kinds[sideless], inner)
+        words = path.removesuffix(".x").removesuffix(".y").removesuffix(".z").split(".")
+        if "hardpoints" in words[-2:-1] or (words[0] in ("outputs", "connection") and words[-1] == "at"):
+            meaning = self.composition.meanings.get(".".join(words), "point of the car")
+            return {"unit": "m", "meaning": meaning, "length": len(AXES)}
+        return field_quantity(Head, path)
+
+
+def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
+    """Compose and validate a car.
+
+    Args:
+        table: vehicle file, as of `read_table`.
+        folder: where it lies; its own templates are there, or in `templates` there.
+
+    Returns:
+        The car.
+
+    Raises:
+        ConfigurationError: a name or a value is wrong; the message names it.
+    """
+    for key in ("name", "gravity", "body", "solver"):
+        if key not in table:
+            raise ConfigurationError(f"{key}: missing; every vehicle file has it")
+    head = build(Head, {key: table[key] for key in ("name", "gravity")})
+    body = build(TrimmedBody, convert(dict, table["body"], "body"), "body")
+    solver = build(Solver, convert(dict, table["solver"], "solver"), "solver")
+    folders = () if folder is None else (folder, folder / "templates")
+    vehicle = Vehicle(
+        table=table,
+        name=head.name,
+        gravity=head.gravity,
+        body=body,
+        solver=solver,
+        composition=compose(table, folders),
+    )
+    require_plausible(vehicle)
+    return vehicle
 
 
 def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Vehicle:
@@ -70,7 +150,7 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
     """
     file = path or FOCUS_FILE
     try:
-        return build(Vehicle, override(read_table(file), overrides))
+        return vehicle_of(override(read_table(file), overrides), file.parent)
     except ConfigurationError as error:
         if path is None:
             raise

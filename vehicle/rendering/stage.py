@@ -41,7 +41,7 @@ def stage_model(car: CarModel, size: tuple[int, int]) -> mujoco.MjModel:
         The model; generalised positions mean the same as in the simulated one.
     """
     spec = car.spec.copy()
-    points = {name: np.array(point) for name, point in car.vehicle.hardpoints.all_points().items()}
+    points = {name: np.array(point) for name, point in car.vehicle.points.items()}
     shapes = {name: shape for name, shape in car_shapes(points).items() if name not in HIDDEN}
     add_shapes(spec, shapes, car.origins)
     for name, opacity in OPACITY.items():

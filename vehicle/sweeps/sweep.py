@@ -15,6 +15,7 @@ from typing import Any
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.flexbody.library import PACKAGE_FOLDER
 from vehicle.output.folder import folder_lock
+from vehicle.parameters.template import SHIPPED as TEMPLATES
 from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
 from vehicle.sweeps.case import Case, digest
 from vehicle.sweeps.executors import process_pool, workers_of
@@ -122,11 +123,11 @@ def case_keys(cases: Sequence[Case], measure: Measure) -> list[str]:
 
 
 def _car_digest(vehicle: Path | None) -> str:
-    """Digest of a vehicle file and of the superelements it may name."""
+    """Digest of a vehicle file and of the superelements and templates it may name."""
     file = FOCUS_FILE if vehicle is None else vehicle
     load_vehicle(file)  # a bad file is refused here, in the words that it always is
     content = hashlib.sha256(file.read_bytes())
-    for folder in dict.fromkeys([file.parent, PACKAGE_FOLDER]):
+    for folder in dict.fromkeys([file.parent, file.parent / "templates", PACKAGE_FOLDER, TEMPLATES]):
         for path in sorted(folder.glob("*.toml")):
             content.update(path.name.encode() + path.read_bytes())
     return content.hexdigest()[:20]
@@ -137,7 +138,7 @@ def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
     sources = {id(case.source): case.source for case in cases}
     return {
         "runs": len(cases),
-        "vehicles": sorted({"focus.toml" if case.vehicle is None else case.vehicle.name for case in cases}),
+        "vehicles": sorted({"focus" if case.vehicle is None else case.vehicle.name for case in cases}),
         "engines_asked": sorted({case.engine for case in cases}),
         "inputs": {source.name: source.identity() for source in sources.values()},
         "measure": repr(measure),

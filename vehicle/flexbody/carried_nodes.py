@@ -1,0 +1,63 @@
+"""Nodes where something new is fixed to a body: carried by the nodes around them, without a mass of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle.flexbody.beam import FloatArray
+from vehicle.flexbody.superelement import Superelement
+from vehicle.parameters.hardpoints import Point
+
+CARRIERS = 6
+"""Nodes that carry a new one: assumed; enough that they never lie on one line, few enough to be its surroundings."""
+
+
+def with_carried_nodes(body: Superelement, places: Mapping[str, Point]) -> Superelement:
+    """The body with a node at each point where it has none; masses and modes stay what they are.
+
+    The node moves as the rigid motion t + theta x (r - c) that fits its carriers best, weighted by 1 / distance^2: a
+    bracket that spreads its force over the structure around it (as the interpolation element RBE3 of Nastran).
+
+    Args:
+        body: the body model.
+        places: points of the car in the vehicle frame [m], by name.
+
+    Returns:
+        The body; itself where it has all nodes.
+    """
+    for name, place in places.items():
+        point = np.array(place)
+        gap = np.linalg.norm(body.positions - point, axis=1)
+        if gap.min() <= body.hardpoint_tolerance:
+            continue
+        carriers = np.argsort(gap, kind="stable")[:CARRIERS]
+        follow = _interpolation(body.positions[carriers], 1.0 / gap[carriers] ** 2, point)
+        shape = np.einsum("ckj,mkj->mc", follow, body.shapes[:, carriers])
+        count = len(body.nodes)
+        body = replace(
+            body,
+            nodes=(*body.nodes, name if name not in body.nodes else f"{name}_attached"),
+            positions=np.vstack([body.positions, point]),
+            edges=np.vstack([body.edges, [(count, carrier) for carrier in carriers[:3]]]),
+            node_mass=np.append(body.node_mass, 0.0),
+            shapes=np.concatenate([body.shapes, shape[:, None]], axis=1),
+        )
+    return body
+
+
+def _interpolation(positions: FloatArray, weight: FloatArray, point: FloatArray) -> FloatArray:
+    """Displacement of a point by those of its carriers, (3, carriers, 3): u = sum over k of N[:, k] u_k."""
+    center = weight @ positions / weight.sum()
+    rows = np.concatenate([_motion(place - center) for place in positions])  # (3 carriers, 6)
+    scale = np.repeat(weight, 3)[:, None]
+    fitted = np.linalg.pinv(rows.T @ (scale * rows)) @ (scale * rows).T  # (6, 3 carriers)
+    return np.asarray((_motion(point - center) @ fitted).reshape(3, len(positions), 3))
+
+
+def _motion(arm: FloatArray) -> FloatArray:
+    """t + theta x arm as a matrix on (t, theta), (3, 6)."""
+    x, y, z = arm
+    return np.array([[1.0, 0.0, 0.0, 0.0, z, -y], [0.0, 1.0, 0.0, -z, 0.0, x], [0.0, 0.0, 1.0, y, -x, 0.0]])

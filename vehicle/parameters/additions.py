@@ -1,0 +1,97 @@
+"""What a vehicle file adds to its templates: points, connections between any two parts, and recorded places."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.parameters.composition import PlacedConnection, PlacedOutput
+from vehicle.parameters.elements import Bushing, Hydromount
+from vehicle.parameters.hardpoints import Point, require_point
+from vehicle.parameters.toml_file import build, convert, nearest
+
+LAW = {"moving", "carrier", "at", "ground"}
+"""Keys of a connection of the vehicle file that are not of its law."""
+
+
+def own_point(path: str, value: Any) -> Point:
+    """A point by its coordinates [m].
+
+    Args:
+        path: where it stands, shown in messages.
+        value: as read.
+
+    Raises:
+        ConfigurationError: it is none.
+    """
+    point: Point = convert(Point, value, path)
+    require_point(path, point, right=False)
+    return point
+
+
+def law_kind(table: Mapping[str, Any]) -> type[Bushing] | type[Hydromount]:
+    """Class of the numbers of a connection."""
+    return Hydromount if any(key.startswith("maxwell_") for key in table) else Bushing
+
+
+def _place(path: str, value: Any, points: Mapping[str, Point]) -> tuple[Point, str]:
+    """A point by its name or its coordinates, and its name."""
+    if isinstance(value, str):
+        if value not in points:
+            raise ConfigurationError(f"{path}: found {value!r}, no such point; the nearest is {nearest(value, points)}")
+        return points[value], value
+    return own_point(path, value), path.split(".")[1]
+
+
+def _known(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
+    """The name of a part that a table gives under a key."""
+    if key not in table:
+        raise ConfigurationError(f"{path}.{key}: missing; needed is the name of a part, as body")
+    name: str = convert(str, table[key], f"{path}.{key}")
+    if name not in names:
+        raise ConfigurationError(f"{path}.{key}: found {name!r}, no such part; the nearest is {nearest(name, names)}")
+    return name
+
+
+def further_connection(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedConnection:
+    """A connection that the vehicle file adds between any two parts.
+
+    Args:
+        name: of its table.
+        value: the table.
+        names: of all parts.
+        points: of the car by name [m].
+
+    Raises:
+        ConfigurationError: a name that leads nowhere, or a wrong number.
+    """
+    path = f"connection.{name}"
+    table = convert(dict, value, path)
+    law = {key: inner for key, inner in table.items() if key not in LAW}
+    at, point = _place(f"{path}.at", table.get("at", []), points)
+    return PlacedConnection(
+        name=name,
+        moving=_known(path, table, "moving", names),
+        carrier=_known(path, table, "carrier", names),
+        at=at,
+        point=point,
+        law=build(law_kind(law), law, path) if law else None,
+        ground=bool(table.get("ground", False)),
+        path=path,
+    )
+
+
+def further_output(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedOutput:
+    """A place whose acceleration the vehicle file wants recorded; arguments as of `further_connection`.
+
+    Raises:
+        ConfigurationError: a name that leads nowhere.
+    """
+    path = f"outputs.{name}"
+    table = convert(dict, value, path)
+    for key in table:
+        if key not in ("on", "at"):
+            raise ConfigurationError(f"{path}.{key}: unknown parameter; needed are on and at")
+    at, point = _place(f"{path}.at", table.get("at", []), points)
+    return PlacedOutput(name=name, on=_known(path, table, "on", names), at=at, point=point)

@@ -1,0 +1,296 @@
+"""A vehicle file and its templates into the composition of a car; knows kinds of joints, and no name of a part."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.names import SIDE_SIGN
+from vehicle.parameters import template as topology
+from vehicle.parameters.additions import further_connection, further_output, law_kind, own_point
+from vehicle.parameters.composition import (
+    Composition,
+    JointSpring,
+    PlacedConnection,
+    PlacedDamper,
+    PlacedOutput,
+    PlacedPart,
+    PlacedSpring,
+    PlacedWheel,
+)
+from vehicle.parameters.elements import Damper, MainSpring, Stabilizer
+from vehicle.parameters.freedoms import freedoms
+from vehicle.parameters.hardpoints import Point
+from vehicle.parameters.instance import Instance
+from vehicle.parameters.parts import Part
+from vehicle.parameters.template import read_template
+from vehicle.parameters.toml_file import convert, nearest
+
+KEPT = ("name", "gravity", "body", "solver", "hardpoints", "outputs", "connection", "alias")
+"""Keys of a vehicle file that are no instance."""
+Elements = list[tuple[Instance, Any, str | None]]
+
+
+def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
+    """Put the instances of a vehicle file together.
+
+    Args:
+        table: the file, as of `read_table`.
+        folders: where its own templates are.
+
+    Returns:
+        Everything placed and named; parents before their children.
+
+    Raises:
+        ConfigurationError: a name that leads nowhere, numbers that are missing or wrong, a part that nothing holds, a
+            loop of joints; the message names table and template.
+    """
+    car: dict[str, Instance] = {}
+    for path, numbers in _instances(table, ""):
+        found = read_template(convert(str, numbers["template"], f"{path}.template"), numbers, folders)
+        car[path] = Instance(name=path, numbers=numbers, template=found, others=car)
+    own = {name: own_point(f"hardpoints.{name}", value) for name, value in table.get("hardpoints", {}).items()}
+    points = {**own, **dict(itertools.chain.from_iterable(map(_points, car.values())))}
+    for instance in car.values():
+        instance.require_geometry()
+    parts, wheels = _parts(car), _wheels(car)
+    names = {"body", "world", *(part.name for part in parts), *(one.plate for one in wheels)}
+    connections = [_connection(*one) for one in sorted(_elements(car, "connection"), key=lambda one: _rank(one[2]))]
+    connections.sort(key=lambda one: one.law is None)
+    connections += [further_connection(name, one, names, points) for name, one in table.get("connection", {}).items()]
+    springs, on_joints = _springs(car)
+    outputs = [
+        PlacedOutput(
+            name=i.label(e.name, side), on=i.part(e.on, side), at=i.point(e.at, side), point=_point_name(i, e.at, side)
+        )
+        for i in car.values()
+        for _, e, side in sorted(_elements({i.name: i}, "output"), key=lambda one: _rank(one[2]))
+    ]
+    outputs += [further_output(name, one, names, points) for name, one in table.get("outputs", {}).items()]
+    composed = Composition(
+        parts=tuple(parts),
+        connections=tuple(connections),
+        springs=tuple(springs),
+        joint_springs=tuple(on_joints),
+        dampers=tuple(
+            PlacedDamper(
+                name=i.label(e.name, side),
+                joint=i.label(e.joint, side),
+                law=i.get(Damper, side, e.name),
+                path=f"{i.name}.{e.name}",
+            )
+            for i, e, side in _elements(car, "damper")
+        ),
+        outputs=tuple(outputs),
+        wheels=tuple(wheels),
+        points=points,
+        kinds=_kinds(car, table),
+        meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},
+    )
+    _require_unique(composed)
+    return composed
+
+
+def _require_unique(car: Composition) -> None:
+    for group in (car.parts, car.connections, car.springs, car.dampers, car.outputs):
+        names = sorted(one.name for one in group)
+        for name, other in itertools.pairwise(names):
+            if name == other:
+                raise ConfigurationError(
+                    f"{name}: two elements have this name; rename one, or give its template a prefix"
+                )
+
+
+def _instances(table: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Tables with a template, at any depth."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            if "template" in value:
+                yield prefix + key, value
+            elif not prefix and key not in KEPT and not any(True for _ in _instances(value, f"{key}.")):
+                raise ConfigurationError(
+                    f"{key}: unknown parameter; the nearest known name is {nearest(key, [*KEPT, *table])}. A table of "
+                    "its own needs template = NAME"
+                )
+            yield from _instances(value, f"{prefix}{key}.")
+        elif not prefix and key not in KEPT:
+            raise ConfigurationError(f"{key}: unknown parameter; the nearest known name is {nearest(key, KEPT)}")
+
+
+def _points(instance: Instance) -> Iterator[tuple[str, Point]]:
+    for name, side in itertools.product(instance.template.hardpoints, instance.sides()):
+        if side is not None or not instance.template.mirrored:
+            yield instance.label(name, side), instance.point(name, side)
+
+
+def _point_name(instance: Instance, ref: str, side: str | None) -> str:
+    name, _, own = ref.partition(":")
+    return instance.label(name, own or side)
+
+
+def _rank(side: str | None) -> int:
+    """Right before left before what exists once."""
+    return [*SIDE_SIGN, None].index(side)
+
+
+def _elements(car: Mapping[str, Instance], kind: str) -> Elements:
+    """Elements of a kind, each for every side that it exists on."""
+    found: Elements = []
+    for instance in car.values():
+        once = {joint.name for joint in instance.template.joint if _names_a_side(joint)}
+        for entry in getattr(instance.template, kind):
+            single = _names_a_side(entry) or getattr(entry, "joint", None) in once - {None}
+            sides = instance.sides()
+            found += [
+                (instance, entry, side) for side in (sides if len(sides) == 1 else (None,) if single else sides[:2])
+            ]
+    return found
+
+
+def _names_a_side(entry: Any) -> bool:
+    parts = [getattr(entry, key, None) for key in ("parent", "moving", "carrier", "on")]
+    return any(":" in (word or "") for word in (*parts, *getattr(entry, "child", ())))
+
+
+def _parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
+    """Every part behind its parent, with its joints."""
+    held: dict[str, tuple[Instance, str, str | None, str, list[tuple[topology.Joint, str | None]]]] = {}
+    for i, joint, side in _elements(car, "joint"):
+        for child in joint.child:
+            name, _, own = child.partition(":")
+            label, parent = i.part(child, side), i.part(joint.parent, side)
+            place = f"{i.template.file}: joint of {child}"
+            if name not in i.template.parts:
+                raise ConfigurationError(f"{place}: a part of another template cannot hang on a joint of this one")
+            if parent == "body" and (joint.kind != "fixed" or joint.at is None):
+                raise ConfigurationError(
+                    f"{place}: on the trimmed body a part is fixed, with a point in at; one that moves on it is free "
+                    "and has a connection, which feels the modes of the body"
+                )
+            there = held.setdefault(label, (i, name, own or side, parent, []))
+            if there[3] != parent:
+                raise ConfigurationError(f"{place}: {there[3]} holds it already; close a loop by a connection")
+            there[4].append((joint, side))
+    for i in car.values():
+        for name, side in itertools.product(i.template.parts, i.sides()):
+            if (side is not None or not i.template.mirrored) and i.label(name, side) not in held:
+                raise ConfigurationError(
+                    f"{i.template.file}: parts.{name}: nothing holds {i.label(name, side)}; give it a joint, or "
+                    'kind = "free" and connections'
+                )
+    children: dict[str, list[str]] = {}
+    for label, (_, _, _, parent, _) in held.items():
+        children.setdefault(parent, []).append(label)
+    order = [*children.get("body", []), *children.get("world", [])]
+    for label in order:
+        order[order.index(label) + 1 : order.index(label) + 1] = children.get(label, [])
+    if loose := [label for label in held if label not in order]:
+        i = held[loose[0]][0]
+        raise ConfigurationError(
+            f"{i.template.file}: joints of {', '.join(loose)} lead to no free part; close a loop by a connection"
+        )
+    return [_part(label, *held[label]) for label in order]
+
+
+def _part(
+    label: str,
+    i: Instance,
+    name: str,
+    side: str | None,
+    parent: str,
+    joints: list[tuple[topology.Joint, str | None]],
+) -> PlacedPart:
+    first, own = joints[0]
+    return PlacedPart(
+        name=label,
+        parent=parent,
+        cog=i.cog(name, side),
+        numbers=i.get(Part, side, "parts", name),
+        side=SIDE_SIGN.get(side or "", 1.0),
+        shape=i.template.parts[name].shape,
+        points={point: i.point(point, side) for point in i.template.parts[name].points},
+        joints=tuple(itertools.chain.from_iterable(freedoms(i, joint, where, label) for joint, where in joints)),
+        seat=i.point(first.at or "", own) if parent == "body" else None,
+        path=f"{i.name}.parts.{name}",
+    )
+
+
+def _wheels(car: Mapping[str, Instance]) -> list[PlacedWheel]:
+    return [
+        PlacedWheel(
+            name=i.label("", side)[1:],
+            axle=i.name,
+            side=SIDE_SIGN[side],
+            part=i.part(i.template.wheel.part, side),
+            plate=i.part("plate", side),
+            center=i.point(i.template.wheel.center, side),
+            patch=i.point(i.template.wheel.patch, side),
+            paths=(f"{i.name}.hardpoints.{i.template.wheel.center}", f"{i.name}.hardpoints.{i.template.wheel.patch}"),
+        )
+        for i in car.values()
+        if i.template.wheel is not None
+        for side in SIDE_SIGN
+    ]
+
+
+def _connection(i: Instance, e: topology.Connection, side: str | None) -> PlacedConnection:
+    law = None
+    if not e.ideal or i.has("bushings", e.name):
+        law = i.get(law_kind(i.numbers.get("bushings", {}).get(e.name, {})), side, "bushings", e.name)
+        for axis, stiffness in zip("xyz", law.stiffness, strict=True):
+            if stiffness < e.least:
+                raise ConfigurationError(
+                    f"{i.name}.bushings.{e.name}.stiffness.{axis}: found {stiffness:g} N/m, must be at least "
+                    f"{e.least:g} N/m ({e.why})"
+                )
+    return PlacedConnection(
+        name=i.label(e.name, side),
+        moving=i.part(e.moving, side),
+        carrier=i.part(e.carrier, side),
+        at=i.point(e.at, side),
+        point=_point_name(i, e.at, side),
+        law=law,
+        ground=e.ground or e.carrier == "plate",
+        path=f"{i.name}.bushings.{e.name}",
+    )
+
+
+def _springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], list[JointSpring]]:
+    springs, on_joints = [], []
+    for i, e, side in _elements(car, "spring"):
+        path = f"{i.name}.{e.name}"
+        if e.joint is None:
+            ends = (e.lower, e.upper)
+            springs.append(
+                PlacedSpring(
+                    name=i.label(e.name, side),
+                    parts=(i.part(e.lower.part, side), i.part(e.upper.part, side)),
+                    at=(i.point(e.lower.at, side), i.point(e.upper.at, side)),
+                    point=next((_point_name(i, end.at, side) for end in ends if end.part == "body"), ""),
+                    stiffness=i.get(MainSpring, side, e.name).stiffness,
+                    path=path,
+                )
+            )
+        else:
+            on_joints.append(
+                JointSpring(
+                    joint=i.label(e.joint, side),
+                    stiffness=i.get(Stabilizer, side, e.name).torsional_stiffness,
+                    path=path,
+                )
+            )
+    return springs, on_joints
+
+
+def _kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
+    """Class of each table of numbers."""
+    found: dict[str, type] = {f"connection.{name}": law_kind(one) for name, one in table.get("connection", {}).items()}
+    for i in car.values():
+        found |= {f"{i.name}.parts.{name}": Part for name in i.template.parts}
+        found |= {f"{i.name}.bushings.{name}": law_kind(one) for name, one in i.numbers.get("bushings", {}).items()}
+        found |= {f"{i.name}.{one.name}": Damper for one in i.template.damper}
+        found |= {f"{i.name}.{one.name}": MainSpring if one.joint is None else Stabilizer for one in i.template.spring}
+    return found

@@ -1,0 +1,160 @@
+"""A car as file and templates compose it: parts, joints, connections, springs, dampers, outputs, wheels, placed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from vehicle.parameters.elements import Bushing, Damper, Hydromount
+from vehicle.parameters.hardpoints import Point
+from vehicle.parameters.parts import Part
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedJoint:
+    """One freedom of a part: `kind` free, ball, hinge or slide, at a point [m] and along an axis."""
+
+    name: str
+    kind: str
+    at: Point = (0.0, 0.0, 0.0)
+    axis: Point = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedPart:
+    """A rigid part on another one; a parent comes before its children.
+
+    Attributes:
+        name: as "knuckle_fr".
+        parent: name of the part that it is on; "world", or "body" for the trimmed body.
+        cog: centre of gravity [m].
+        numbers: mass and inertia, as of the right side.
+        side: +1, or -1 where it is mirrored: its products xy and yz turn.
+        shape: role of its shape.
+        points: what it hangs on, by name without the side [m].
+        joints: its freedoms; none where it is fixed.
+        seat: where a part that is fixed to the trimmed body sits [m], None of others.
+        path: of its numbers in the vehicle file.
+    """
+
+    name: str
+    parent: str
+    cog: Point
+    numbers: Part
+    side: float
+    shape: str
+    points: Mapping[str, Point]
+    joints: tuple[PlacedJoint, ...]
+    seat: Point | None
+    path: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedConnection:
+    """Two parts that meet at a point [m]; `law` None of an ideal ball joint; `path` of its numbers."""
+
+    name: str
+    moving: str
+    carrier: str
+    at: Point
+    point: str
+    law: Bushing | Hydromount | None
+    ground: bool
+    path: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedSpring:
+    """A linear spring between points of two parts [N/m]."""
+
+    name: str
+    parts: tuple[str, str]
+    at: tuple[Point, Point]
+    point: str
+    stiffness: float
+    path: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class JointSpring:
+    """A spring on a joint: [N/m] on a slide, [N m/rad] on a hinge."""
+
+    joint: str
+    stiffness: float
+    path: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedDamper:
+    """A damper on a slide."""
+
+    name: str
+    joint: str
+    law: Damper
+    path: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedOutput:
+    """A place on a part [m] whose acceleration is recorded."""
+
+    name: str
+    on: str
+    at: Point
+    point: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedWheel:
+    """A wheel on its plate.
+
+    Attributes:
+        name: as "fr".
+        axle: name of its instance, as "front".
+        side: +1 of a right wheel, -1 of a left one.
+        part: the part that rolls.
+        plate: body under it.
+        center: its centre [m].
+        patch: middle of its contact patch [m].
+        paths: of both points in the vehicle file.
+    """
+
+    name: str
+    axle: str
+    side: float
+    part: str
+    plate: str
+    center: Point
+    patch: Point
+    paths: tuple[str, str]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Composition:
+    """Everything that a car consists of beside its trimmed body, in the order of the model.
+
+    Attributes:
+        parts, connections, springs, joint_springs, dampers, outputs, wheels: as of their classes.
+        points: hardpoints by name, as "strut_top_fr" [m].
+        kinds: parameter class of each table of the vehicle file, by its path.
+        meanings: of each hardpoint, by its path.
+    """
+
+    parts: tuple[PlacedPart, ...] = ()
+    connections: tuple[PlacedConnection, ...] = ()
+    springs: tuple[PlacedSpring, ...] = ()
+    joint_springs: tuple[JointSpring, ...] = ()
+    dampers: tuple[PlacedDamper, ...] = ()
+    outputs: tuple[PlacedOutput, ...] = ()
+    wheels: tuple[PlacedWheel, ...] = ()
+    points: Mapping[str, Point] = field(default_factory=dict)
+    kinds: Mapping[str, type] = field(default_factory=dict)
+    meanings: Mapping[str, str] = field(default_factory=dict)
+
+    def attachments(self) -> dict[str, Point]:
+        """Points at which something acts on the trimmed body, or is measured on it, by name [m]."""
+        found = {one.point: one.at for one in self.connections if "body" in (one.moving, one.carrier)}
+        found |= {one.point: one.at[1] for one in self.springs if one.parts[1] == "body"}
+        found |= {one.point: one.at[0] for one in self.springs if one.parts[0] == "body"}
+        found |= {one.name: one.seat for one in self.parts if one.seat is not None and one.seat not in found.values()}
+        return found | {one.point: one.at for one in self.outputs if one.on == "body"}
