@@ -20,8 +20,7 @@ import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
 from vehicle.analysis.dependence import common_motion
-from vehicle.analysis.frf import FrequencyResponse, frequency_response
-from vehicle.analysis.frf_mimo import frequency_response_mimo
+from vehicle.analysis.frf import FrequencyResponse, frequency_responses
 from vehicle.analysis.input_floor import rounding_step
 from vehicle.analysis.local_rational import local_rational_responses
 from vehicle.analysis.slip import first_slip, slip_share
@@ -265,12 +264,10 @@ class Run:
                 note = f"both plates move {together}: the FRFs are those to {whose}"
                 inputs, plates, moving = inputs[:1], plates[:1], moving[:1]
             notes.append(note)
-        if window is not None and len(plates) > 1:
-            found = frequency_response_mimo(
+        if window is not None:
+            found = frequency_responses(
                 step, inputs, responses, window_s=window, band=FRF_BAND, input_names=plates, names=names
             )[0]
-        elif window is not None:
-            found = frequency_response(step, inputs[0], responses, window_s=window, band=FRF_BAND, names=names)
         else:
             rounding = [rounding_step(self.signal.displacement[wheel]) for wheel in moving]
             found = local_rational_responses(

@@ -19,8 +19,7 @@ from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.drive import Sampled, Sine
 from vehicle.lumped.history import History
 from vehicle.lumped.marched_solution import marched_solution
-from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.single_mass import single_mass
+from vehicle.lumped.quarter_car import quarter_car, single_mass
 from vehicle.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from vehicle.parameters.quarter_car import QuarterCar
 

@@ -13,8 +13,7 @@ from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.stribeck import Stribeck
 from vehicle.laws.switch import Switch
 from vehicle.lumped.drive import Sine
-from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.single_mass import single_mass
+from vehicle.lumped.quarter_car import quarter_car, single_mass
 from vehicle.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from vehicle.parameters.quarter_car import load_quarter_car
 

@@ -9,8 +9,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.lumped.drive import Sampled
 from vehicle.lumped.marched_solution import marched_solution
-from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.single_mass import single_mass
+from vehicle.lumped.quarter_car import quarter_car, single_mass
 from vehicle.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.parameters.quarter_car import load_quarter_car
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +36,13 @@ class History:
     sliding_force: Array
     force: Array | float = 0.0
     state_rate: Array | None = None
+
+    def during(self, start: float, end: float = np.inf) -> History:
+        """The samples of a stretch of time [s], both ends included."""
+        kept = (self.time >= start) & (self.time <= end)
+        whole = {entry.name: getattr(self, entry.name) for entry in dataclasses.fields(self)}
+        part: dict[str, Any] = {name: x[kept] for name, x in whole.items() if isinstance(x, np.ndarray)}
+        return dataclasses.replace(self, **part)
 
     def of(self, output: str, quantity: Literal["displacement", "velocity", "acceleration"] = "displacement") -> Array:
         """An output by the name of the quantity [m, m/s, m/s2; rad, ...], (T, ...)."""

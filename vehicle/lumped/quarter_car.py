@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -11,13 +12,14 @@ from vehicle.errors import ConfigurationError
 from vehicle.laws.coulomb import SmoothCoulomb
 from vehicle.laws.degressive import Degressive
 from vehicle.laws.kelvin import Kelvin
-from vehicle.laws.law import Numbers
+from vehicle.laws.law import ForceLaw, Numbers, check
 from vehicle.laws.maxwell import Maxwell
 from vehicle.laws.series import in_series
 from vehicle.linear.parts import ROAD, Link, Mass, Network
 from vehicle.linear.system import Row, Slide
-from vehicle.lumped.variation import Variation
+from vehicle.parameters.paths import full_path, quantity_of
 from vehicle.parameters.quarter_car import QuarterCar
+from vehicle.parameters.toml_file import as_table
 
 
 def quarter_car(
@@ -111,12 +113,19 @@ def quarter_car(
         if not degressive:
             links.append(Link(row=sliding, law=Kelvin(stiffness=0.0, damping=value("damper.damping"))))
         friction = SmoothCoulomb(limit=value("friction.limit"), steepness=value("friction.steepness"))
-        slides = (Slide(row=sliding, friction=friction, viscous=_degressive(value) if degressive else None),)
+        bent = Degressive(
+            low_damping=value("degressive.low_damping"),
+            high_damping=value("damper.damping"),
+            knee_velocity=value("degressive.knee_velocity"),
+        )
+        slides = (Slide(row=sliding, friction=friction, viscous=bent if degressive else None),)
     if engine != "none":
         coordinates.append("engine")
         outputs["engine"] = {"engine": 1.0}
         masses.append(Mass(mass=value("engine.mass"), axes=({"engine": 1.0},)))
-        links.append(Link(row={"engine": 1.0, "body": -1.0}, law=_engine_mount(value, engine)))
+        linear = Kelvin(stiffness=value("engine_mount.stiffness"), damping=value("engine_mount.damping"))
+        law = linear if engine == "linear" else elastomer(car, vary)
+        links.append(Link(row={"engine": 1.0, "body": -1.0}, law=law))
     if small_mass:
         coordinates.append("small_mass")
         outputs["small_mass"] = {"small_mass": 1.0}
@@ -129,21 +138,65 @@ def quarter_car(
     )
 
 
-def _degressive(value: Variation) -> Degressive:
-    """Viscous law of the degressive damper."""
-    return Degressive(
-        low_damping=value("degressive.low_damping"),
-        high_damping=value("damper.damping"),
-        knee_velocity=value("degressive.knee_velocity"),
+def elastomer(car: QuarterCar, vary: Mapping[str, Numbers] | None = None) -> Maxwell:
+    """Law of the elastomer (2.8); arguments as of `quarter_car`."""
+    value = Variation(car, vary or {})
+    names = ("stiffness", "branch_stiffness", "branch_damping")
+    return Maxwell(**{name: value(f"elastomer.{name}") for name in names})
+
+
+def single_mass(
+    *, mass: Numbers, friction: ForceLaw, stiffness: Numbers = 0.0, damping: Numbers = 0.0, belt: bool = False
+) -> Network:
+    """m x'' + D x' + K x + f(x') = F; on a belt the friction sees x' minus the belt velocity.
+
+    Coordinate and output: `mass`. The applied force acts on the mass; the road displacement is that of the belt.
+
+    Args:
+        mass: m [kg].
+        friction: law of the friction f.
+        stiffness: spring K to the ground [N/m].
+        damping: damper D to the ground [N s/m].
+        belt: let the friction act between mass and belt, not between mass and ground.
+
+    Returns:
+        The network.
+
+    Source: Bommer 2006, section 2.3.2.1 and equation 2.5.
+    """
+    row = {"mass": 1.0}
+    return Network(
+        coordinates=("mass",),
+        masses=(Mass(mass=mass, axes=(row,)),),
+        links=(Link(row=row, law=Kelvin(stiffness=stiffness, damping=damping)),),
+        outputs={"mass": row},
+        slides=(Slide(row={**row, ROAD: -1.0} if belt else row, friction=friction),),
+        force=row,
     )
 
 
-def _engine_mount(value: Variation, engine: str) -> Kelvin | Maxwell:
-    """Law between engine and body."""
-    if engine == "linear":
-        return Kelvin(stiffness=value("engine_mount.stiffness"), damping=value("engine_mount.damping"))
-    return Maxwell(
-        stiffness=value("elastomer.stiffness"),
-        branch_stiffness=value("elastomer.branch_stiffness"),
-        branch_damping=value("elastomer.branch_damping"),
-    )
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """Values of a quarter car by their paths, with replacements such as {"mount.stiffness": array}.
+
+    Raises:
+        ConfigurationError: an unknown path (with the nearest known one) or a value out of the range of its field.
+    """
+
+    car: QuarterCar
+    replaced: Mapping[str, Numbers] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        table = as_table(self.car)
+        whole = {full_path(table, path): value for path, value in self.replaced.items()}
+        for path, value in whole.items():
+            check(path, value, quantity_of(QuarterCar, path))
+        object.__setattr__(self, "replaced", whole)
+
+    def __call__(self, path: str) -> Numbers:
+        """Value of a parameter, e.g. "mount.stiffness"."""
+        if path in self.replaced:
+            return self.replaced[path]
+        part, _, name = path.partition(".")
+        value: float = getattr(getattr(self.car, part), name)
+        return value
