@@ -17,12 +17,14 @@ from vehicle.errors import ConfigurationError
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
+from vehicle.names import channel_units
 from vehicle.output.folder import write_whole
 from vehicle.output.run_files import FRAME
 from vehicle.parameters.paths import overrides_of, value_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.records.frf import read_frf, write_frf
+from vehicle.records.table import Record
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.record_target import RecordTarget
 
@@ -129,7 +131,8 @@ def _record(name: str, run: Run, noise: np.random.Generator) -> RecordTarget:
         values = run[channel]
         level = NOISE * float(np.sqrt(np.mean(values[inside] ** 2)))
         histories[channel] = values + level * noise.standard_normal(values.size)
-    return RecordTarget(name=name, signal=run.signal, time=run.time, histories=histories, window=BUMP_WINDOW)
+    record = Record(time=run.time, channels=histories, units={one: channel_units()[one] for one in RECORDED})
+    return RecordTarget(name=name, signal=run.signal, record=record, window=BUMP_WINDOW)
 
 
 HIDDEN = {

@@ -58,7 +58,7 @@ def level_figure(path: Path, target: FrfTarget, start: Car, fitted: Car, source:
 
 def record_figure(path: Path, targets: Sequence[RecordTarget], start: Car, fitted: Car, source: str) -> None:
     """Write data, start and fit of the records, a column for each; `source` says what the data are."""
-    count = max(len(target.histories) for target in targets)
+    count = max(len(target.record.channels) for target in targets)
     note = (
         f"Data: {source}; right strut over the bump (it begins at 5 s), no averages. Start and fitted: reduced "
         f"engine on the same signal. All through the low-pass filter of the fit ({targets[0].lowpass:g} Hz)."
@@ -68,9 +68,9 @@ def record_figure(path: Path, targets: Sequence[RecordTarget], start: Car, fitte
     ) as figure:
         axes = rows_of(figure, count, len(targets))
         for target, column in zip(targets, axes.T, strict=True):
-            time = target.time[target.kept]
+            time = target.record.time[target.kept]
             measured, before, after = target.measured(), target.model_histories(start), target.model_histories(fitted)
-            for row, channel in enumerate(target.histories):
+            for row, channel in enumerate(target.record.channels):
                 axis = column[row]
                 axis.plot(time, measured[row], color=DATA, linewidth=2.0, label="data")
                 axis.plot(time, before[row], color=START, linestyle=":", linewidth=1.4, label="start")

@@ -54,7 +54,7 @@ def test_grid_and_table_put_the_cases_in_order():
 def test_numbers_are_those_of_the_run():
     source = random_road(rms=5e-4, seed=3, duration=3.0, lower_band_edge=2.0)
     case = grid({"damper.coulomb_friction": [80.0]}, [source], engine="reduced")
-    measure = ComfortMeasure(skip=1.0, rms_of=("knuckle_fr_acc_z",))
+    measure = ComfortMeasure(skip=1.0)
     table = sweep(case, measure, executor=in_threads)
     run = Car.load(None, ["damper.coulomb_friction=80"]).run(source, engine="reduced")
     (values,) = [result.values for result in table.results]
@@ -65,7 +65,6 @@ def test_numbers_are_those_of_the_run():
     # As in summary.json, of the whole run, and above the same velocity as the share.
     first = run.time[abs(run["damper_fr_velocity"]) > 0.012][0]
     assert values["first_slip_fr"] == pytest.approx(float(first), abs=1e-12) and first < 1.0
-    assert values["knuckle_fr_acc_z_rms"] == pytest.approx(float(run["knuckle_fr_acc_z"][1000:].std()), rel=1e-9)
     # Comfort leaves out the first second, so it is near that of the whole run and not the same.
     assert values["comfort_overall"] == pytest.approx(run.comfort().overall, rel=0.3)
     assert values["comfort_overall"] != pytest.approx(run.comfort().overall, rel=1e-3)

@@ -11,6 +11,7 @@ from vehicle.excitation.bump import bump
 from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range
 from vehicle.records.frf import FrfData
+from vehicle.records.table import Record
 from vehicle.tuning.fit import fit
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.full_steps import SMALL, full_steps
@@ -55,7 +56,12 @@ def record_of(run, seed=3):
     for channel in ("knuckle_fr_acc_z", "damper_fr_velocity"):
         level = NOISE * np.sqrt(np.mean(run[channel][inside] ** 2))
         histories[channel] = run[channel] + level * noise.standard_normal(run.time.size)
-    return RecordTarget(name="bump", signal=run.signal, time=run.time, histories=histories, window=(0.3, 1.2))
+    return RecordTarget(name="bump", signal=run.signal, record=made(run.time, histories), window=(0.3, 1.2))
+
+
+def made(time, histories):
+    """A record of channels in SI units."""
+    return Record(time=time, channels=histories, units=dict.fromkeys(histories, ""))
 
 
 def test_stuck_and_sliding_levels_and_a_bump_in_one_fit(build, high_piece):
@@ -93,13 +99,9 @@ def test_the_last_steps_lead_to_the_full_simulation(build, car, high_run):
     quiet = {name: high_run[name] for name in ("knuckle_fr_acc_z", "damper_fr_velocity")}
     level = {name: 1e-3 * np.std(values) for name, values in quiet.items()}
     noise = np.random.default_rng(8)
-    target = RecordTarget(
-        name="high",
-        signal=high_run.signal,
-        time=high_run.time,
-        histories={name: values + level[name] * noise.standard_normal(values.size) for name, values in quiet.items()},
-        window=(0.5, 4.0),
-    )
+    noisy = {name: values + level[name] * noise.standard_normal(values.size) for name, values in quiet.items()}
+    record = made(high_run.time, noisy)
+    target = RecordTarget(name="high", signal=high_run.signal, record=record, window=(0.5, 4.0))
     result = fit([VISCOUS, FRICTION], [target], build)
     final = full_steps(result, [target], lambda values: [build(values).run(high_run.signal)])
     assert final.settled and final.largest_steps[-1] <= SMALL < final.largest_steps[0]
@@ -134,21 +136,22 @@ def test_bad_targets_are_refused(car, high_piece):
     with pytest.raises(DataError, match="low: no FRF value with a coherence that counts"):
         FrfTarget(name="low", data=dataclasses.replace(data, coherence=0.01 * data.coherence), signal=None)
     time: np.ndarray = np.arange(4001) * 1e-3
-    good = {"name": "bump", "signal": high_piece, "time": time, "window": (1.0, 2.0)}
+    good = {"name": "bump", "signal": high_piece, "window": (1.0, 2.0)}
     ones = np.ones(4001)
     for histories, message in (
         ({}, "bump: no time history"),
         ({"knuckle_acc": ones}, "no channel 'knuckle_acc'"),
-        ({"engine_acc_z": ones[:9]}, "engine_acc_z has 9 samples, the time 4001"),
-        ({"engine_acc_z": np.where(time == 1.5, np.nan, ones)}, "engine_acc_z holds a value that is not finite"),
+        ({"engine_acc_z": ones[:9]}, "engine_acc_z has 9 samples for 4001 times"),
+        (
+            {"engine_acc_z": np.where(time == 1.5, np.nan, ones)},
+            "engine_acc_z has 4001 samples .*, or one that is not finite",
+        ),
         ({"engine_acc_z": np.where(time > 2.0, ones, 0.0)}, "engine_acc_z is zero throughout 1 to 2 s"),
     ):
         with pytest.raises((DataError, ConfigurationError), match=message):
-            RecordTarget(histories=histories, **good)
+            RecordTarget(record=made(time, histories), **good)
     with pytest.raises(ConfigurationError, match="bump: found a low-pass of 500 Hz for 4001 samples"):
-        RecordTarget(histories={"engine_acc_z": ones}, lowpass=500.0, **good)
-    slow = RecordTarget(
-        name="bump", signal=high_piece, time=time[::2], histories={"engine_acc_z": ones[::2]}, window=(1.0, 2.0)
-    )
+        RecordTarget(record=made(time, {"engine_acc_z": ones}), lowpass=500.0, **good)
+    slow = RecordTarget(record=made(time[::2], {"engine_acc_z": ones[::2]}), **good)
     with pytest.raises(DataError, match="2001 samples to 4 s, the model gives 4001"):
         slow.residuals(car)

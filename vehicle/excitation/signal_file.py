@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -64,13 +63,16 @@ def read_signal(
         )
     wanted = Wanted(
         needed=NEEDED,
-        key=lambda header: plate_columns(header, wheel).time,
+        key=lambda header: plate_columns(header, wheel)["time"][0],
         missing="fill" if interpolate else "refuse",
         remedy="repair the cell, or ask for interpolation (--interpolate)",
     )
     table = read_table(path, wanted)
     plates = plate_columns(table.header, wheel)
-    notices = [*table.notices, *plates.notices]
+    del plates["time"]
+    units = {driven: unit for driven, (_, unit) in plates.items()}
+    cells = [table.header.cells[column] for column, unit in plates.values() if unit == "mm"]
+    notices = [*table.notices, *(f"column {cell!r} converted from mm to m" for cell in cells)]
     time = table.values[:, table.key]
     if time.size < MINIMUM_SAMPLES:
         raise DataError(
@@ -78,12 +80,12 @@ def read_signal(
         )
     check_increasing(table, time)
     columns = {}
-    for driven, column in plates.columns.items():
+    for driven, (column, unit) in plates.items():
         values, filled = fill_missing(table, time, column)
-        if plates.recorded and not np.ptp(values) > 0.0:
+        if table.header.cells[column].startswith("plate_") and not np.ptp(values) > 0.0:
             continue  # a run records the plate that it did not drive, too
         notices.extend([*filled, *pauses(driven, time, values)])
-        columns[driven] = values * _LENGTH_UNITS[plates.units[driven]]
+        columns[driven] = values * _LENGTH_UNITS[unit]
     timestep, columns, resampled = _uniform_columns(table, time, columns, resample_hz)
     notices.extend(resampled)
     if time[0] != 0.0:
@@ -96,7 +98,7 @@ def read_signal(
         raise DataError(f"{path}: no plate moves: every column holds one value only; give a record with motion")
     notices.extend(drifts(columns))
     try:
-        check_level(path, columns, timestep, plates.units)
+        check_level(path, columns, timestep, units)
     except DataError as error:
         if not accept_implausible:
             raise
@@ -112,31 +114,15 @@ def read_signal(
     )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PlateColumns:
-    """Which column of a file holds which quantity in which unit; nothing is mapped by position.
-
-    Attributes:
-        time: index of the time.
-        columns: wheel to index of its displacement.
-        units: wheel to its unit as declared, 'm' or 'mm'.
-        recorded: whether they are channels of a run.
-        notices: what was accepted although it is unusual.
-    """
-
-    time: int
-    columns: dict[str, int]
-    units: dict[str, str]
-    recorded: bool
-    notices: tuple[str, ...]
-
-
-def plate_columns(header: Header, wheel: str) -> PlateColumns:
-    """Find the plates in the header of a file.
+def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
+    """Find the time and the plates in the header of a file; nothing is mapped by position.
 
     Args:
         header: of the file.
         wheel: the one that a plain `displacement` column drives.
+
+    Returns:
+        "time" and the wheels, in the order of `WHEELS`, to the index of their column and its unit.
 
     Raises:
         DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity.
@@ -144,15 +130,12 @@ def plate_columns(header: Header, wheel: str) -> PlateColumns:
     if any(_is_number(cell) for cell in header.cells):
         raise DataError(f"{header.where}:1: no header line: found {header.found}; needed are the columns {NEEDED}")
     keys = {"time": "time", "displacement": wheel, **{f"displacement_{one}": one for one in WHEELS}}
-    channels = {f"plate_{one}_displacement": one for one in WHEELS}
+    channels = {"time": "time", **{f"plate_{one}_displacement": one for one in WHEELS}}
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
-    recorded = any(name in channels for _, _, name, _ in named)
-    if recorded:
-        keys = {"time": "time", **channels}
-        named = [one for one in named if one[2] in keys]
-    columns: dict[str, int] = {}
-    units: dict[str, str] = {}
-    unknown, notices = [], []
+    if any(name.startswith("plate_") and name in channels for _, _, name, _ in named):
+        keys, named = channels, [one for one in named if one[2] in channels]
+    columns: dict[str, tuple[int, str]] = {}
+    unknown = []
     for index, cell, name, unit in named:
         place = f"{header.where}:{index + 1}: column {cell!r}"
         if _OTHER_UNIT.fullmatch(unit or "") or _OTHER_QUANTITY.search(name):
@@ -164,15 +147,14 @@ def plate_columns(header: Header, wheel: str) -> PlateColumns:
         key = keys.get(name.lower())
         if key is None:
             unknown.append(repr(cell))
-            continue
-        if key in columns:
+        elif key in columns:
+            first = columns[key][0]
             raise DataError(
-                f"{place} gives the same quantity as column {columns[key] + 1} ({header.cells[columns[key]]!r}); each "
-                f"may appear once; found {header.found}"
+                f"{place} gives the same quantity as column {first + 1} ({header.cells[first]!r}); each may appear "
+                f"once; found {header.found}"
             )
-        columns[key], units[key] = index, _checked_unit(place, key, unit)
-        if units[key] == "mm":
-            notices.append(f"column {cell!r} converted from mm to m")
+        else:
+            columns[key] = index, _checked_unit(place, key, unit)
     if unknown:
         raise DataError(
             f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
@@ -181,13 +163,7 @@ def plate_columns(header: Header, wheel: str) -> PlateColumns:
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"
         raise DataError(f"{header.where}: no {missing} column; found {header.found}; needed are {NEEDED}")
-    return PlateColumns(
-        time=columns["time"],
-        columns={one: columns[one] for one in WHEELS if one in columns},
-        units=units,
-        recorded=recorded,
-        notices=tuple(notices),
-    )
+    return {key: columns[key] for key in ("time", *WHEELS) if key in columns}
 
 
 def _checked_unit(place: str, key: str, unit: str | None) -> str:

@@ -104,12 +104,23 @@ class Record:
         channels: name to samples, (n,) each, in the order of the file and in the units as found.
         units: name to unit; empty where the file tells none.
         notices: what was accepted although it is unusual.
+
+    Raises:
+        DataError: a channel of another length, or with a value that is not finite.
     """
 
     time: Vector
     channels: Mapping[str, Vector]
     units: Mapping[str, str]
     notices: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name, values in self.channels.items():
+            if values.shape != self.time.shape or not np.isfinite(values).all():
+                raise DataError(
+                    f"record: {name} has {values.size} samples for {self.time.size} times, or one that is not finite; "
+                    "repair or cut the record"
+                )
 
     @property
     def start(self) -> float:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from vehicle.errors import ConfigurationError, DataError
 
@@ -23,16 +23,15 @@ LONGEST_LINE = 1_000_000
 BOM = b"\xef\xbb\xbf"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Text:
-    """The lines of a text file with what was noticed on the way."""
+class Text(NamedTuple):
+    """A text file."""
 
     lines: list[str]
     """All lines without their ends; line number = index + 1."""
     notices: tuple[str, ...]
     """What was accepted although it is unusual."""
     sha256: str
-    """Hexadecimal digest of the file's bytes."""
+    """Hexadecimal digest of the bytes."""
 
 
 def read_text(path: Path) -> Text:
@@ -66,7 +65,13 @@ def read_text(path: Path) -> Text:
     if b"\r" in data:
         notices.append("line ends of another system (CR) read as line ends")
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    lines = _decode(path, data).split("\n")
+    try:
+        lines = data.decode("utf-8").split("\n")
+    except UnicodeDecodeError as error:
+        raise DataError(
+            f"{_place(path, data, error.start)}: byte 0x{data[error.start]:02x} is not UTF-8; save the file as UTF-8 "
+            "text"
+        ) from error
     longest = max(range(len(lines)), key=lambda index: len(lines[index]))
     if len(lines[longest]) > LONGEST_LINE:
         raise _line_too_long(path, longest + 1)
@@ -79,8 +84,7 @@ def _check_bytes(path: Path, data: bytes) -> None:
         raise DataError(f"{path}:1:1: the file is UTF-16; allowed is UTF-8; save it as UTF-8 text")
     nul = data.find(b"\0")
     if nul >= 0:
-        line, column = _place(data, nul)
-        raise DataError(f"{path}:{line}:{column}: NUL byte; allowed is UTF-8 text; this is a binary or damaged file")
+        raise DataError(f"{_place(path, data, nul)}: NUL byte; allowed is UTF-8 text; this is a binary or damaged file")
     if len(data) == LONGEST_LINE + 1 and b"\n" not in data and b"\r" not in data:
         raise _line_too_long(path, 1)
 
@@ -95,19 +99,9 @@ def _check_memory(path: Path, size: int, head: bytes) -> None:
         )
 
 
-def _decode(path: Path, data: bytes) -> str:
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        line, column = _place(data, error.start)
-        raise DataError(
-            f"{path}:{line}:{column}: byte 0x{data[error.start]:02x} is not UTF-8; save the file as UTF-8 text"
-        ) from error
-
-
-def _place(data: bytes, offset: int) -> tuple[int, int]:
-    before = data[:offset]
-    return before.count(b"\n") + 1, offset - before.rfind(b"\n")
+def _place(path: Path, data: bytes, offset: int) -> str:
+    line, column = data[:offset].count(b"\n") + 1, offset - data[:offset].rfind(b"\n")
+    return f"{path}:{line}:{column}"
 
 
 def _line_too_long(path: Path, line: int) -> DataError:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -13,7 +13,7 @@ from vehicle.analysis.comfort import comfort_value, rms_standard_error
 from vehicle.analysis.slip import slip_share
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES, WHEELS, channel_units
+from vehicle.names import AXES, WHEELS
 
 
 class Measure(Protocol):
@@ -33,51 +33,39 @@ class Measure(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ComfortMeasure:
-    """Comfort values of a place, slip shares, the first slip, and the RMS of further channels.
+    """Comfort values of the seat rail, slip shares, the first slip.
 
     Attributes:
-        place: where comfort is measured.
         skip: seconds at the beginning that all but the first slip leave out: the car starts at rest.
-        rms_of: further channels whose RMS about the mean is kept.
     """
 
-    place: str = "seat_rail"
     skip: float = 2.0
-    rms_of: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.skip < math.inf:
             raise ConfigurationError(f"measure: skip {self.skip:g} s, must be a finite number of seconds, at least 0")
-        for name in self._needed():
-            if name not in channel_units():
-                raise ConfigurationError(f"measure: no channel {name!r}; there are {', '.join(channel_units())}")
-
-    def _needed(self) -> tuple[str, ...]:
-        places = [f"{self.place}_acc_{axis}" for axis in AXES]
-        return tuple(dict.fromkeys([*places, *(f"damper_{wheel}_velocity" for wheel in WHEELS), *self.rms_of]))
 
     @property
     def channels(self) -> tuple[str, ...]:
         """Channels that are needed."""
-        return self._needed()
+        return (*(f"seat_rail_acc_{axis}" for axis in AXES), *(f"damper_{wheel}_velocity" for wheel in WHEELS))
 
     @property
     def units(self) -> Mapping[str, str]:
         """Name of each number to its unit."""
         comfort = {f"comfort_{axis}": "m/s2" for axis in (*AXES, "overall")} | {"comfort_error": "-"}
         slip = {f"{kind}_{wheel}": "-" for kind in ("slip_share", "saturated_share") for wheel in WHEELS}
-        first = {f"first_slip_{wheel}": "s" for wheel in WHEELS}
-        return comfort | slip | first | {f"{name}_rms": channel_units()[name] for name in self.rms_of}
+        return comfort | slip | {f"first_slip_{wheel}": "s" for wheel in WHEELS}
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip, RMS values.
+        """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip.
 
         Slip is above `damper.slip_velocity`, the saturated share above 1 mm/s. The first slip is that of the whole run,
         as in `summary.json`; NaN where there is none.
         """
         interval = run.recording.timestep
         kept = slice(round(self.skip / interval), None)
-        xyz = np.array([run[f"{self.place}_acc_{axis}"][kept] for axis in AXES])
+        xyz = np.array([run[f"seat_rail_acc_{axis}"][kept] for axis in AXES])
         value = comfort_value(interval, xyz)
         squares = np.array([value.x, value.y, value.z]) ** 2
         # Errors of the axes as if they were independent: d(overall)/overall = sum(rms_i^2 error_i) / overall^2 at most.
@@ -95,6 +83,4 @@ class ComfortMeasure:
         for wheel in WHEELS:
             first = run.first_slip(wheel)
             numbers[f"first_slip_{wheel}"] = math.nan if first is None else first
-        for name in self.rms_of:
-            numbers[f"{name}_rms"] = float(np.std(run[name][kept]))
         return numbers

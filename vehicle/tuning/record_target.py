@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +12,7 @@ from vehicle.car import Car, Run
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
 from vehicle.names import channel_units
+from vehicle.records.table import Record
 
 Vector = npt.NDArray[np.float64]
 
@@ -32,8 +32,7 @@ class RecordTarget:
     Attributes:
         name: of the record, for reports.
         signal: plate displacement.
-        time: sample times of the data [s], (n,); those of the recording of the car.
-        histories: channel to measured values, (n,) each.
+        record: the measured channels, in the units and at the times of the recording of the car.
         window: begin and end of the part that counts [s].
         lowpass: Butterworth low-pass of order 4 forwards and backwards, -6 dB at this frequency [Hz]; two samples are
             kept for each of its periods, so that the noise of neighbours stays nearly independent.
@@ -41,57 +40,48 @@ class RecordTarget:
 
     name: str
     signal: Signal
-    time: Vector
-    histories: Mapping[str, Vector]
+    record: Record
     window: tuple[float, float]
     lowpass: float = 100.0
 
     def __post_init__(self) -> None:
-        if self.time.size < 2 or not 0.0 < self.lowpass <= 0.4 / self.timestep:
+        count, step = self.record.time.size, self.record.step
+        if not 0.0 < self.lowpass <= 0.4 / step:
             raise ConfigurationError(
-                f"{self.name}: found a low-pass of {self.lowpass:g} Hz for {self.time.size} samples; allowed is up to "
-                "0.4 times the sampling rate"
+                f"{self.name}: found a low-pass of {self.lowpass:g} Hz for {count} samples; allowed is up to 0.4 times "
+                "the sampling rate"
             )
-        if not self.histories:
+        if not self.record.channels:
             raise DataError(f"{self.name}: no time history; give at least one channel")
-        for channel, values in self.histories.items():
+        for channel, values in self.record.channels.items():
             if channel not in channel_units():
                 raise ConfigurationError(f"{self.name}: no channel {channel!r}; there are {', '.join(channel_units())}")
-            if values.shape != self.time.shape:
-                raise DataError(f"{self.name}: {channel} has {values.size} samples, the time {self.time.size}")
-            if not np.isfinite(values).all():
-                raise DataError(f"{self.name}: {channel} holds a value that is not finite; repair the record")
             if not np.any(values[self.inside]):
                 raise DataError(f"{self.name}: {channel} is zero throughout {self.window[0]:g} to {self.window[1]:g} s")
 
     @property
-    def timestep(self) -> float:
-        """Of the samples [s]."""
-        return float(self.time[-1] - self.time[0]) / (self.time.size - 1)
-
-    @property
     def kept(self) -> npt.NDArray[np.int64]:
         """Indices of the samples that count after the filter."""
-        every = max(int(1.0 / (KEPT * self.lowpass * self.timestep) + 1e-9), 1)
+        every = max(int(1.0 / (KEPT * self.lowpass * self.record.step) + 1e-9), 1)
         return np.flatnonzero(self.inside)[::every]
 
     @property
     def inside(self) -> npt.NDArray[np.bool_]:
         """Which samples count, (n,)."""
-        return np.asarray((self.time >= self.window[0]) & (self.time <= self.window[1]))
+        return np.asarray((self.record.time >= self.window[0]) & (self.record.time <= self.window[1]))
 
     @property
     def rows(self) -> tuple[str, ...]:
         """What each row of the residuals is."""
-        return tuple(f"{self.name}, {channel}" for channel in self.histories)
+        return tuple(f"{self.name}, {channel}" for channel in self.record.channels)
 
     def measured(self) -> Vector:
         """The filtered data in the window, (channels, samples)."""
-        return self._filtered(np.array(list(self.histories.values())))
+        return self._filtered(np.array(list(self.record.channels.values())))
 
     def model_histories(self, car: Car) -> Vector:
         """Those of the model by the reduced engine, filtered, (channels, samples)."""
-        return self.taken(car.run(self.signal, engine="reduced", channels=tuple(self.histories)))
+        return self.taken(car.run(self.signal, engine="reduced", channels=tuple(self.record.channels)))
 
     def taken(self, run: Run) -> Vector:
         """The channels of a run, filtered, in the window, (channels, samples).
@@ -99,12 +89,13 @@ class RecordTarget:
         Raises:
             DataError: the run is not sampled as the data.
         """
-        if run.time.size != self.time.size or abs(run.time[-1] - self.time[-1]) > 1e-6:
+        time = self.record.time
+        if run.time.size != time.size or abs(run.time[-1] - time[-1]) > 1e-6:
             raise DataError(
-                f"{self.name}: {self.time.size} samples to {self.time[-1]:g} s, the model gives {run.time.size} to "
+                f"{self.name}: {time.size} samples to {time[-1]:g} s, the model gives {run.time.size} to "
                 f"{run.time[-1]:g} s; resample the record to solver.record_rate"
             )
-        return self._filtered(np.array([run[channel] for channel in self.histories]))
+        return self._filtered(np.array([run[channel] for channel in self.record.channels]))
 
     def residuals(self, car: Car) -> Vector:
         """(y - ym) over the RMS of y, (channels, samples)."""
@@ -115,7 +106,7 @@ class RecordTarget:
         return self._rows(self.measured() - self.taken(run))
 
     def _filtered(self, histories: Vector) -> Vector:
-        sections = butter(4, 2.0 * self.timestep * self.lowpass, output="sos")
+        sections = butter(4, 2.0 * self.record.step * self.lowpass, output="sos")
         return np.asarray(sosfiltfilt(sections, histories, axis=1)[:, self.kept])
 
     def _rows(self, difference: Vector) -> Vector:
