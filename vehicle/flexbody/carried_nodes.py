@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.superelement import Superelement
@@ -30,11 +31,9 @@ def with_carried_nodes(body: Superelement, places: Mapping[str, Point]) -> Super
     """
     for name, place in places.items():
         point = np.array(place)
-        gap = np.linalg.norm(body.positions - point, axis=1)
-        if gap.min() <= body.hardpoint_tolerance:
+        if np.linalg.norm(body.positions - point, axis=1).min() <= body.hardpoint_tolerance:
             continue
-        carriers = np.argsort(gap, kind="stable")[:CARRIERS]
-        follow = _interpolation(body.positions[carriers], 1.0 / gap[carriers] ** 2, point)
+        carriers, follow = carried_by(body.positions, point)
         shape = np.einsum("ckj,mkj->mc", follow, body.shapes[:, carriers])
         count = len(body.nodes)
         body = replace(
@@ -48,13 +47,24 @@ def with_carried_nodes(body: Superelement, places: Mapping[str, Point]) -> Super
     return body
 
 
-def _interpolation(positions: FloatArray, weight: FloatArray, point: FloatArray) -> FloatArray:
-    """Displacement of a point by those of its carriers, (3, carriers, 3): u = sum over k of N[:, k] u_k."""
-    center = weight @ positions / weight.sum()
-    rows = np.concatenate([_motion(place - center) for place in positions])  # (3 carriers, 6)
+def carried_by(positions: FloatArray, point: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+    """Nodes that carry a point, and its displacement by theirs: u = sum over k of N[:, k] u_k.
+
+    Args:
+        positions: of all nodes [m], shape (n, 3).
+        point: away from all of them [m], shape (3,).
+
+    Returns:
+        Indices of the carriers, shape (k,); N, shape (3, k, 3).
+    """
+    gap = np.linalg.norm(positions - point, axis=1)
+    nearest = np.argsort(gap, kind="stable")[:CARRIERS]
+    weight = 1.0 / gap[nearest] ** 2
+    center = weight @ positions[nearest] / weight.sum()
+    rows = np.concatenate([_motion(place - center) for place in positions[nearest]])  # (3 k, 6)
     scale = np.repeat(weight, 3)[:, None]
-    fitted = np.linalg.pinv(rows.T @ (scale * rows)) @ (scale * rows).T  # (6, 3 carriers)
-    return np.asarray((_motion(point - center) @ fitted).reshape(3, len(positions), 3))
+    fitted = np.linalg.pinv(rows.T @ (scale * rows)) @ (scale * rows).T  # (6, 3 k)
+    return nearest, np.asarray((_motion(point - center) @ fitted).reshape(3, len(nearest), 3))
 
 
 def _motion(arm: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import SIDE_SIGN
-from vehicle.parameters import template as topology
+from vehicle.parameters import topology
 from vehicle.parameters.additions import further_connection, further_output, law_kind, own_point
 from vehicle.parameters.composition import (
     Composition,

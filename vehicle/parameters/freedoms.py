@@ -8,7 +8,7 @@ from vehicle.names import SIDE_SIGN
 from vehicle.parameters.composition import PlacedJoint
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
-from vehicle.parameters.template import Joint
+from vehicle.parameters.topology import Joint
 
 
 def freedoms(i: Instance, joint: Joint, side: str | None, label: str) -> list[PlacedJoint]:

@@ -10,8 +10,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import SIDE_SIGN
 from vehicle.parameters.hardpoints import Point, mirrored, require_apart, require_point, require_triangle
 from vehicle.parameters.parts import Part
-from vehicle.parameters.template import Template
 from vehicle.parameters.toml_file import build, convert, nearest
+from vehicle.parameters.topology import Template
 
 T = TypeVar("T")
 RIGHT, LEFT = SIDE_SIGN
@@ -191,7 +191,7 @@ class Instance:
             points = {f"{self.name}.hardpoints.{name}": self.point(name, RIGHT) for name in names}
             require_apart(points)
         for part in self.template.parts.values():
-            if part.shape == "arm" and len(part.points) > 2:
+            if part.shape.endswith("arm") and len(part.points) > 2:
                 require_triangle({f"{self.name}.hardpoints.{name}": self.point(name, RIGHT) for name in part.points})
 
     def _groups(self) -> Iterator[tuple[str, ...]]:

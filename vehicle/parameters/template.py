@@ -11,137 +11,18 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.hardpoints import Point
-from vehicle.parameters.quantity import NAME_PATTERN, quantity, validate
+from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.toml_file import build, nearest, read_table
+from vehicle.parameters.topology import Connection, Damper, Joint, Output, RolePart, Spring, Template, Wheel
 
 SHIPPED = Path(str(resources.files("vehicle"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
 """Parts of others that every template may name: the trimmed body, the ground, what the tyre of this side stands on."""
-SHAPES = ("wheel", "disc", "block", "knuckle", "arm", "rod", "tube", "mount", "bar", "engine", "none")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RolePart:
-    """A part: which shape it is drawn with, and the points that it hangs on; their mean is its centre of gravity."""
-
-    shape: str = quantity("-", "role of its shape", choices=SHAPES, default="rod")
-    points: tuple[str, ...] = quantity("-", "points that it hangs on")
-
-    def __post_init__(self) -> None:
-        validate(self)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Joint:
-    """What holds `child`: free, or on `parent`, fixed or with the freedom of its kind; two of one pair stack."""
-
-    kind: str = quantity("-", "kind", choices=("free", "fixed", "ball", "hinge", "slide", "cardan"))
-    child: tuple[str, ...]
-    parent: str = "world"
-    name: str | None = None
-    at: str | None = None
-    along: tuple[str, ...] | None = None
-    """two points on its axis; of a cardan: of the rod, about whose axis it cannot turn"""
-    axis: Point | None = quantity("-", "direction of the axis, right side", length=3, default=None)
-
-    def __post_init__(self) -> None:
-        validate(self)
-        if self.kind in ("ball", "hinge", "slide", "cardan") and self.at is None:
-            raise ConfigurationError(f"Joint.at: missing; a {self.kind} has a point")
-        if self.kind in ("hinge", "slide", "cardan") and (self.along is None) == (self.axis is None):
-            raise ConfigurationError(f"Joint.along: a {self.kind} needs two points in along, or its axis, one of them")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Connection:
-    """A bushing, or an ideal ball joint that closes a loop: the vehicle gives its numbers at `bushings.<name>`."""
-
-    name: str
-    moving: str
-    carrier: str
-    at: str
-    ideal: bool = False
-    """an ideal ball joint where the vehicle gives no numbers"""
-    ground: bool = False
-    """the car stands on it"""
-    least: float = 0.0
-    """least stiffness along each axis [N/m] with which the car does not fall"""
-    why: str = ""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SpringEnd:
-    """One end of a spring between two points."""
-
-    part: str
-    at: str
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Spring:
-    """A spring between two points, or on a joint; the vehicle gives its numbers at `<name>`."""
-
-    name: str
-    lower: SpringEnd | None = None
-    upper: SpringEnd | None = None
-    joint: str | None = None
-
-    def __post_init__(self) -> None:
-        if (self.lower is None) != (self.upper is None) or (self.lower is None) == (self.joint is None):
-            raise ConfigurationError("Spring.lower: needed are lower and upper, or a joint")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Damper:
-    """A damper on a slide; the vehicle gives its numbers at `<name>`."""
-
-    name: str
-    joint: str
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Output:
-    """A place whose acceleration is recorded."""
-
-    name: str
-    on: str
-    at: str
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Wheel:
-    """The part that rolls, its centre, and the middle of its contact patch: it gets a plate, and corner names."""
-
-    part: str
-    center: str
-    patch: str
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Template:
-    """A template with all that it uses."""
-
-    file: str
-    mirrored: bool
-    hardpoints: Mapping[str, str] = field(default_factory=dict)
-    ports: Mapping[str, str] = field(default_factory=dict)
-    parts: Mapping[str, RolePart] = field(default_factory=dict)
-    wheel: Wheel | None = None
-    joint: tuple[Joint, ...] = ()
-    connection: tuple[Connection, ...] = ()
-    spring: tuple[Spring, ...] = ()
-    damper: tuple[Damper, ...] = ()
-    output: tuple[Output, ...] = ()
-    above: tuple[tuple[str, ...], ...] = ()
-    """pairs of points, the first of which lies above the second"""
-
 
 _LISTS = {"joint": Joint, "connection": Connection, "spring": Spring, "damper": Damper, "output": Output}
 _POINTS, _PARTS = {"at", "along", "points", "center", "patch"}, {"child", "parent", "moving", "carrier", "part", "on"}

@@ -1,0 +1,252 @@
+"""A car of data: one table adds a bushing, one entry a channel; own templates; mirrored sides; messages by table."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError
+from vehicle.excitation.random_road import random_road
+from vehicle.flexbody.beam import FloatArray
+from vehicle.flexbody.carried_nodes import carried_by, with_carried_nodes
+from vehicle.flexbody.modes import rigid_shapes
+from vehicle.parameters.paths import value_of
+from vehicle.parameters.template import SHIPPED
+from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
+
+TEXT = FOCUS_FILE.read_text(encoding="utf-8")
+BRACE = (0.7, 0.1, 1.2)
+ADDED = f"""
+[connection.brace]
+moving = "engine"
+carrier = "body"
+at = {list(BRACE)}
+stiffness = [1e5, 2e5, 3e5]
+damping = [100.0, 200.0, 300.0]
+rotational_stiffness = 0.0
+"""
+ROAD = random_road(rms=1e-3, seed=1, duration=1.0)
+
+
+def written(folder: Path, text: str) -> Path:
+    (folder / "car.toml").write_text(text, encoding="utf-8")
+    return folder / "car.toml"
+
+
+@pytest.fixture(scope="module")
+def braced(tmp_path_factory):
+    return Car.load(written(tmp_path_factory.mktemp("braced"), TEXT + ADDED))
+
+
+def rows_at(model: mujoco.MjModel, shapes: FloatArray) -> FloatArray:
+    """Displacement of the engine less that of the body at the new point, by plain jacobians; (3, nv)."""
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    engine, body = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+    mujoco.mj_jac(model, data, engine, None, np.array(BRACE), model.body("engine").id)
+    mujoco.mj_jac(model, data, body, None, np.array(BRACE), model.body("body").id)
+    modal = [int(model.joint(f"mode_{n}").dofadr[0]) for n in range(1, 10)]
+    body[:, modal] += shapes
+    return engine - body
+
+
+def test_one_table_adds_a_bushing_at_a_new_point(car, braced):
+    body, still = braced.model.superelement, car.model.superelement
+    # The frame follows: a node without mass at the point, the modes as they were.
+    np.testing.assert_array_equal(body.positions[-1], BRACE)
+    assert body.node_mass[-1] == 0.0 and len(body.edges) == len(still.edges) + 3
+    np.testing.assert_allclose(body.frequencies, still.frequencies, rtol=1e-12)
+    # Matrices: K and C grow by J' k J and J' d J.
+    jacobian = rows_at(car.model.model, body.shapes[:, -1].T)
+    for name, added in (("stiffness", [1e5, 2e5, 3e5]), ("damping", [100.0, 200.0, 300.0])):
+        before, after = (getattr(one.matrices.system, name) for one in (car, braced))
+        expected = jacobian.T @ np.diag(added) @ jacobian
+        # Preloads shift by the new spring: geometric stiffness of some newtons on arms of a metre.
+        np.testing.assert_allclose(after - before, expected, atol=2e-3 * np.abs(expected).max())
+    with_it = {engine: braced.run(ROAD, engine=engine)["engine_acc_z"] for engine in ("mujoco", "reduced")}
+    size = np.sqrt(np.mean(with_it["mujoco"] ** 2))
+    assert np.sqrt(np.mean((with_it["reduced"] - with_it["mujoco"]) ** 2)) < 0.01 * size
+    assert np.sqrt(np.mean((car.run(ROAD)["engine_acc_z"] - with_it["mujoco"]) ** 2)) > 0.02 * size
+    # Its numbers are parameters as all others.
+    vehicle = load_vehicle(None, [])
+    changed = Car.load(braced.origin["file"], ["connection.brace.stiffness.z=4e5"]).vehicle
+    assert value_of(changed, "brace.stiffness.z") == 4e5
+    assert changed.quantity_of("connection.brace.stiffness.z")["unit"] == "N/m"
+    assert len(changed.composition.connections) == len(vehicle.composition.connections) + 1
+
+
+def test_a_carried_node_moves_with_its_carriers(car):
+    body = car.trimmed_body
+    points = {"inside": (2.0, 0.1, 1.1), "outside": (4.6, 0.7, 0.5)}
+    with_nodes = with_carried_nodes(body, points)
+    assert with_nodes.nodes == (*body.nodes, *points) and with_carried_nodes(with_nodes, points) is with_nodes
+    for place in points.values():
+        # Of a rigid motion of all nodes it takes part.
+        carriers, follow = carried_by(body.positions, np.array(place))
+        moved = np.einsum("ckj,mkj->mc", follow, rigid_shapes(body.positions, body.cog)[:, carriers])
+        np.testing.assert_allclose(moved, rigid_shapes(np.array([place]), body.cog)[:, 0], atol=1e-12)
+
+
+def test_one_entry_adds_a_channel(tmp_path):
+    text = TEXT.replace("[outputs]", '[outputs]\ndriver_head = { on = "body", at = [2.3, -0.37, 1.4] }')
+    car = Car.load(written(tmp_path, text))
+    assert "driver_head" in [output.name for output in car.vehicle.composition.outputs]
+    assert car.model.model.sensor("driver_head_acc").id >= 0
+
+
+def test_own_templates_lie_beside_the_vehicle_file(tmp_path):
+    (tmp_path / "templates").mkdir()
+    own = (SHIPPED / "blocks.toml").read_text(encoding="utf-8").replace("rear_support", "pad")
+    (tmp_path / "templates" / "pads.toml").write_text(own, encoding="utf-8")
+    rear = TEXT.replace('"blocks"', '"pads"').replace("rear_support", "pad")
+    body = TEXT.index("[body]")
+    assert rear.index("[body]") == body
+    text = rear.replace("flexible = true", "flexible = false").replace('superelement = "body_design.toml"', "# none")
+    vehicle = load_vehicle(written(tmp_path, text))
+    assert {"pad_right", "pad_left"} < {one.name for one in vehicle.composition.connections}
+
+
+def test_numbers_of_one_side_lie_over_those_of_both(tmp_path):
+    own = "[front.left.bushings.arm_rear]\nstiffness = [3e5, 8e5, 8e5]\n"
+    own += "[front.left.hardpoints]\ntie_inner = [0.985, -0.3, 0.66]\n"
+    vehicle = load_vehicle(written(tmp_path, TEXT + own))
+    laws: dict[str, Any] = {one.name: one.law for one in vehicle.composition.connections}
+    assert laws["arm_rear_fl"].stiffness == (3e5, 8e5, 8e5) and laws["arm_rear_fr"].stiffness == (2.5e5, 8e5, 8e5)
+    assert laws["arm_rear_fl"].damping == laws["arm_rear_fr"].damping
+    # A point of one side is where it really is.
+    assert vehicle.points["tie_inner_fl"] == (0.985, -0.3, 0.66) and vehicle.points["tie_inner_fr"][1] == 0.335
+
+
+def test_full_tensors_and_crooked_axes_are_mirrored(tmp_path):
+    text = TEXT.replace("[front.parts.knuckle]", "[front.parts.knuckle]\nproducts = [0.03, -0.02, 0.05]")
+    changes = ["parts.knuckle.inertia=[0.2, 0.22, 0.25]", "hardpoints.strut_top.y=0.52", "body.flexible=false"]
+    model = Car.load(written(tmp_path, text), changes).model.model
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    mirror = np.diag([1.0, -1.0, 1.0])
+    kinds = {int(mujoco.mjtJoint.mjJNT_SLIDE): 1.0, int(mujoco.mjtJoint.mjJNT_HINGE): -1.0}
+    compared = 0
+    for joint in range(model.njnt):
+        name, kind = model.joint(joint).name, int(model.jnt_type[joint])
+        if kind in kinds and re.search(r"_fr(_|$)", name):
+            other = model.joint(name.replace("_fr", "_fl")).id
+            # A slide is a vector; an axis of turning a pseudovector: equal coordinates are mirrored motions.
+            np.testing.assert_allclose(data.xaxis[other], kinds[kind] * mirror @ data.xaxis[joint], atol=1e-12)
+            compared += 1
+    assert compared == 5
+    right, left = (tensor(model, data, f"knuckle_{wheel}") for wheel in ("fr", "fl"))
+    np.testing.assert_allclose(right, [[0.2, -0.03, 0.02], [-0.03, 0.22, -0.05], [0.02, -0.05, 0.25]], atol=1e-12)
+    np.testing.assert_allclose(left, mirror @ right @ mirror, atol=1e-12)
+
+
+def tensor(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> FloatArray:
+    frame = data.ximat[model.body(name).id].reshape(3, 3)
+    return np.asarray(frame @ np.diag(model.body_inertia[model.body(name).id]) @ frame.T)
+
+
+MACPHERSON = (SHIPPED / "macpherson.toml").read_text(encoding="utf-8")
+BAD_TEMPLATES = {
+    "unknown part": (
+        'parent = "a_arm"',
+        'parent = "a_arn"',
+        "mine.toml: joint.lower_ball.parent: 'a_arn' leads nowhere",
+    ),
+    "unknown point": ('at = "tie_outer"', 'at = "tie_outa"', "'tie_outa' leads nowhere; the nearest is tie_outer"),
+    "unknown kind": ('kind = "ball"', 'kind = "bell"', "joint.lower_ball.kind: found 'bell', allowed are free, fixed"),
+    "unknown key": (
+        'kind = "ball"',
+        'kynd = "ball"',
+        "joint.lower_ball.kynd: unknown parameter; the nearest known name",
+    ),
+    "unknown list": ("above = [", "abuve = [", "mine.toml: abuve: unknown; the nearest known name is above"),
+    "no axis": (', along = ["tie_outer", "tie_inner"]', "", "a cardan needs two points in along, or its axis"),
+    "a loop": (
+        '{ kind = "free", child = "a_arm" }',
+        '{ kind = "ball", name = "x", child = "a_arm", parent = "knuckle", at = "lower_ball" }',
+        "lead to no free part; close a loop by a connection",
+    ),
+    "held twice": (
+        '{ kind = "free", child = "a_arm" }',
+        '{ kind = "free", child = ["a_arm", "knuckle"] }',
+        "mine.toml: joint of knuckle: world holds it already; close a loop by a connection",
+    ),
+    "held by nothing": (
+        'child = ["damper_bottom", "main_spring_lower"]',
+        'child = "damper_bottom"',
+        "parts.main_spring_lower: nothing holds main_spring_lower_fr; give it a joint",
+    ),
+    "a joint on the body": (
+        '{ kind = "fixed", child = "main_spring_upper", parent = "body", at = "strut_top" }',
+        '{ kind = "ball", child = "main_spring_upper", parent = "body", at = "strut_top" }',
+        "on the trimmed body a part is fixed, with a point in at",
+    ),
+    "no such template": ('template = "wheel"', 'template = "weel"', "template 'weel': no such file beside"),
+    "unbound port": (
+        ', with = { hub = "knuckle" }',
+        "",
+        "use.with.hub: missing; wheel.toml needs it (part that carries",
+    ),
+    "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no such port; it has ['hub']"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_TEMPLATES)
+def test_bad_templates_are_refused_by_file_and_table(case, tmp_path):
+    old, new, message = BAD_TEMPLATES[case]
+    assert old in MACPHERSON
+    (tmp_path / "mine.toml").write_text(MACPHERSON.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(written(tmp_path, TEXT.replace('"macpherson"', '"mine"')))
+    said = str(caught.value)
+    assert message in said and "car.toml" in said and "\n" not in said, said
+
+
+BAD_VEHICLES = {
+    "a point too many": ("strut_top = ", "strut_tip = [0, 1, 2]\nstrut_top = ", "front.hardpoints.strut_tip: unknown"),
+    "a point missing": ("tie_outer = [", "tie_outr = [", "front.hardpoints.tie_outr: unknown parameter; the nearest"),
+    "a table without template": ("[rear]", "[reer]\nname = 1\n[rear]", "reer: unknown parameter; the nearest known"),
+    "a bushing missing": (
+        "[front.bushings.arm_rear]",
+        "[front.bushings.arm_front]",
+        "front.bushings.arm_rear: missing;",
+    ),
+    "point of nothing": ("tie_inner = [0.985, 0.335, 0.66]", 'tie_inner = "rear.x"', "INSTANCE.POINT of another one"),
+    "on nothing": (
+        'on = "engine"',
+        'on = "engin"',
+        "outputs.engine.on: found 'engin', no such part; the nearest is eng",
+    ),
+    "at nothing": (
+        'at = "engine_cog"',
+        'at = "engine_kog"',
+        "outputs.engine.at: found 'engine_kog', no such point; the",
+    ),
+    "no template": ('template = "blocks"', 'template = "bloks"', "template 'bloks': no such file beside the vehicle"),
+    "a number for it": ('template = "blocks"', "template = 3", "rear.template: found 3, needed is a text in quotes"),
+    "a law that is none": (
+        "[front.damper]",
+        "[front.dampers]",
+        "front.dampers: unknown parameter; the nearest known name",
+    ),
+    "nothing to stand on": (
+        TEXT[TEXT.index("[rear]") : TEXT.index("# Channels")],
+        "",
+        "tyre_patch_fr.x less tyre_patch_fr.x: found 0 m",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD_VEHICLES)
+def test_bad_vehicles_are_refused_by_file_and_table(case, tmp_path):
+    old, new, message = BAD_VEHICLES[case]
+    assert old in TEXT
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(written(tmp_path, TEXT.replace(old, new, 1)))
+    said = str(caught.value)
+    assert re.search(re.escape(message), said) and "car.toml: " in said and "\n" not in said, said
