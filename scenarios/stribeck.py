@@ -22,9 +22,7 @@ from scenarios.study import car_study, computed_by, setting
 from vehicle.analysis.slip_peaks import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, bump
-from vehicle.laws.coulomb import SmoothCoulomb
-from vehicle.laws.degressive import Degressive
-from vehicle.laws.stribeck import Stribeck
+from vehicle.laws.damper import damper_law
 from vehicle.parameters.elements import Damper
 from vehicle.rendering.figure import COLOURS
 
@@ -86,25 +84,7 @@ arctangent (0.6 % of 125 N at 1 mm/s) and a Stribeck limit that is one step of 0
 
 def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
     """Damper force [N] of equations 3.1 and 3.2, or with C.1 for D v, at velocities [m/s]."""
-    speeds = np.asarray(velocity, dtype=float)
-    friction: SmoothCoulomb | Stribeck
-    if damper.friction_law == "stribeck":
-        friction = Stribeck(
-            sliding_limit=damper.coulomb_friction,
-            static_limit=damper.stribeck_friction,
-            stribeck_velocity=damper.stribeck_velocity,
-            exponent=damper.stribeck_exponent,
-            steepness=damper.smoothing,
-        )
-    else:
-        friction = SmoothCoulomb(limit=damper.coulomb_friction, steepness=damper.smoothing)
-    viscous = damper.viscous * speeds
-    if damper.viscous_law == "degressive":
-        law = Degressive(
-            low_damping=damper.degressive_viscous, high_damping=damper.viscous, knee_velocity=damper.degressive_velocity
-        )
-        viscous = law.force(speeds)
-    return np.asarray(viscous + friction.force(speeds))
+    return damper_law(damper).force(np.asarray(velocity, dtype=float))
 
 
 def force_error(run: Run) -> float:

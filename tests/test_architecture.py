@@ -19,15 +19,15 @@ EVERYWHERE = {"errors", "names"}
 
 ROOMS: dict[str, set[str]] = {
     "parameters": set(),
-    "laws": {"parameters"},
+    "laws": {"compiler", "parameters"},
     "records": {"analysis"},
     "excitation": {"records"},
     "flexbody": {"parameters"},
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
-    "simulation": {"parameters", "excitation", "assembly", "flexbody", "compiler_cache"},
+    "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},
     "linear": {"laws", "parameters", "simulation"},
-    "reduced": {"parameters", "excitation", "linear", "simulation", "compiler_cache"},
+    "reduced": {"parameters", "excitation", "linear", "simulation", "compiler"},
     "analysis": set(),
     "lumped": {"parameters", "laws", "linear"},
     "rendering": {"simulation", "analysis", "assembly", "shapes"},
@@ -38,7 +38,7 @@ ROOMS: dict[str, set[str]] = {
     "commands": {"analysis", "assembly", "car", "excitation", "output", "parameters"}
     | {"records", "rendering", "sweeps"},
     "threads": set(),
-    "compiler_cache": set(),
+    "compiler": set(),
     "errors": set(),
     "names": set(),
     "__init__": set(),

@@ -12,7 +12,7 @@ import numpy as np
 from scenarios.charts import chart, lines
 from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, NO_FRICTION, STEEP, STEP, Array, Runs
 from vehicle.analysis.spectra import power_spectral_density
-from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.coulomb import Coulomb
 from vehicle.linear.response import frequency_response
 from vehicle.lumped.history import History
 from vehicle.lumped.quarter_car import elastomer
@@ -221,7 +221,7 @@ def figure_b_1(runs: Runs, path: Path) -> None:
     with chart(path, caption, columns=2) as axes:
         for panel, reach in zip(axes, (0.015, 5e-4), strict=True):
             for steepness, color in zip((1e6, 1e5, 1e4), COLOURS, strict=False):
-                law = SmoothCoulomb(limit=runs.car.friction.limit, steepness=steepness)
+                law = Coulomb(friction_limit=runs.car.friction.limit, smoothing=steepness)
                 v = velocity * reach / 0.015
                 panel.plot(v, law.force(v), color=color, linewidth=1.2, label=f"eps {steepness:.0e} s/m")
                 met = runs.with_small_mass(LEVELS[0], steepness).sliding_velocity()[::50]

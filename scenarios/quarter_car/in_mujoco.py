@@ -16,13 +16,14 @@ from scenarios.quarter_car.runs import STEP, Runs, rms
 from vehicle.analysis.slip import slip_share
 from vehicle.assembly.quarter_car import quarter_car_spec
 from vehicle.excitation.signal import Signal
-from vehicle.laws.coulomb import RegularisedCoulomb
+from vehicle.laws.coulomb import Coulomb
+from vehicle.laws.friction import Clamped
 from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.quarter_car import quarter_car
 from vehicle.parameters.quarter_car import QuarterCar
 from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows, prepare_model
 from vehicle.simulation.plate_arrays import PlateArrays
+from vehicle.simulation.rows import Rows, prepare_model
 
 Array = npt.NDArray[np.float64]
 
@@ -69,7 +70,7 @@ def in_mujoco(
     model = quarter_car_spec(car, timestep=timestep, damper=damper).compile()
     prepare_model(model)
     data = mujoco.MjData(model)
-    rows = ElementRows(model)
+    rows = Rows(model)
     times: Array = timestep * np.arange(int(np.floor(signal.duration / timestep + 1e-6)) + 1, dtype=np.float64)
     plate = PlateArrays.of(signal, times)
     position, velocity = np.zeros((times.size, model.nv)), np.zeros((times.size, model.nv))
@@ -77,8 +78,8 @@ def in_mujoco(
     with installed(rows):
         for index in range(times.size):
             data.mocap_pos[0, 2] = plate.displacement[index, 0]
-            rows.plate_velocity[0, 2] = plate.velocity[index, 0]
-            rows.plate_acceleration[0, 2] = plate.acceleration[index, 0]
+            rows.state.plate_velocity[0, 2] = plate.velocity[index, 0]
+            rows.state.plate_acceleration[0, 2] = plate.acceleration[index, 0]
             position[index] = data.qpos
             mujoco.mj_step(model, data)
             sensors[index] = data.sensordata
@@ -96,7 +97,7 @@ def in_mujoco(
 def friction_of_the_rows(car: QuarterCar) -> FirstOrder:
     """The friction model (2.6) with the law that a friction row answers: min(Fd, max(-Fd, c v)), c = (2/pi) Fd eps."""
     network = quarter_car(car, damper="friction")
-    law = RegularisedCoulomb(limit=car.friction.limit, steepness=car.friction.steepness)
+    law = Clamped(law=Coulomb(friction_limit=car.friction.limit, smoothing=car.friction.steepness))
     return dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),)).first_order()
 
 

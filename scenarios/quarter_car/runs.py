@@ -13,7 +13,7 @@ import numpy.typing as npt
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
-from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.coulomb import Coulomb
 from vehicle.laws.switch import Switch
 from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.drive import Sampled, Sine
@@ -203,7 +203,7 @@ class Runs:
     def mass_on_damper(self, kind: str) -> History:
         """Mass on a damper of section 2.3.2.3 for 0.5 s, with the "smooth" or the "switch" law."""
         p = self.car.mass_on_damper
-        friction = SmoothCoulomb(limit=p.friction_limit, steepness=p.steepness)
+        friction = Coulomb(friction_limit=p.friction_limit, smoothing=p.steepness)
         model = single_mass(mass=p.mass, damping=p.damping, friction=friction).first_order()
         times = np.linspace(0.0, 0.5, 10001)
         drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)

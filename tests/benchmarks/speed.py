@@ -24,10 +24,9 @@ from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
 from vehicle.names import AXES, WHEELS, acceleration_channels
-from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows, prepare_model
-from vehicle.simulation.native import native_callback
+from vehicle.simulation.callbacks import compiled_rows, installed
 from vehicle.simulation.plate_arrays import PlateArrays
+from vehicle.simulation.rows import Rows, prepare_model
 
 SHOWN = {
     "rows": "constraint rows",
@@ -110,7 +109,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     model.qpos_spring[:] = car.model.model.qpos_spring
     prepare_model(model)
     data = mujoco.MjData(model)
-    rows = ElementRows(model, car.model.static.preload)
+    rows = Rows(model, car.model.static.preload)
     motion = PlateArrays.of(signal, model.opt.timestep * np.arange(steps))
     plates = [model.body_mocapid[model.body(f"plate_{wheel}").id] for wheel in WHEELS]
     heights = data.mocap_pos[plates, 2] + motion.displacement
@@ -119,8 +118,8 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
         started = time.perf_counter()
         for index in range(steps):
             data.mocap_pos[plates, 2] = heights[index]
-            rows.plate_velocity[:, 2] = motion.velocity[index]
-            rows.plate_acceleration[:, 2] = motion.acceleration[index]
+            rows.state.plate_velocity[:, 2] = motion.velocity[index]
+            rows.state.plate_acceleration[:, 2] = motion.acceleration[index]
             mujoco.mj_step(model, data)
         return 1e6 * (time.perf_counter() - started) / steps
 
@@ -129,7 +128,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     if form == "plain":
         spent = go()
     else:
-        found = native_callback(rows) if form == "native" else "not asked for"
+        found = compiled_rows(rows) if form == "native" else "not asked for"
         native = None if isinstance(found, str) else found
         with installed(rows, native):
             if native is not None:

@@ -2,28 +2,44 @@
 
 from __future__ import annotations
 
+import dataclasses
+from typing import Any
+
 import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.laws.coulomb import RegularisedCoulomb, SetValuedCoulomb, SmoothCoulomb
+from vehicle.laws.coulomb import Coulomb
+from vehicle.laws.damper import damper_law, friction_limit, pack
 from vehicle.laws.degressive import Degressive
+from vehicle.laws.friction import Clamped
 from vehicle.laws.kelvin import Kelvin
 from vehicle.laws.law import Parallel
 from vehicle.laws.maxwell import Maxwell
 from vehicle.laws.stribeck import Stribeck
 from vehicle.laws.switch import Switch
-from vehicle.laws.viscous import Viscous
+from vehicle.parameters.vehicle import load_vehicle
 
-STRIBECK = {"sliding_limit": 65.0, "static_limit": 125.0, "stribeck_velocity": 0.03, "exponent": 3.5, "steepness": 1e3}
+STRIBECK = {
+    "friction_limit": 65.0,
+    "static_limit": 125.0,
+    "stribeck_velocity": 0.03,
+    "stribeck_exponent": 3.5,
+    "smoothing": 1e3,
+}
 LAWS = [
-    Viscous(damping=1500.0),
     Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02),
-    SmoothCoulomb(limit=75.0, steepness=1e3),
-    RegularisedCoulomb(limit=75.0, steepness=1e3),
+    Coulomb(friction_limit=75.0, smoothing=1e3),
+    Clamped(law=Coulomb(friction_limit=75.0, smoothing=1e3)),
+    Clamped(law=Stribeck(**STRIBECK)),
     Stribeck(**STRIBECK),
-    Stribeck(**{**STRIBECK, "exponent": 0.5}),
-    Parallel(laws=(Viscous(damping=2250.0), SmoothCoulomb(limit=125.0, steepness=1e3))),
+    Stribeck(**{**STRIBECK, "stribeck_exponent": 0.5}),
+    Parallel(
+        laws=(
+            Degressive(low_damping=9.0, high_damping=9.0, knee_velocity=1.0),
+            Coulomb(friction_limit=125.0, smoothing=1e3),
+        )
+    ),
 ]
 
 
@@ -47,10 +63,10 @@ def test_a_law_is_odd_and_opposes_the_motion(law):
 
 
 def test_a_law_accepts_scalars_and_broadcasts_arrays_of_parameters():
-    many = SmoothCoulomb(limit=np.array([50.0, 75.0]), steepness=1e5)
+    many = Coulomb(friction_limit=np.array([50.0, 75.0]), smoothing=1e5)
     both = many.force(np.array([[0.01], [-0.02], [0.0]]))
     assert both.shape == (3, 2)
-    assert both[1, 1] == SmoothCoulomb(limit=75.0, steepness=1e5).force(-0.02)
+    assert both[1, 1] == Coulomb(friction_limit=75.0, smoothing=1e5).force(-0.02)
 
 
 def test_degressive_damper_follows_c1():
@@ -61,18 +77,19 @@ def test_degressive_damper_follows_c1():
 
 
 def test_smooth_coulomb_follows_2_4_and_the_regularised_law_has_its_slope_at_rest():
-    smooth = SmoothCoulomb(limit=75.0, steepness=1e5)
-    hard = RegularisedCoulomb(limit=75.0, steepness=1e5)
+    smooth = Coulomb(friction_limit=75.0, smoothing=1e5)
+    hard = Clamped(law=Coulomb(friction_limit=75.0, smoothing=1e5))
+    coefficient = 2.0 / np.pi * 75.0 * 1e5
     assert smooth.force(1e-5) == pytest.approx(75.0 * 0.5, rel=1e-14)  # atan(1) = pi/4
     assert smooth.force(1e-3) / 75.0 == pytest.approx(0.99363, abs=5e-6)  # the 99.4 % of the run's summary file
-    assert hard.coefficient == smooth.slope(0.0)
-    assert hard.force(np.array([1e-6, 1.0, -1.0])) == pytest.approx([hard.coefficient * 1e-6, 75.0, -75.0], rel=1e-14)
+    assert hard.slope(0.0) == pytest.approx(coefficient, rel=1e-15) == smooth.slope(0.0)
+    assert hard.force(np.array([1e-6, 1.0, -1.0])) == pytest.approx([coefficient * 1e-6, 75.0, -75.0], rel=1e-14)
 
 
 def test_energy_per_cycle_of_the_smooth_law():
     # x = A sin(w t): the integral of Fd (2/pi) atan(eps A w cos) A cos is, by differentiation under the integral sign,
     # 4 Fd A (sqrt(1 + a^2) - 1)/a with a = eps A w; for large a it is Coulomb's 4 Fd A.
-    law = SmoothCoulomb(limit=75.0, steepness=1e3)
+    law = Coulomb(friction_limit=75.0, smoothing=1e3)
     phase = np.arange(4096) * 2.0 * np.pi / 4096  # the periodic trapezoid converges faster than any power
     for speed in (1e-4, 1e-3, 5e-2):
         amplitude = 0.01
@@ -81,21 +98,33 @@ def test_energy_per_cycle_of_the_smooth_law():
         assert work == pytest.approx(4.0 * 75.0 * amplitude * (np.sqrt(1.0 + a * a) - 1.0) / a, rel=1e-9)
 
 
-def test_set_valued_coulomb():
-    law = SetValuedCoulomb(limit=75.0)
-    lower, upper = law.bounds(np.array([-1.0, 0.0, 1.0]))
-    assert lower.tolist() == [-75.0, -75.0, 75.0]
-    assert upper.tolist() == [-75.0, 75.0, 75.0]
-    assert law.force_at_rest(np.array([30.0, 100.0, -80.0])).tolist() == [30.0, 75.0, -75.0]
-
-
 def test_stribeck_follows_3_2():
-    law = Stribeck(**{**STRIBECK, "steepness": 1e5})
+    law = Stribeck(**{**STRIBECK, "smoothing": 1e5})
     assert law.limit(0.0) == 125.0
     assert law.limit(0.03) == pytest.approx(65.0 + 60.0 * np.exp(-1.0), rel=1e-14)
     assert law.limit(np.array([-0.5, 1e6])) == pytest.approx([65.0, 65.0], rel=1e-14)
     assert law.force(0.03) == pytest.approx((65.0 + 60.0 / np.e) * 2.0 / np.pi * np.arctan(3e3), rel=1e-14)
     assert law.slope(0.0) == pytest.approx(125.0 * 2.0 / np.pi * 1e5, rel=1e-14)
+
+
+@pytest.mark.parametrize("word", ["coulomb", "stribeck"])
+def test_the_record_of_a_damper_is_its_law(word):
+    numbers: dict[str, Any] = {
+        "coulomb_friction": 65.0,
+        "stribeck_friction": 125.0,
+        "stribeck_velocity": 0.03,
+        "stribeck_exponent": 2.0,
+    }
+    valve: dict[str, Any] = {"viscous_law": "degressive", "degressive_viscous": 15000.0, "degressive_velocity": 0.02}
+    damper = dataclasses.replace(load_vehicle().damper, friction_law=word, **numbers, **valve)
+    record = pack(damper)
+    v = np.array([0.001, -0.03, 0.2])
+    falling = 60.0 * np.exp(-((v / 0.03) ** 2)) if word == "stribeck" else 0.0
+    limit = 65.0 + falling
+    assert [friction_limit(record, one) for one in v] == pytest.approx(limit + np.zeros(3), rel=1e-14)
+    smooth = limit * 2.0 / np.pi * np.arctan(damper.smoothing * v)
+    knee = damper.viscous * v + np.clip((15000.0 - damper.viscous) * v, -0.02 * 12750.0, 0.02 * 12750.0)
+    assert damper_law(damper).force(v) == pytest.approx(knee + smooth, rel=1e-13)
 
 
 def test_switch_mixes_the_fields_as_appendix_a():
@@ -114,31 +143,37 @@ def test_switch_mixes_the_fields_as_appendix_a():
 
 
 BAD = [
-    (Viscous, {"damping": -1.0}, "Viscous.damping: found -1.0 N s/m, must be at least 0.0"),
     (
-        Viscous,
-        {"damping": np.array([1.0, np.nan])},
-        "Viscous.damping: found nan N s/m, needed is a finite number (viscous damping constant D)",
+        Coulomb,
+        {"friction_limit": np.array([1.0, np.nan]), "smoothing": 1e5},
+        "Coulomb.friction_limit: found nan N, needed is a finite number (friction limit Fd in sliding)",
     ),
-    (Viscous, {"damping": "much"}, "Viscous.damping: found 'much', needed are numbers [N s/m]"),
-    (Viscous, {"damping": True}, "Viscous.damping: found True, needed are numbers [N s/m]"),
+    (
+        Coulomb,
+        {"friction_limit": "much", "smoothing": 1e5},
+        "Coulomb.friction_limit: found 'much', needed are numbers [N]",
+    ),
+    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "Coulomb.friction_limit: found True, needed are numbers [N]"),
     (
         Degressive,
         {"low_damping": 1.0, "high_damping": 1.0, "knee_velocity": -0.1},
         "Degressive.knee_velocity: found -0.1 m/s, must be at least 0.0",
     ),
     (
-        SmoothCoulomb,
-        {"limit": 75.0, "steepness": 0.0},
-        "SmoothCoulomb.steepness: found 0.0 s/m, must be greater than 0.0",
+        Coulomb,
+        {"friction_limit": 75.0, "smoothing": 0.0},
+        "Coulomb.smoothing: found 0.0 s/m, must be greater than 0.0",
     ),
-    (SmoothCoulomb, {"limit": -75.0, "steepness": 1e5}, "SmoothCoulomb.limit: found -75.0 N, must be at least 0.0"),
     (
-        RegularisedCoulomb,
-        {"limit": 75.0, "steepness": np.array([1e5, -1.0])},
-        "RegularisedCoulomb.steepness: found -1.0 s/m, must be greater than 0.0",
+        Coulomb,
+        {"friction_limit": -75.0, "smoothing": 1e5},
+        "Coulomb.friction_limit: found -75.0 N, must be at least 0.0",
     ),
-    (SetValuedCoulomb, {"limit": -1.0}, "SetValuedCoulomb.limit: found -1.0 N, must be at least 0.0"),
+    (
+        Coulomb,
+        {"friction_limit": 75.0, "smoothing": np.array([1e5, -1.0])},
+        "Coulomb.smoothing: found -1.0 s/m, must be greater than 0.0",
+    ),
     (
         Switch,
         {"limit": 50.0, "band": 0.0, "return_time": 1e-3},
@@ -152,8 +187,8 @@ BAD = [
     (
         Stribeck,
         {**STRIBECK, "static_limit": 60.0},
-        "Stribeck.static_limit: found 60.0 N, must be at least the sliding limit 65.0 N; "
-        "raise static_limit or lower sliding_limit",
+        "Stribeck.static_limit: found 60.0 N, must be at least the friction limit 65.0 N; "
+        "raise static_limit or lower friction_limit",
     ),
     (
         Stribeck,

@@ -11,30 +11,29 @@ from vehicle.errors import ConfigurationError
 from vehicle.linear.first_order import free_basis
 from vehicle.linear.matrices import car_matrices
 from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows
-from vehicle.simulation.static_trim import joint_spring_stiffness
+from vehicle.simulation.rows import Rows, joint_springs
 
 
 def element_stiffness(car):
     """J' K J of all elements and joint springs at the design position, without any geometric part."""
     model, static = car.model.model, car.model.static
     data = mujoco.MjData(model)
-    rows = ElementRows(model, static.preload)
+    rows = Rows(model, static.preload)
     with installed(rows):
         mujoco.mj_forward(model, data)
-    e = rows.elements
+    e = rows.layout
     jacobian = data.efc_J.reshape(e.row_count, model.nv)
     diagonal = np.zeros(e.row_count)
-    diagonal[e.rows] = e.stiffness
-    diagonal[e.springs] = e.spring_stiffness
+    diagonal[e.bushings.rows] = e.bushings.stiffness
+    diagonal[e.springs.rows] = e.springs.stiffness
     # Velocities of rotation by another way than that of the callback: the Jacobians of the two sites.
     turning = np.zeros((model.nv, model.nv))
-    for stiffness, sites in zip(e.rotation_stiffness[:, 0], e.rotation_sites, strict=True):
+    for stiffness, sites in zip(e.rotations.stiffness, e.rotations.sites, strict=True):
         moving, carrier = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, None, moving, sites[0])
         mujoco.mj_jacSite(model, data, None, carrier, sites[1])
         turning += stiffness * (moving - carrier).T @ (moving - carrier)
-    return jacobian.T @ (diagonal[:, None] * jacobian) + turning + np.diag(joint_spring_stiffness(model))
+    return jacobian.T @ (diagonal[:, None] * jacobian) + turning + np.diag(joint_springs(model))
 
 
 def in_free_motions(car, matrix, *, stuck=True):

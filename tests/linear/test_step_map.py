@@ -10,7 +10,7 @@ from vehicle.car import Car
 from vehicle.linear.first_order import first_order
 from vehicle.linear.step_map import step_map, step_rows
 from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows, prepare_model
+from vehicle.simulation.rows import Rows, prepare_model
 
 
 def mapped(car, stuck, step=None):
@@ -32,7 +32,7 @@ def test_the_map_is_what_the_model_steps(stuck):
     model.qpos_spring[:] = car.model.model.qpos_spring
     prepare_model(model)
     data = mujoco.MjData(model)
-    rows = ElementRows(model, car.model.static.preload)
+    rows = Rows(model, car.model.static.preload)
     mujoco.mj_integratePos(model, data.qpos, basis @ start, 1.0)
     with installed(rows):
         for _ in range(steps):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.coulomb import Coulomb
 from vehicle.linear.first_order import first_order
 from vehicle.linear.system import Slide
 from vehicle.lumped.bump_response import bump_passage, bump_response
@@ -37,7 +37,7 @@ def with_friction(limit):
     arms = {"front": -CAR.body.front_arm, "rear": CAR.body.rear_arm}
     for end, arm in arms.items():
         row = {"heave": 1.0, "pitch": arm, f"{end}_wheel": -1.0}
-        system = system.with_slide(Slide(row=row, friction=SmoothCoulomb(limit=limit, steepness=1e5)))
+        system = system.with_slide(Slide(row=row, friction=Coulomb(friction_limit=limit, smoothing=1e5)))
     return system
 
 
@@ -76,7 +76,7 @@ def test_each_end_has_its_own_friction():
 
 
 def test_a_pair_of_unknown_coordinates_and_too_few_roads_are_refused():
-    law = SmoothCoulomb(limit=1.0, steepness=1e5)
+    law = Coulomb(friction_limit=1.0, smoothing=1e5)
     with pytest.raises(ConfigurationError, match=r"^linear form: found 'roof', allowed are upper_limb"):
         half_car_rider(CAR).with_slide(Slide(row={"roof": 1.0}, friction=law))
     with pytest.raises(ConfigurationError, match=r"^road: found 1 drives for 2 inputs$"):

@@ -9,7 +9,7 @@ import pytest
 
 from tests.lumped.stick_slip import ExactStickSlip
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.coulomb import Coulomb
 from vehicle.laws.stribeck import Stribeck
 from vehicle.laws.switch import Switch
 from vehicle.lumped.drive import Sine
@@ -33,8 +33,8 @@ class Ramp:
 FINE = Tolerances(relative=1e-8, displacement=1e-12, velocity=1e-10)
 
 
-def oscillator(friction, *, mass=1.0, stiffness=100.0, steepness=1e5, **more):
-    law = SmoothCoulomb(limit=friction, steepness=steepness)
+def oscillator(friction, *, mass=1.0, stiffness=100.0, smoothing=1e5, **more):
+    law = Coulomb(friction_limit=friction, smoothing=smoothing)
     return single_mass(mass=mass, stiffness=stiffness, friction=law, **more).first_order()
 
 
@@ -78,7 +78,7 @@ def test_den_hartog_with_stops(ratio, share, kind):
     stops = [p for p in pieces if p[2] == 0 and p[0] > 3 * period and p[1] - p[0] > 0.01 * period]
     assert len(stops) >= 4  # at least two in each of the last cycles, or the case shows nothing
     expected = exact.sample(pieces, time)
-    model = oscillator(30.0 * share, steepness=1e6)
+    model = oscillator(30.0 * share, smoothing=1e6)
     if kind == "smooth":
         found = stiff_solution(model, time, force=drive).displacement("mass")
     else:
@@ -118,7 +118,7 @@ def test_mass_on_a_belt_with_kinetic_friction_alone():
     """Never as fast as the belt: an undamped oscillation about x = Fd/K, which the friction only shifts."""
     belt, friction, natural = 0.1, 2.0, 10.0
     time = np.arange(0.0, 4.0, 1e-3)
-    model = oscillator(friction, belt=True, steepness=1e6)
+    model = oscillator(friction, belt=True, smoothing=1e6)
     history = stiff_solution(model, time, road=Ramp(rate=belt), initial=[0.02, 0.5 * belt], tolerances=FINE)
     expected = 0.02 + 0.5 * belt / natural * np.sin(natural * time)
     # At a slip of 0.05 to 0.15 m/s the atan law is 2/(pi eps v) = 1.3e-5 below Fd: 3e-7 m on K, and its slope feeds
@@ -129,7 +129,9 @@ def test_mass_on_a_belt_with_kinetic_friction_alone():
 def test_mass_on_a_belt_with_static_and_kinetic_friction():
     """Relaxation oscillation: stick until K x = Fs, then a half sine about Fd/K; period and peak in closed form."""
     belt, static, kinetic, natural = 0.1, 4.0, 2.0, 10.0
-    law = Stribeck(sliding_limit=kinetic, static_limit=static, stribeck_velocity=5e-4, exponent=2.0, steepness=1e7)
+    law = Stribeck(
+        friction_limit=kinetic, static_limit=static, stribeck_velocity=5e-4, stribeck_exponent=2.0, smoothing=1e7
+    )
     model = single_mass(mass=1.0, stiffness=100.0, friction=law, belt=True).first_order()
     time = np.arange(0.0, 6.0, 2e-4)
     history = stiff_solution(model, time, road=Ramp(rate=belt), tolerances=FINE)
@@ -176,7 +178,7 @@ def test_the_locked_strut_unlocks_where_its_force_reaches_the_limit(frequency):
 
 def test_switch_and_smooth_law_agree_above_the_published_velocity():
     p = CAR.mass_on_damper
-    model = oscillator(p.friction_limit, mass=p.mass, stiffness=0.0, damping=p.damping, steepness=p.steepness)
+    model = oscillator(p.friction_limit, mass=p.mass, stiffness=0.0, damping=p.damping, smoothing=p.steepness)
     drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)
     time = np.linspace(0.0, 0.5, 5001)
     smooth = stiff_solution(model, time, force=drive)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.coulomb import Coulomb
 from vehicle.lumped.drive import Sampled
 from vehicle.lumped.marched_solution import marched_solution
 from vehicle.lumped.quarter_car import quarter_car, single_mass
@@ -137,7 +137,7 @@ def test_velocity_and_acceleration_are_derivatives_of_the_displacement():
 
 
 def test_refusals():
-    law = SmoothCoulomb(limit=1.0, steepness=1e5)
+    law = Coulomb(friction_limit=1.0, smoothing=1e5)
     single = single_mass(mass=1.0, stiffness=1.0, friction=law).first_order()
     stack = single_mass(mass=np.array([1.0, 2.0]), stiffness=1.0, friction=law).first_order()
     road = np.zeros(10)
@@ -173,7 +173,7 @@ def test_the_friction_of_every_step_is_the_law_at_its_end_however_rough_the_road
     ).first_order()
     road = np.cumsum(np.random.default_rng(3).normal(scale=2e-3, size=400))
     history = marched_solution(model, 1e-3, road)
-    law = SmoothCoulomb(limit=limits, steepness=1e6)
+    law = Coulomb(friction_limit=limits, smoothing=1e6)
     velocity, found = history.sliding_velocity()[1:], history.sliding_force[1:, :, 0]
     slides = np.abs(velocity) > 0.05
     assert 0.3 < slides.mean() < 1.0

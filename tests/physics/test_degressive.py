@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from tests.simulation.row_model import Stepper, add_damper, empty_spec
 from vehicle.car import Car
 from vehicle.laws.degressive import Degressive
-from vehicle.simulation.element_rows import ElementRows, prepare_model
-from vehicle.simulation.native import native_callback
+from vehicle.simulation.callbacks import compiled_rows
+from vehicle.simulation.rows import Rows, prepare_model
 from vehicle.simulation.run import simulate
 
 LAW = Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02)  # appendix C.2 of source 1
@@ -45,8 +45,8 @@ def test_the_force_is_the_law_at_the_present_velocity(velocity, friction):
     run = strut(1e-3, friction, mass=1e7)
     run.data.qvel[0] = velocity
     run.step(1, run.position)
-    e, data = run.rows.elements, run.data
-    rows = np.concatenate([e.dampers, e.frictions, e.valves])
+    e, data = run.rows.layout.dampers, run.data
+    rows = np.concatenate([e.rows, e.frictions, e.valves[:, 0]])
     found = -(data.actuator_force[0] + np.sum(data.efc_force[rows]))
     assert found == pytest.approx(force_of(velocity, friction), rel=1e-5)  # m v changes by 1e-7 in the step
 
@@ -85,7 +85,7 @@ def test_against_a_stiff_solver(friction):
     assert np.max(np.abs(fine[: len(reference)] - reference[: len(fine)])) < 1e-3 * 0.01
     # A linear damper is another one.
     slack = strut(1e-3, friction, stiffness=STIFFNESS)
-    slack.rows.valve_limit[:] = 1e-9
+    slack.rows.layout.dampers.laws["degressive_limit"] = 1e-9
     slack.data.qpos[0] = 0.01
     assert np.max(np.abs(slack.step(301, slack.position)[::4, 0] - reference)) > 0.1 * 0.01
 
@@ -137,7 +137,7 @@ def test_both_forms_agree(degressive_car, high_piece):
     pytest.importorskip("numba", reason="the compiled form is optional")
     model = degressive_car.model.spec.compile()
     prepare_model(model)
-    assert not isinstance(native_callback(ElementRows(model, degressive_car.model.static.preload)), str)
+    assert not isinstance(compiled_rows(Rows(model, degressive_car.model.static.preload)), str)
     piece = type(high_piece)(time=high_piece.time[:801], displacement={"fr": high_piece.displacement["fr"][:801]})
     one, other = (simulate(degressive_car.model, piece, native=form) for form in (True, False))
     for name, values in other.channels.items():

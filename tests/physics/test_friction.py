@@ -125,10 +125,12 @@ def test_stribeck_limit_follows_the_velocity(velocity):
     run = strut(mass=1e6, viscous=0.0, limit=65.0, static=125.0)
     run.data.qvel[0] = velocity
     run.step(1, run.position)
-    force = run.data.efc_force[run.rows.elements.frictions][0]
+    force = run.data.efc_force[run.rows.layout.dampers.frictions][0]
     exact = 65.0 + 60.0 * np.exp(-((velocity / 0.03) ** 3.5))
     assert -force == pytest.approx(exact, rel=1e-5)
-    law = Stribeck(sliding_limit=65.0, static_limit=125.0, stribeck_velocity=0.03, exponent=3.5, steepness=SMOOTHING)
+    law = Stribeck(
+        friction_limit=65.0, static_limit=125.0, stribeck_velocity=0.03, stribeck_exponent=3.5, smoothing=SMOOTHING
+    )
     assert exact == pytest.approx(float(law.limit(velocity)), rel=1e-12)
 
 

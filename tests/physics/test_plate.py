@@ -30,8 +30,8 @@ def transmissibility(frequency, step, *, velocity=1.0, acceleration=1.0):
 
     def drive(time):
         run.data.mocap_pos[0, 2] = 1e-3 * np.cos(omega * time)
-        run.rows.plate_velocity[0, 2] = -1e-3 * omega * np.sin(omega * time) * velocity
-        run.rows.plate_acceleration[0, 2] = -1e-3 * omega**2 * np.cos(omega * time) * acceleration
+        run.rows.state.plate_velocity[0, 2] = -1e-3 * omega * np.sin(omega * time) * velocity
+        run.rows.state.plate_acceleration[0, 2] = -1e-3 * omega**2 * np.cos(omega * time) * acceleration
 
     period = round(1.0 / (frequency * step))
     x = run.step(25 * period, run.position, drive)[-5 * period :, 2]

@@ -11,7 +11,7 @@ import pytest
 from vehicle.car import Car
 from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.names import acceleration_channels
-from vehicle.simulation.elements import read_elements
+from vehicle.simulation.layout import element_names, read_layout
 
 
 def at_rest(seconds):
@@ -37,17 +37,17 @@ def test_ground_forces_and_weight_are_in_equilibrium(car):
     model, static = car.model.model, car.model.static
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    elements = read_elements(model)
+    layout = read_layout(model)
     force, moment = np.zeros(3), np.zeros(3)
-    for name, rows in zip(elements.names, elements.rows, strict=True):
+    for name, rows in zip(element_names(model), layout.bushings.rows, strict=True):
         if name.startswith(("bushing/tyre", "bushing/rear_support")):
             load = static.preload[rows]
             force += load
             moment += np.cross(data.site(f"{name}/moving").xpos, load)
             # Its law is a torque about the same point too.
-            torques = static.preload[elements.row_count :].reshape(-1, 3)
+            torques = static.preload[layout.row_count :].reshape(-1, 3)
             site = model.site(f"{name}/moving").id
-            moment += torques[list(elements.rotation_sites[:, 0]).index(site)]
+            moment += torques[list(layout.rotations.sites[:, 0]).index(site)]
     for body in range(1, model.nbody):
         weight = model.body_mass[body] * model.opt.gravity
         force += weight

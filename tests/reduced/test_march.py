@@ -30,7 +30,9 @@ def test_velocity_answers_its_own_force(c, limit, d, limit2, g):
 
 
 def test_limit_is_the_stribeck_law():
-    law = Stribeck(sliding_limit=65.0, static_limit=125.0, stribeck_velocity=0.03, exponent=3.5, steepness=1e9)
+    law = Stribeck(
+        friction_limit=65.0, static_limit=125.0, stribeck_velocity=0.03, stribeck_exponent=3.5, smoothing=1e9
+    )
     for velocity in (1e-6, 0.01, 0.03, 0.08, 1.0):
         expected = float(law.force(np.array(velocity)))
         # The steep arctangent is at its limit but for (2/pi) / (steepness velocity) < 1e-3.

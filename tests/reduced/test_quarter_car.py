@@ -12,7 +12,8 @@ from tests.linear.plain_matrices import plain_matrices
 from vehicle.analysis.slip import slip_share
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
-from vehicle.laws.coulomb import RegularisedCoulomb
+from vehicle.laws.friction import Clamped
+from vehicle.laws.stribeck import Stribeck
 from vehicle.lumped.drive import Sampled
 from vehicle.lumped.quarter_car import quarter_car
 from vehicle.lumped.stiff_solution import stiff_solution
@@ -144,8 +145,6 @@ def test_both_plates_are_two_cars_at_once(solved):
 
 def test_stribeck_against_the_stiff_solver():
     """A smooth Stribeck law, mild enough that both see the same steepness at rest."""
-    from vehicle.laws.stribeck import Stribeck
-
     changes = {
         "friction_law": "stribeck",
         "coulomb_friction": 40.0,
@@ -154,24 +153,14 @@ def test_stribeck_against_the_stiff_solver():
         "stribeck_exponent": 3.5,
     }
 
-    class Clamped(Stribeck):
-        """min(limit, c |v|) with the limit of the law: what the friction row answers."""
-
-        def force(self, velocity):
-            limit = self.limit(velocity)
-            share = RegularisedCoulomb(limit=1.0, steepness=self.steepness).force(velocity)
-            return limit * share
-
-        def slope(self, velocity):
-            difference = 1e-9 * (1.0 + np.abs(velocity))
-            return (self.force(velocity + difference) - self.force(velocity - difference)) / (2.0 * difference)
-
     law = Clamped(
-        sliding_limit=40.0,
-        static_limit=75.0,
-        stribeck_velocity=0.03,
-        exponent=3.5,
-        steepness=CAR.friction.steepness,
+        law=Stribeck(
+            friction_limit=40.0,
+            static_limit=75.0,
+            stribeck_velocity=0.03,
+            stribeck_exponent=3.5,
+            smoothing=CAR.friction.steepness,
+        )
     )
     network = quarter_car(CAR, damper="friction")
     network = dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),))

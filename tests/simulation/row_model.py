@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows, prepare_model
+from vehicle.simulation.rows import Rows, prepare_model
 
 QUARTER_TURN = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])
 """Quaternion of 90 degrees about z."""
@@ -108,7 +108,7 @@ class Stepper:
         self.model = spec.compile()
         prepare_model(self.model)
         self.data = mujoco.MjData(self.model)
-        self.rows = ElementRows(self.model, preload)
+        self.rows = Rows(self.model, preload)
         self.h = float(self.model.opt.timestep)
 
     def step(

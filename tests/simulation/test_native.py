@@ -13,10 +13,9 @@ import pytest
 from vehicle.car import Car
 from vehicle.errors import MissingPartError, SimulationError
 from vehicle.excitation.signal import Signal
-from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows, prepare_model
-from vehicle.simulation.native import SLOWER, native_callback
+from vehicle.simulation.callbacks import SLOWER, compiled_rows, installed
 from vehicle.simulation.recording import Recording
+from vehicle.simulation.rows import Rows, prepare_model
 from vehicle.simulation.run import simulate
 
 pytest.importorskip("numba", reason="the compiled form is optional")
@@ -48,10 +47,10 @@ def python(car: Car, second: Signal) -> Recording:
     return simulate(car.model, second, native=False)
 
 
-def prepared(car: Car) -> ElementRows:
+def prepared(car: Car) -> Rows:
     model = car.model.spec.compile()
     prepare_model(model)
-    return ElementRows(model, car.model.static.preload)
+    return Rows(model, car.model.static.preload)
 
 
 def callbacks_in_place() -> list[object]:
@@ -116,44 +115,42 @@ def test_without_numba_the_python_form_runs_with_a_notice(
 
 
 def test_a_structure_that_lies_elsewhere_is_noticed(car: Car, monkeypatch: pytest.MonkeyPatch) -> None:
-    from vehicle.simulation import native_fields
+    from vehicle.simulation import structures
 
-    right = native_fields.layout("mjData")
+    right = structures.layout("mjData")
     fields = [(name, kind) for name, kind in right._fields_ if name != "qM"]  # type: ignore[misc]
-    wrong = type("mjData", (ctypes.Structure,), {"_fields_": [("shift", native_fields.PLAIN_TYPES["mjtNum"]), *fields]})
-    monkeypatch.setattr(native_fields, "layout", lambda name, last="": wrong if name == "mjData" else right)
-    assert (
-        native_callback(prepared(car)) == f"compiled callbacks are not available (LookupError: mjData.time); {SLOWER}"
-    )
+    wrong = type("mjData", (ctypes.Structure,), {"_fields_": [("shift", structures.PLAIN_TYPES["mjtNum"]), *fields]})
+    monkeypatch.setattr(structures, "layout", lambda name, last="": wrong if name == "mjData" else right)
+    assert compiled_rows(prepared(car)) == f"compiled callbacks are not available (LookupError: mjData.time); {SLOWER}"
 
 
-@pytest.mark.parametrize("constant", ["stiffness", "branch_gain", "node_shapes", "viscous", "sliding_limit"])
-def test_another_law_is_found_out_at_the_start(car: Car, monkeypatch: pytest.MonkeyPatch, constant: str) -> None:
-    from vehicle.simulation import native_arrays
-    from vehicle.simulation import native_callback as module
+@pytest.mark.parametrize("constant", ["preload", "decay", "gain", "average", "impedance"])
+def test_other_numbers_are_found_out_at_the_start(car: Car, monkeypatch: pytest.MonkeyPatch, constant: str) -> None:
+    from vehicle.simulation.compiled import CompiledRows
 
-    rows = prepared(Car.load(overrides=STRIBECK) if constant == "sliding_limit" else car)
-    right = native_arrays.constants_of
+    rows, right = prepared(car), CompiledRows.attach
 
-    def wrong(rows: ElementRows, empty: float) -> object:
-        constants = right(rows, empty)
-        return constants._replace(**{constant: getattr(constants, constant) * (1.0 + 1e-9)})
+    def wrong(self: CompiledRows, data: mujoco.MjData) -> None:
+        own = rows.weights
+        rows.weights = own._replace(**{constant: getattr(own, constant) * (1.0 + 1e-9)})
+        right(self, data)
+        rows.weights = own
 
-    monkeypatch.setattr(module, "constants_of", wrong)
-    found = native_callback(rows)
+    monkeypatch.setattr(CompiledRows, "attach", wrong)
+    found = compiled_rows(rows)
     assert isinstance(found, str)
     assert found.startswith("compiled callbacks gave another ") and found.endswith(f"than the Python form; {SLOWER}")
 
 
 def test_stribeck_friction_agrees() -> None:
     rows = prepared(Car.load(overrides=STRIBECK))
-    assert rows.stribeck
-    assert not isinstance(native_callback(rows), str)
+    assert set(rows.layout.dampers.laws["friction_law"]) == {1.0}
+    assert not isinstance(compiled_rows(rows), str)
 
 
 def test_the_callbacks_leave_other_models_alone(car: Car, python: Recording) -> None:
     rows = prepared(car)
-    callback = native_callback(rows)
+    callback = compiled_rows(rows)
     assert not isinstance(callback, str)
     other = car.model.spec.compile()
     plain = mujoco.MjModel.from_xml_string(
@@ -213,7 +210,7 @@ def test_a_lost_state_stops_both_forms(car: Car, second: Signal) -> None:
 def test_other_rows_than_those_compiled_for_lose_the_state(car: Car) -> None:
     # The Python form raises there; compiled code cannot, so it makes the state one that the guard of a run refuses.
     rows = prepared(car)
-    callback = native_callback(rows)
+    callback = compiled_rows(rows)
     assert not isinstance(callback, str)
     data = mujoco.MjData(rows.model)
     callback.attach(data)

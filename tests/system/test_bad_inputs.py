@@ -124,17 +124,17 @@ def test_item_35_output_that_cannot_be_written(shaker, short_signal, tmp_path):
 
 
 def test_item_36_a_lost_state_gives_no_numbers(shaker, short_signal, tmp_path, monkeypatch):
-    from vehicle.simulation.element_rows import ElementRows
+    from vehicle.simulation.rows import Rows
 
-    laws = ElementRows.__call__
+    laws = Rows.__call__
 
     def break_down(self, model, data):
         laws(self, model, data)
         if data.time > 1.5:
             data.qfrc_applied[0] = np.nan
 
-    monkeypatch.setattr(ElementRows, "__call__", break_down)
-    monkeypatch.setattr("vehicle.simulation.run.native_callback", lambda rows: "the test breaks the Python form")
+    monkeypatch.setattr(Rows, "__call__", break_down)
+    monkeypatch.setattr("vehicle.simulation.run.compiled_rows", lambda rows: "the test breaks the Python form")
     outcome = shaker("--input", "short.csv")
     assert outcome.code == 4
     assert "no longer finite at t = 1.50" in outcome.err and "joint" in outcome.err

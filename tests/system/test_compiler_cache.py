@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from vehicle import compiler_cache
+from vehicle import compiler
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,44 +28,44 @@ print(sum(march.stats.cache_hits.values()), sum(march.stats.cache_misses.values(
 @pytest.fixture
 def places(monkeypatch, tmp_path):
     """No place is chosen yet; the temporary folder is that of the test."""
-    monkeypatch.delenv(compiler_cache.VARIABLE, raising=False)
+    monkeypatch.delenv(compiler.VARIABLE, raising=False)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.delitem(sys.modules, "numba", raising=False)
     yield tmp_path
-    os.environ.pop(compiler_cache.VARIABLE, None)
+    os.environ.pop(compiler.VARIABLE, None)
 
 
 def chosen():
-    compiler_cache.prepare_compiler_cache.__wrapped__()
-    return os.environ.get(compiler_cache.VARIABLE)
+    compiler.prepare_compiler_cache.__wrapped__()
+    return os.environ.get(compiler.VARIABLE)
 
 
 def test_the_first_place_that_can_be_written_is_taken(places, monkeypatch):
     assert chosen() is None, "numba keeps it beside the sources"
     (places / "file").write_text("")
-    monkeypatch.setattr(compiler_cache, "PACKAGE", places / "file")  # as a read-only installation: nothing can be made
+    monkeypatch.setattr(compiler, "PACKAGE", places / "file")  # as a read-only installation: nothing can be made
     home = places / "home"
     home.mkdir()
     monkeypatch.setenv("HOME", str(home))
     assert chosen() == str(home / ".cache" / "vehicle")
-    monkeypatch.delenv(compiler_cache.VARIABLE)
+    monkeypatch.delenv(compiler.VARIABLE)
     monkeypatch.setenv("HOME", str(places / "nowhere"))
     shared = places / f"vehicle-{os.geteuid()}"
     assert chosen() == str(shared)
     assert shared.stat().st_mode & 0o777 == 0o700
-    monkeypatch.delenv(compiler_cache.VARIABLE)
+    monkeypatch.delenv(compiler.VARIABLE)
     shared.chmod(0o777)  # others could have put their code there
     other = chosen()
     assert other is not None and Path(other) != shared and Path(other).stat().st_mode & 0o777 == 0o700
     # A choice of the user that cannot be written is no error.
-    monkeypatch.setenv(compiler_cache.VARIABLE, str(places / "file" / "cache"))
+    monkeypatch.setenv(compiler.VARIABLE, str(places / "file" / "cache"))
     assert chosen() != str(places / "file" / "cache")
 
 
 def test_the_next_process_finds_it(tmp_path):
     """The reduced engine was compiled anew by every process: four seconds before a run of 10 ms."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), compiler_cache.VARIABLE: str(tmp_path / "cache")}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), compiler.VARIABLE: str(tmp_path / "cache")}
     said = []
     for _ in range(2):
         done = subprocess.run(

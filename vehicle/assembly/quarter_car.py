@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from vehicle.assembly.spec import LEAST_FRICTION
 from vehicle.errors import ConfigurationError
+from vehicle.laws.damper import RECORD, actuator_parameters
 from vehicle.laws.kelvin import Kelvin
 from vehicle.laws.maxwell import Maxwell
 from vehicle.laws.series import in_series
@@ -160,9 +161,8 @@ class _Corner:
         actuator = self.spec.add_actuator(name=name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype, actuator.biastype = mujoco.mjtGain.mjGAIN_USER, mujoco.mjtBias.mjBIAS_USER
         # Static limit equal to the sliding one: no Stribeck curve; its velocity and exponent are then not used.
-        parameters = np.zeros(10)
-        parameters[:6] = car.damper.damping, car.friction.steepness, limit, limit, 1.0, 1.0
-        actuator.biasprm = parameters
+        laws = (car.damper.damping, car.friction.steepness, limit, limit, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+        actuator.biasprm = actuator_parameters(np.array(laws, dtype=RECORD))
 
     def _site(self, name: str, body: str, place: str) -> None:
         owner = self.spec.body(body)

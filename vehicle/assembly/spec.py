@@ -13,6 +13,7 @@ from vehicle.assembly.connections import element_law
 from vehicle.flexbody.attached_mass import with_attached_masses
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, attached_nodes
+from vehicle.laws.damper import actuator_parameters, pack
 from vehicle.parameters.composition import (
     PlacedConnection,
     PlacedDamper,
@@ -263,29 +264,16 @@ class _Builder:
         self.spec.add_equality(
             name=placed.name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name
         )
-        stribeck = damper.friction_law == "stribeck"
-        degressive = damper.viscous_law == "degressive" and damper.degressive_viscous > damper.viscous
-        valve = damper.degressive_viscous - damper.viscous if degressive else 0.0
-        if degressive:
+        laws = pack(damper)
+        if laws["degressive_limit"] > 0.0:
             # What the valve adds below its velocity is a second friction row, which a joint cannot have: a tendon.
             tendon = self.spec.add_tendon(name=f"valve/{placed.name}")
             tendon.wrap_joint(name, 1.0)
-            tendon.frictionloss = valve * damper.degressive_velocity
-        parameters = np.zeros(10)
-        parameters[:8] = (
-            damper.viscous,
-            damper.smoothing,
-            damper.coulomb_friction,
-            damper.stribeck_friction if stribeck else damper.coulomb_friction,
-            damper.stribeck_velocity,
-            damper.stribeck_exponent,
-            valve,
-            valve * damper.degressive_velocity,
-        )
+            tendon.frictionloss = laws["degressive_limit"]
         actuator = self.spec.add_actuator(name=placed.name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER
         actuator.biastype = mujoco.mjtBias.mjBIAS_USER
-        actuator.biasprm = parameters
+        actuator.biasprm = actuator_parameters(laws)
 
     def add_place(self, output: PlacedOutput) -> None:
         """Site and acceleration sensor of a recorded place."""

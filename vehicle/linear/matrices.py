@@ -15,10 +15,9 @@ import numpy.typing as npt
 
 from vehicle.linear.system import LinearSystem
 from vehicle.names import AXES, WHEELS, acceleration_places
-from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows
-from vehicle.simulation.elements import numeric
-from vehicle.simulation.native import native_callback
+from vehicle.simulation.callbacks import compiled_rows, installed
+from vehicle.simulation.layout import numeric
+from vehicle.simulation.rows import Rows, joint_dampers
 from vehicle.simulation.static_trim import StaticTrim
 
 Vector = npt.NDArray[np.float64]
@@ -64,8 +63,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         The matrices.
     """
     data = mujoco.MjData(model)
-    rows = ElementRows(model, static.preload)
-    e = rows.elements
+    rows = Rows(model, static.preload)
+    e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
+    viscous = rows.layout.dampers.laws["viscous_damping"]
     stiffness = _tangent_stiffness(rows, model)
     with installed(rows):
         mujoco.mj_forward(model, data)
@@ -74,12 +74,12 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
     # In the design position all carriers but none are parallel to the vehicle frame, so rows are element axes.
     row_damping = np.zeros(e.row_count)
-    row_damping[e.rows] = e.damping
+    row_damping[bushings.rows] = bushings.damping
     damping = jacobian.T @ (row_damping[:, None] * jacobian)
-    damping[np.diag_indices(model.nv)] += np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
-    damping[e.damper_dofs, e.damper_dofs] += rows.viscous
-    present = e.branch_stiffness > 0.0
-    vertical = jacobian[e.rows[e.tyres][:, 2]]
+    damping[np.diag_indices(model.nv)] += joint_dampers(model)
+    damping[dofs, dofs] += viscous
+    present = bushings.branch_stiffness > 0.0
+    vertical = jacobian[bushings.rows[e.tyres][:, 2]]
     still = np.zeros(len(e.tyres))
     count = int(np.count_nonzero(present))
     return CarMatrices(
@@ -89,31 +89,31 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
             mass=mass,
             damping=damping,
             stiffness=stiffness,
-            input_damping=vertical.T * e.damping[e.tyres, 2],
-            input_stiffness=vertical.T * e.stiffness[e.tyres, 2],
-            branch_rows=jacobian[e.rows[present]],
+            input_damping=vertical.T * bushings.damping[e.tyres, 2],
+            input_stiffness=vertical.T * bushings.stiffness[e.tyres, 2],
+            branch_rows=jacobian[bushings.rows[present]],
             branch_inputs=np.zeros((count, len(e.tyres))),
-            branch_stiffness=e.branch_stiffness[present],
-            branch_time=e.branch_time[present],
-            slide_rows=np.eye(model.nv)[e.damper_dofs],
-            slide_inputs=np.zeros((len(e.damper_dofs), len(e.tyres))),
-            constraints=jacobian[e.hard_rows.ravel()],
+            branch_stiffness=bushings.branch_stiffness[present],
+            branch_time=bushings.branch_time[present],
+            slide_rows=np.eye(model.nv)[dofs],
+            slide_inputs=np.zeros((len(dofs), len(e.tyres))),
+            constraints=jacobian[e.joints.ravel()],
             load=np.zeros(model.nv),
             outputs={
-                name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modal_columns).items()
+                name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modes.velocities).items()
             },
         ),
-        dampers=e.damper_dofs,
-        viscous=rows.viscous,
-        tyre_stiffness=e.stiffness[e.tyres, 2],
-        tyre_damping=e.damping[e.tyres, 2],
+        dampers=dofs,
+        viscous=viscous,
+        tyre_stiffness=bushings.stiffness[e.tyres, 2],
+        tyre_damping=bushings.damping[e.tyres, 2],
         body_rows=_body_rows(model, data),
         body_masses=_body_masses(model, data),
-        modal=e.modal_columns,
+        modal=e.modes.velocities,
     )
 
 
-def _tangent_stiffness(rows: ElementRows, model: mujoco.MjModel) -> Vector:
+def _tangent_stiffness(rows: Rows, model: mujoco.MjModel) -> Vector:
     """K = -dF/du of all static forces, by central differences."""
     data = mujoco.MjData(model)
     rewrite = _rewriter(rows, data)
@@ -135,13 +135,13 @@ def _tangent_stiffness(rows: ElementRows, model: mujoco.MjModel) -> Vector:
     return stiffness
 
 
-def _rewriter(rows: ElementRows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
+def _rewriter(rows: Rows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
     """What writes the element forces into this state: the compiled form where it can be had."""
-    native = native_callback(rows)
-    if isinstance(native, str):
+    compiled = compiled_rows(rows)
+    if isinstance(compiled, str):
         return rows
-    native.attach(data)
-    return native.rewrite
+    compiled.attach(data)
+    return compiled
 
 
 def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:

@@ -1,6 +1,6 @@
 """The linear part of one step of the time integration as a matrix: what a step makes of every pole of the car.
 
-The rows answer with f = f0 - D J a (`vehicle.simulation.element_rows`), and MuJoCo's Euler steps with it. In the
+The rows answer with f = f0 - D J a (`vehicle.simulation.kernel`), and MuJoCo's Euler steps with it. In the
 motions u = N y that the ideal joints allow, with v the velocity at the middle of the past step, F the branch forces,
 
     (M + J' D J) a = -(K y + C v + j' f2) + load,   v+ = v + h a,   y+ = y + h v+,
@@ -23,7 +23,7 @@ from vehicle.linear.first_order import FirstOrder
 from vehicle.linear.matrices import CarMatrices
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.element_rows import ElementRows, damping_factors, joint_weights
+from vehicle.simulation.rows import Rows, damping_factors, joint_dampers, joint_weights
 
 Vector = npt.NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class StepMap:
 
     Attributes:
         matrix: (2 m + b, 2 m + b).
-        load: columns of the nonlinear forces of the two dampers; (2 m + b, 2).
+        load: columns of the nonlinear forces of the w dampers; (2 m + b, w).
     """
 
     matrix: Vector
@@ -65,27 +65,26 @@ def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows
     """Weights of the rows of a car for a step [s]; `matrices` are those of the same car."""
     model = copy.copy(car.model)
     model.opt.timestep = timestep
-    rows = ElementRows(model, car.static.preload)
+    rows = Rows(model, car.static.preload)
     data = mujoco.MjData(model)
     with installed(rows):
         mujoco.mj_forward(model, data)
-    e = rows.elements
+    e, own = rows.layout, rows.weights
     jacobian = data.efc_J.reshape(e.row_count, model.nv)
     weights = np.zeros(e.row_count)
-    weights[e.rows] = rows.impedance
-    weights[e.springs] = rows.spring_impedance
-    joints = np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
-    present = e.branch_stiffness > 0.0
+    weights[e.bushings.rows] = own.impedance
+    weights[e.springs.rows] = own.spring_impedance
+    present = e.bushings.branch_stiffness > 0.0
     mass = matrices.system.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model))
-    mass[matrices.dampers, matrices.dampers] += rows.damper_impedance
+    mass[matrices.dampers, matrices.dampers] += own.damper_impedance
     return StepRows(
         timestep=timestep,
         mass=mass,
-        damping=matrices.system.damping + np.diag((damping_factors(model) - 1.0) * joints),
-        decay=rows.decay[present],
-        gain=rows.branch_gain[present],
-        slope=rows.branch_slope[present],
-        average=rows.branch_average[present],
+        damping=matrices.system.damping + np.diag((damping_factors(model) - 1.0) * joint_dampers(model)),
+        decay=own.decay[present],
+        gain=own.gain[present],
+        slope=own.slope[present],
+        average=own.average[present],
     )
 
 
@@ -114,7 +113,8 @@ def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
     acceleration = np.linalg.solve(basis.T @ rows.mass @ basis, forces)
     size, count = basis.shape[1], len(branch)
     v, f = slice(size, 2 * size), slice(2 * size, 2 * size + count)
-    whole = np.zeros((2 * size + count, 2 * size + count + 2))
+    states = 2 * size + count
+    whole = np.zeros((states, states + len(system.slide_rows)))
     whole[v] = h * acceleration
     whole[v, v] += np.eye(size)
     whole[:size] = h * whole[v]
@@ -122,4 +122,4 @@ def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
     whole[f] = rows.slope[:, None] * (branch @ acceleration)
     whole[f, v] += rows.gain[:, None] * branch
     whole[f, f] += np.diag(e)
-    return StepMap(matrix=whole[:, :-2], load=whole[:, -2:])
+    return StepMap(matrix=whole[:, :states], load=whole[:, states:])

@@ -12,10 +12,9 @@ from vehicle.names import AXES
 from vehicle.parameters.paths import value_of
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.element_rows import ElementRows
-from vehicle.simulation.elements import numeric
+from vehicle.simulation.layout import numeric
+from vehicle.simulation.rows import Rows, joint_springs
 from vehicle.simulation.standing import element_parameter
-from vehicle.simulation.static_trim import joint_spring_stiffness
 
 Complex = npt.NDArray[np.complex128]
 
@@ -41,28 +40,30 @@ def holding_parameter(car: CarModel, matrices: CarMatrices, pole: complex, shape
     Returns:
         As "bushings.suspension_mount.stiffness.z (3e+07)".
     """
-    rows = ElementRows(car.model, car.static.preload)
+    rows = Rows(car.model, car.static.preload)
     data = mujoco.MjData(car.model)
     with installed(rows):
         mujoco.mj_forward(car.model, data)
-    e = rows.elements
+    e, b, dampers = rows.layout, rows.layout.bushings, rows.layout.dampers
     jacobian = data.efc_J.reshape(e.row_count, car.model.nv)
     square = np.abs(jacobian @ shape) ** 2
     speed = abs(pole)
     work: dict[str, float] = {}
-    for name, own, k, b, k2 in zip(e.names, e.rows, e.stiffness, e.damping, e.branch_stiffness, strict=True):
-        for axis, r, stiffness, drag in zip(AXES, own, k + k2, speed * b, strict=True):
+    for name, own, k, c, k2 in zip(rows.names, b.rows, b.stiffness, b.damping, b.branch_stiffness, strict=True):
+        for axis, r, stiffness, drag in zip(AXES, own, k + k2, speed * c, strict=True):
             kind = "stiffness" if stiffness >= drag else "damping"
             work[element_parameter(name, kind, axis)] = float(max(stiffness, drag) * square[r])
     turned = rows.rotation_jacobian(data) @ shape
-    resisting = [name for name in e.names if numeric(car.model, f"law/{name}")[12] > 0.0]  # type: ignore[index]
-    for name, stiffness, turn in zip(resisting, e.rotation_stiffness[:, 0], turned, strict=True):
+    resisting = [name for name in rows.names if numeric(car.model, f"law/{name}")[12] > 0.0]  # type: ignore[index]
+    for name, stiffness, turn in zip(resisting, e.rotations.stiffness, turned, strict=True):
         work[element_parameter(name, "rotational_stiffness", "")] = float(stiffness * np.sum(np.abs(turn) ** 2))
-    work["main_spring.stiffness"] = float(np.max(e.spring_stiffness * square[e.springs], initial=0.0))
-    work["damper.viscous"] = float(np.max(speed * rows.viscous * np.abs(shape[e.damper_dofs]) ** 2, initial=0.0))
-    inside = joint_spring_stiffness(car.model) * np.abs(shape) ** 2
-    work["body.frequency_scale"] = float(np.sum(inside[e.modal_columns]))
-    inside[e.modal_columns] = 0.0
+    work["main_spring.stiffness"] = float(np.max(e.springs.stiffness * square[e.springs.rows], initial=0.0))
+    work["damper.viscous"] = float(
+        np.max(speed * dampers.laws["viscous_damping"] * np.abs(shape[dampers.dofs]) ** 2, initial=0.0)
+    )
+    inside = joint_springs(car.model) * np.abs(shape) ** 2
+    work["body.frequency_scale"] = float(np.sum(inside[e.modes.velocities]))
+    inside[e.modes.velocities] = 0.0
     work["stabilizer.torsional_stiffness"] = float(np.sum(inside))
     path = max(work, key=lambda name: work[name])
     try:

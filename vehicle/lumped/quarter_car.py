@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from vehicle.errors import ConfigurationError
-from vehicle.laws.coulomb import SmoothCoulomb
+from vehicle.laws.coulomb import Coulomb
 from vehicle.laws.degressive import Degressive
 from vehicle.laws.kelvin import Kelvin
 from vehicle.laws.law import ForceLaw, Numbers, check
@@ -112,7 +112,7 @@ def quarter_car(
         sliding = {**axis, "mount": 1.0}
         if not degressive:
             links.append(Link(row=sliding, law=Kelvin(stiffness=0.0, damping=value("damper.damping"))))
-        friction = SmoothCoulomb(limit=value("friction.limit"), steepness=value("friction.steepness"))
+        friction = Coulomb(friction_limit=value("friction.limit"), smoothing=value("friction.steepness"))
         bent = Degressive(
             low_damping=value("degressive.low_damping"),
             high_damping=value("damper.damping"),

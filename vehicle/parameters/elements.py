@@ -15,6 +15,9 @@ MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on 
 RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "a seal rubs with 50 to 500 N, and 1e5 N lock a damper for good"}
 TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
+FRICTION_LAWS = ("coulomb", "stribeck")
+"""Words of the friction laws; each is a file of `vehicle.laws`."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bushing:
@@ -99,7 +102,7 @@ class Damper:
         "N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0, **STRONGEST
     )
     degressive_velocity: float = quantity("m/s", "Vdeg, where the degressive law turns flatter", above=0.0, **MOVING)
-    friction_law: str = quantity("-", "friction law", choices=("coulomb", "stribeck"))
+    friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(
         "s/m",
@@ -118,7 +121,7 @@ class Damper:
 
     def __post_init__(self) -> None:
         validate(self)
-        if self.friction_law == "stribeck" and self.stribeck_friction < self.coulomb_friction:
+        if self.static_friction < self.coulomb_friction:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
                 f"coulomb_friction ({self.coulomb_friction!r} N)"
@@ -128,3 +131,8 @@ class Damper:
                 f"Damper.degressive_viscous: found {self.degressive_viscous!r} N s/m, must be at least "
                 f"viscous ({self.viscous!r} N s/m)"
             )
+
+    @property
+    def static_friction(self) -> float:
+        """Friction limit at rest [N]: Fs, but for the Coulomb law, which has one limit."""
+        return self.coulomb_friction if self.friction_law == "coulomb" else self.stribeck_friction

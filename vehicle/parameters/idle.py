@@ -28,7 +28,7 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
     }
     for damper in vehicle.composition.dampers:
         law, path = damper.law, damper.path
-        off[f"{path}.stribeck_"] = (law.friction_law != "stribeck", f"{path}.friction_law = stribeck")
+        off[f"{path}.stribeck_"] = (law.friction_law == "coulomb", f"{path}.friction_law = stribeck")
         off[f"{path}.degressive_"] = (law.viscous_law != "degressive", f"{path}.viscous_law = degressive")
     for one in vehicle.composition.connections:
         if isinstance(one.law, Hydromount):

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.compiler_cache import prepare_compiler_cache
+from vehicle.compiler import prepare_compiler_cache
 from vehicle.errors import MissingPartError
 
 MISSING = "the reduced engine needs numba, which is missing (pip install numba)"

@@ -13,7 +13,7 @@ from vehicle.assembly.spec import assemble
 from vehicle.errors import SimulationError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.vehicle import Vehicle
-from vehicle.simulation.element_rows import ElementRows
+from vehicle.simulation.rows import Rows
 from vehicle.simulation.standing import require_body_modes, require_standing
 from vehicle.simulation.static_trim import StaticTrim, trim
 
@@ -61,9 +61,9 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
         model = assembly.spec.compile()
     except ValueError as error:
         raise SimulationError(f"MuJoCo refuses the generated car: {' '.join(str(error).split())}") from None
-    rows = ElementRows(model)
+    rows = Rows(model)
     static = trim(rows)
-    require_standing(vehicle, rows.elements, static)
+    require_standing(vehicle, rows, static)
     return CarModel(
         vehicle=vehicle,
         superelement=assembly.superelement,

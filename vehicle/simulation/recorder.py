@@ -10,10 +10,11 @@ from vehicle.excitation.signal import Signal
 from vehicle.names import AXES, WHEELS, acceleration_channels, acceleration_places, channel_units
 from vehicle.simulation.acceleration import AHEAD, acceleration
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.element_rows import ElementRows
-from vehicle.simulation.elements import numeric
+from vehicle.simulation.layout import numeric
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recording import Energies, Recording, Statistics
+from vehicle.simulation.rows import Rows, joint_dampers
+from vehicle.simulation.sampling import Order, Samples, Sources, keep_sample
 
 Vector = npt.NDArray[np.float64]
 
@@ -27,7 +28,7 @@ class Recorder:
     Args:
         car: the car that runs.
         model, data: its prepared model and state.
-        rows: its element laws.
+        rows: its rows.
         samples: number of recorded samples.
         every: steps between two recorded samples.
         pose_every: samples between two stored poses.
@@ -38,7 +39,7 @@ class Recorder:
         car: CarModel,
         model: mujoco.MjModel,
         data: mujoco.MjData,
-        rows: ElementRows,
+        rows: Rows,
         *,
         samples: int,
         every: int,
@@ -47,29 +48,52 @@ class Recorder:
         self.car, self.model, self.data, self.rows = car, model, data, rows
         self.step = model.opt.timestep
         self.samples, self.every, self.pose_every = samples, every, pose_every
-        e = rows.elements
-        self.dampers = e.damper_dofs
-        self.actuators = [model.actuator(f"damper_{wheel}").id for wheel in WHEELS]
-        self.modes = e.modal_columns
+        e, modes = rows.layout, rows.layout.modes
         self.shapes = {}
         for place in acceleration_places():
             shape = numeric(model, f"shape/place/{place}")
             if shape is not None:
                 self.shapes[place] = shape.reshape(3, -1)
-        self.sites = [model.site(f"place/{place}").id for place in acceleration_places()]
-        count = e.row_count
-        self.buffers = {
-            "places": np.zeros((CHUNK, 3 * len(self.sites))),
-            "turn": np.zeros((CHUNK, 9)),
-            "modal_position": np.zeros((CHUNK, self.modes.stop - self.modes.start)),
-            "modal_velocity": np.zeros((CHUNK, self.modes.stop - self.modes.start)),
-            "damper_velocity": np.zeros((CHUNK, len(self.dampers))),
-            "actuator": np.zeros((CHUNK, len(self.actuators))),
-            "solved": np.zeros((CHUNK, count)),
-            "explicit": np.zeros((CHUNK, count)),
-            "rate": np.zeros((CHUNK, *e.rows.shape)),
-            "branch": np.zeros((CHUNK, *e.rows.shape)),
-        }
+        self.sites = np.array([model.site(f"place/{place}").id for place in acceleration_places()], dtype=np.int64)
+        self.buffers = Samples(
+            places=np.zeros((CHUNK, 3 * len(self.sites))),
+            turn=np.zeros((CHUNK, 9)),
+            modal_position=np.zeros((CHUNK, modes.size)),
+            modal_velocity=np.zeros((CHUNK, modes.size)),
+            damper_velocity=np.zeros((CHUNK, len(e.dampers.dofs))),
+            actuator=np.zeros((CHUNK, model.nu)),
+            solved=np.zeros((CHUNK, e.row_count)),
+            explicit=np.zeros((CHUNK, e.row_count)),
+            rate=np.zeros((CHUNK, *e.bushings.rows.shape)),
+            branch=np.zeros((CHUNK, *e.bushings.rows.shape)),
+            poses=np.zeros((CHUNK, model.nq)),
+        )
+        self.sources = Sources(
+            position=data.qpos,
+            velocity=data.qvel,
+            acceleration=data.qacc,
+            orientation=data.xmat,
+            site_positions=data.site_xpos,
+            actuator=data.actuator_force,
+            explicit=rows.state.explicit,
+            rate=rows.state.rate,
+            branch=rows.state.branch_past,
+            sites=self.sites,
+            dampers=e.dampers.dofs,
+        )
+        self.order = Order(
+            step=0,
+            model=model._address,
+            data=data._address,
+            force_offset=0,
+            every=every,
+            pose_every=pose_every,
+            body=modes.body,
+            first_velocity=modes.first_velocity,
+            first_position=modes.first_position,
+            modes=modes.size,
+            half=-0.5 * self.step,
+        )
         self.channels = {name: np.zeros(samples) for name in channel_units()}
         # Positions until the end of the run, which makes accelerations of them.
         self.channels |= {name: np.zeros(samples + AHEAD) for name in acceleration_channels()}
@@ -86,27 +110,15 @@ class Recorder:
 
     def before_step(self) -> None:
         """Keep what the step will overwrite: the present pose, and the modal coordinates."""
-        self.buffers["modal_position"][self.filled] = self.data.qpos[self.rows.modal_positions]
+        self.buffers.modal_position[self.filled] = self.data.qpos[self.rows.layout.modes.positions]
         if (self.done + self.filled) % self.pose_every == 0:
             self.poses.append(self.data.qpos.copy())
             self.pose_index.append(self.done + self.filled)
 
     def after_step(self, *, moved: bool) -> None:
-        """Copy the present time's forces, rates and positions.
-
-        MuJoCo's velocity is that of the middle of a step: half a step of acceleration carries it to the present.
-        """
-        data, rows, buffers, row = self.data, self.rows, self.buffers, self.filled
-        half = -0.5 * self.step if moved else 0.5 * self.step
-        buffers["places"][row] = data.site_xpos[self.sites].ravel()
-        buffers["turn"][row] = data.xmat[rows.elements.body]
-        buffers["modal_velocity"][row] = data.qvel[self.modes] + half * data.qacc[self.modes]
-        buffers["damper_velocity"][row] = data.qvel[self.dampers] + half * data.qacc[self.dampers]
-        buffers["actuator"][row] = data.actuator_force
-        buffers["solved"][row] = data.efc_force
-        buffers["explicit"][row] = rows.explicit
-        buffers["rate"][row] = rows.rate
-        buffers["branch"][row] = rows.branch_past
+        """Keep the sample of the present time; `moved` where a step has been taken."""
+        half = self.order.half if moved else -self.order.half
+        keep_sample(self.filled, half, self.order, self.sources, self.data.efc_force, self.buffers)
         self.filled += 1
         if self.energy_at_start is None or not moved:
             energy = self._stored_energy(half)
@@ -114,15 +126,16 @@ class Recorder:
                 self.energy_at_start = energy
             self.energy_at_end = energy
 
-    def keep(self, count: int, poses: Vector, pose_index: npt.NDArray[np.intp]) -> None:
-        """Count samples that a compiled loop has written into the buffers, and take over its poses."""
-        self.filled += count
-        self.poses.extend(poses.copy())
-        self.pose_index.extend(int(sample) for sample in pose_index)
+    def keep(self, last: int, posed: int) -> None:
+        """Count the samples up to a step that a compiled loop has written into the buffers, and take over its poses."""
+        samples = np.arange(self.done + self.filled, last // self.every + 1)
+        self.filled += len(samples)
+        self.poses.extend(self.buffers.poses[:posed].copy())
+        self.pose_index.extend(int(sample) for sample in samples[samples % self.pose_every == 0])
 
     def finite_samples(self) -> int:
         """Number of buffered samples before the first one that is not finite."""
-        finite = np.all(np.isfinite(self.buffers["solved"][: self.filled]), axis=1)
+        finite = np.all(np.isfinite(self.buffers.solved[: self.filled]), axis=1)
         return self.filled if finite.all() else int(np.argmin(finite))
 
     def last_pose(self, good: int) -> tuple[float, Vector]:
@@ -135,7 +148,8 @@ class Recorder:
         """Kinetic, elastic and gravity energy [J] at the present time."""
         # The armature of the integration is not a mass of the car, so the model as generated is asked.
         model, rows = self.car.model, self.rows
-        e = rows.elements
+        e, state, preload = rows.layout, rows.state, rows.weights.preload
+        b, springs = e.bushings, e.springs
         data = mujoco.MjData(model)
         data.qpos[:] = self.data.qpos if half > 0.0 else self.poses[-1]
         data.qvel[:] = self.data.qvel + half * self.data.qacc
@@ -143,44 +157,45 @@ class Recorder:
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_energyPos(model, data)
         mujoco.mj_energyVel(model, data)
-        elastic = 0.5 * np.sum(e.stiffness * rows.residual**2) - np.sum(rows.element_preload * rows.residual)
+        elastic = 0.5 * np.sum(b.stiffness * state.residual**2) - np.sum(preload[b.rows] * state.residual)
         turned, frames = rows.rotation(self.data)
         twist = np.einsum("nji,nj->ni", frames, turned)
-        elastic += 0.5 * np.sum(e.rotation_stiffness * twist**2) - np.sum(rows.rotation_preload * twist)
-        extension = (rows.spring_preload - rows.explicit[e.springs]) / e.spring_stiffness
-        elastic += np.sum(0.5 * e.spring_stiffness * extension**2 - rows.spring_preload * extension)
-        branch = self._branch_force(self.data.efc_force[None, :], rows.branch_past[None])[0]
-        present = e.branch_stiffness > 0.0
-        elastic += 0.5 * np.sum(branch[present] ** 2 / e.branch_stiffness[present])
+        elastic += 0.5 * np.sum(e.rotations.stiffness[:, None] * twist**2) - np.sum(
+            preload[e.row_count :] * twist.ravel()
+        )
+        extension = (preload[springs.rows] - state.explicit[springs.rows]) / springs.stiffness
+        elastic += np.sum(0.5 * springs.stiffness * extension**2 - preload[springs.rows] * extension)
+        branch = self._branch_force(self.data.efc_force[None, :], state.branch_past[None])[0]
+        present = b.branch_stiffness > 0.0
+        elastic += 0.5 * np.sum(branch[present] ** 2 / b.branch_stiffness[present])
         return float(data.energy[0] + data.energy[1] + elastic)
 
     def _row_acceleration(self, solved: Vector) -> Vector:
         """Acceleration of the element rows, from f = -D J a; (chunk, n, 3)."""
-        return -self._local(solved) / self.rows.impedance
+        return -self._local(solved) / self.rows.weights.impedance
 
     def _branch_force(self, solved: Vector, past: Vector) -> Vector:
         """Force of the Maxwell branches; (chunk, n, 3)."""
-        return past + self.rows.branch_slope * self._row_acceleration(solved)
+        return past + self.rows.weights.slope * self._row_acceleration(solved)
 
     def _local(self, forces: Vector) -> Vector:
         """Forces of the element rows; the car turns too little for world and element axes to differ here."""
-        return np.asarray(forces[:, self.rows.elements.rows])
+        return np.asarray(forces[:, self.rows.layout.bushings.rows])
 
     def flush(self, motion: PlateArrays, index: int, every: int) -> None:
         """Turn the buffered samples into channels and add up the energies."""
-        count, b = self.filled, {name: array[: self.filled] for name, array in self.buffers.items()}
+        count, b = self.filled, Samples(*(array[: self.filled] for array in self.buffers))
         here = slice(self.done, self.done + count)
         steps = slice(index - (count - 1) * every, index + 1, every)
-        self._keep_positions(here, b["places"], b["turn"], b["modal_position"])
-        e = self.rows.elements
-        total = b["solved"] + b["explicit"]
-        damper_force = -(b["actuator"] + total[:, e.dampers] + total[:, e.frictions])
-        if len(e.valves):
-            damper_force = damper_force - total[:, e.valves]
+        self._keep_positions(here, b.places, b.turn, b.modal_position)
+        e, bushings = self.rows.layout, self.rows.layout.bushings
+        total = b.solved + b.explicit
+        damper_force = -(b.actuator + total[:, e.dampers.rows] + total[:, e.dampers.frictions])
+        damper_force[:, e.dampers.valves[:, 1]] -= total[:, e.dampers.valves[:, 0]]
         velocity = motion.velocity[steps]
-        tyre = total[:, e.rows[e.tyres][:, 2]]
+        tyre = total[:, bushings.rows[e.tyres][:, 2]]
         for column, wheel in enumerate(WHEELS):
-            self.channels[f"damper_{wheel}_velocity"][here] = b["damper_velocity"][:, column]
+            self.channels[f"damper_{wheel}_velocity"][here] = b.damper_velocity[:, column]
             self.channels[f"damper_{wheel}_force"][here] = damper_force[:, column]
             self.channels[f"tyre_{wheel}_force_z"][here] = tyre[:, column]
             self.channels[f"plate_{wheel}_displacement"][here] = motion.displacement[steps, column]
@@ -189,21 +204,21 @@ class Recorder:
                 when = (self.done + lowest) * every * self.step
                 self.lowest_load[wheel] = (float(tyre[lowest, column]), when)
         # What lifts the weight is known without any quadrature, and is a multiple of what the dampers take.
-        static = self.rows.element_preload[e.tyres, 2]
+        static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]
         power_in = np.sum((tyre - static) * velocity, axis=1)
         self.lifting = float(static @ (motion.displacement[index] - motion.displacement[0]))
-        rate = b["rate"] + 0.5 * self.step * self._row_acceleration(b["solved"])
+        rate = b.rate + 0.5 * self.step * self._row_acceleration(b.solved)
         # The damping of a tyre answers the averaged velocity of its plate and works along the true one.
         true_rate = rate.copy()
         true_rate[:, e.tyres, 2] += (motion.row_velocity - motion.velocity)[steps]
-        loss = np.sum(e.damping * rate * true_rate, axis=(1, 2))
-        branch = self._branch_force(b["solved"], b["branch"])
-        present = e.branch_stiffness > 0.0
-        dashpots = (e.branch_stiffness * e.branch_time)[present]
+        loss = np.sum(bushings.damping * rate * true_rate, axis=(1, 2))
+        branch = self._branch_force(b.solved, b.branch)
+        present = bushings.branch_stiffness > 0.0
+        dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
         loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)
-        loss = loss + np.sum(damper_force * b["damper_velocity"], axis=1)
-        modal_damping = np.ravel(self.model.dof_damping.reshape(self.model.nv, -1)[:, 0])[self.modes]
-        loss = loss + np.sum(modal_damping * b["modal_velocity"] ** 2, axis=1)
+        loss = loss + np.sum(damper_force * b.damper_velocity, axis=1)
+        modal_damping = joint_dampers(self.model)[e.modes.velocities]
+        loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
         self._add_work(power_in, loss, every)
         self.done += count
         self.filled = 0
@@ -221,7 +236,7 @@ class Recorder:
         data, rows = self.data, self.rows
         mujoco.mj_kinematics(self.model, data)
         here = slice(self.samples + sample, self.samples + sample + 1)
-        turn, modal = data.xmat[rows.elements.body][None], data.qpos[rows.modal_positions][None]
+        turn, modal = data.xmat[rows.layout.modes.body][None], data.qpos[rows.layout.modes.positions][None]
         self._keep_positions(here, data.site_xpos[self.sites].reshape(1, -1), turn, modal)
 
     def _add_work(self, power_in: Vector, loss: Vector, every: int) -> None:

@@ -14,18 +14,17 @@ from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import WHEELS
 from vehicle.simulation.acceleration import AHEAD
-from vehicle.simulation.callbacks import installed
+from vehicle.simulation.callbacks import compiled_rows, installed
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.element_rows import ElementRows, prepare_model
 from vehicle.simulation.judgement import judge_energy
-from vehicle.simulation.native import native_callback
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recorder import CHUNK, Recorder
 from vehicle.simulation.recording import Recording, Statistics
+from vehicle.simulation.rows import Rows, prepare_model
+from vehicle.simulation.sampling import Plates, move_plates
 
 if TYPE_CHECKING:
-    from vehicle.simulation.native_callback import NativeCallback
-    from vehicle.simulation.native_loop import NativeLoop
+    from vehicle.simulation.compiled import CompiledRows
 
 Vector = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -66,35 +65,40 @@ def simulate(
     # The recorder takes accelerations from positions; the sensors are for those who load the model elsewhere.
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
     data = mujoco.MjData(model)
-    rows = ElementRows(model, car.static.preload)
+    rows = Rows(model, car.static.preload)
     step = model.opt.timestep
     count = int(np.floor(signal.duration / step + 1e-6))
     count -= count % every
     times = step * np.arange(count + 1)
     motion = PlateArrays.of(signal, times, AHEAD * every)
-    plates = [int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in WHEELS]
-    heights = data.mocap_pos[plates, 2] + motion.displacement
-    callback, notices = _compiled(rows, native)
-    pose_every = _pose_every(car, every)
+    mocap = [int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in WHEELS]
+    plates = Plates(
+        height=data.mocap_pos[mocap, 2] + motion.displacement,
+        velocity=motion.row_velocity,
+        acceleration=motion.acceleration,
+        mocap=np.array(mocap, dtype=np.int64),
+        mocap_position=data.mocap_pos,
+        row_velocity=rows.state.plate_velocity,
+        row_acceleration=rows.state.plate_acceleration,
+    )
+    compiled, notices = _compiled(rows, native)
+    pose_every = max(round(1.0 / (POSE_RATE * step * every)), 1)
     recorder = Recorder(car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every)
-    loop = None if callback is None else _native_loop(callback, recorder, motion, heights, plates)
-
-    def move(index: int) -> None:
-        data.mocap_pos[plates, 2] = heights[index]
-        rows.plate_velocity[:, 2] = motion.row_velocity[index]
-        rows.plate_acceleration[:, 2] = motion.acceleration[index]
-
+    advance = None
+    if compiled is not None:
+        compiled.attach(data)
+        advance = compiled.loop(recorder, plates)
     started = clock.perf_counter()
-    with installed(rows, callback):
+    with installed(rows, compiled):
         index = 0
         while index <= count:
             # The first and the last sample also ask for the energy of the car, so they are taken one by one.
             last = every * min(recorder.done + CHUNK - 1, count // every - 1)
-            if loop is not None and 0 < index <= last:
-                loop.advance(index, last)
+            if advance is not None and 0 < index <= last:
+                recorder.keep(last, advance(index, last))
                 index = last
             else:
-                move(index)
+                move_plates(index, plates)
                 _step(model, data, recorder, recorded=index % every == 0, moved=index < count)
             if index == count or recorder.filled == CHUNK:
                 _check_state(model, data, recorder, every * step)
@@ -103,7 +107,7 @@ def simulate(
                     progress(index / count)
             index += 1
         for index in range(count, count + AHEAD * every):
-            move(index)
+            move_plates(index, plates)
             mujoco.mj_step(model, data)
             if (index + 1) % every == 0:
                 recorder.keep_ahead((index + 1 - count) // every - 1)
@@ -114,7 +118,7 @@ def simulate(
     energies = recorder.energies()
     statistics = Statistics(
         engine="mujoco",
-        callback="python" if callback is None else "native",
+        callback="python" if compiled is None else "native",
         timestep=step,
         steps=count,
         wall_time=wall,
@@ -125,27 +129,16 @@ def simulate(
     return recorder.recording(signal, statistics)
 
 
-def _compiled(rows: ElementRows, native: bool | None) -> tuple[NativeCallback | None, tuple[str, ...]]:
+def _compiled(rows: Rows, native: bool | None) -> tuple[CompiledRows | None, tuple[str, ...]]:
     """The compiled callbacks, and a notice where they were wished for and cannot be had."""
     if native is False:
         return None, ()
-    callback = native_callback(rows)
-    if not isinstance(callback, str):
-        return callback, ()
+    found = compiled_rows(rows)
+    if not isinstance(found, str):
+        return found, ()
     if native:
-        raise MissingPartError(callback)
-    return None, (callback,)
-
-
-def _native_loop(
-    callback: NativeCallback, recorder: Recorder, motion: PlateArrays, heights: Vector, plates: list[int]
-) -> NativeLoop:
-    """The compiled loop of a run whose callbacks are compiled."""
-    # The compiler is heavy and optional: it is imported only where it is used.
-    from vehicle.simulation.native_loop import NativeLoop
-
-    callback.attach(recorder.data)
-    return NativeLoop(callback, recorder, motion, heights, plates)
+        raise MissingPartError(found)
+    return None, (found,)
 
 
 def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, recorded: bool, moved: bool) -> None:
@@ -173,10 +166,6 @@ def record_every(car: CarModel) -> int:
             f"solver.record_rate: found {rate:g} Hz, must be the step rate {1.0 / step:g} Hz or a whole fraction of it"
         )
     return round(every)
-
-
-def _pose_every(car: CarModel, every: int) -> int:
-    return max(round(1.0 / (POSE_RATE * car.vehicle.solver.timestep * every)), 1)
 
 
 def _check_state(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, interval: float) -> None:

@@ -8,7 +8,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.names import AXES
 from vehicle.parameters.vehicle import Vehicle
-from vehicle.simulation.elements import Elements
+from vehicle.simulation.rows import Rows
 from vehicle.simulation.static_trim import GROUND_CONTACTS, StaticTrim
 
 LARGEST_SAG = 0.5
@@ -43,12 +43,12 @@ def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
         )
 
 
-def require_standing(vehicle: Vehicle, elements: Elements, static: StaticTrim) -> None:
+def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     """Refuse a car that would tip off one of its supports, or sag beyond any spring.
 
     Args:
         vehicle: parameters.
-        elements: constants of its elements.
+        rows: of its elements.
         static: its static loads.
 
     Raises:
@@ -65,10 +65,10 @@ def require_standing(vehicle: Vehicle, elements: Elements, static: StaticTrim) -
                 "would tip off it; it must lie between hardpoints.tyre_patch and hardpoints.rear_support (check "
                 "body.mass and parts.engine too)"
             )
-    preload = static.preload
-    sags = {"main_spring.stiffness": float(np.max(np.abs(preload[elements.springs]) / elements.spring_stiffness))}
-    for name, rows, stiffness in zip(elements.names, elements.rows, elements.stiffness, strict=True):
-        for axis, row, k in zip(AXES, rows, stiffness, strict=True):
+    preload, springs, bushings = static.preload, rows.layout.springs, rows.layout.bushings
+    sags = {"main_spring.stiffness": float(np.max(np.abs(preload[springs.rows]) / springs.stiffness))}
+    for name, own, stiffness in zip(rows.names, bushings.rows, bushings.stiffness, strict=True):
+        for axis, row, k in zip(AXES, own, stiffness, strict=True):
             # On the ground the car is set down without horizontal force.
             if k > 0.0 and (axis == "z" or not name.startswith(GROUND_CONTACTS)):
                 sags[element_parameter(name, "stiffness", axis)] = float(abs(preload[row]) / k)

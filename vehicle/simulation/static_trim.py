@@ -18,7 +18,7 @@ import numpy.typing as npt
 from vehicle.errors import SimulationError
 from vehicle.names import WHEELS
 from vehicle.simulation.callbacks import installed
-from vehicle.simulation.element_rows import ElementRows
+from vehicle.simulation.rows import Rows, joint_springs
 
 Vector = npt.NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class StaticTrim:
     residual: float
 
 
-def trim(rows: ElementRows) -> StaticTrim:
+def trim(rows: Rows) -> StaticTrim:
     """Find the preloads of a car and write those of its joint springs into the model.
 
     Args:
@@ -65,28 +65,28 @@ def trim(rows: ElementRows) -> StaticTrim:
         SimulationError: the car is not held in all directions by its elements.
     """
     model = rows.model
-    _reset_joint_springs(model)
+    model.qpos_spring[:] = model.qpos0
     data = mujoco.MjData(model)
     with installed(rows):
         mujoco.mj_forward(model, data)
-    e = rows.elements
+    e, twist = rows.layout, rows.layout.rotations.stiffness
     jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
     gravity = data.qfrc_smooth.copy()
     row_stiffness = np.zeros(e.row_count)
-    row_stiffness[e.rows] = e.stiffness
-    ground = [index for index, name in enumerate(e.names) if name.startswith(GROUND_CONTACTS)]
-    row_stiffness[e.rows[ground, :2]] *= SLIDING_SHARE
-    row_stiffness[e.springs] = e.spring_stiffness
+    row_stiffness[e.bushings.rows] = e.bushings.stiffness
+    ground = [index for index, name in enumerate(rows.names) if name.startswith(GROUND_CONTACTS)]
+    row_stiffness[e.bushings.rows[ground, :2]] *= SLIDING_SHARE
+    row_stiffness[e.springs.rows] = e.springs.stiffness
     turned = rows.rotation_jacobian(data)
     stiffness = jacobian.T @ (row_stiffness[:, None] * jacobian)
-    stiffness += np.einsum("n,nij,nik->jk", e.rotation_stiffness[:, 0], turned, turned)
-    joint_stiffness = joint_spring_stiffness(model)
+    stiffness += np.einsum("n,nij,nik->jk", twist, turned, turned)
+    joint_stiffness = joint_springs(model)
     stiffness[np.diag_indices(model.nv)] += joint_stiffness
-    hard = jacobian[e.hard_rows.ravel()]
+    hard = jacobian[e.joints.ravel()]
     displacement, reaction = _settle(stiffness, hard, gravity)
     preload = -row_stiffness * (jacobian @ displacement)
-    preload[e.hard_rows.ravel()] = -reaction
-    torque = -e.rotation_stiffness * (turned @ displacement)
+    preload[e.joints.ravel()] = -reaction
+    torque = -twist[:, None] * (turned @ displacement)
     preload = np.concatenate([preload, torque.ravel()])
     for joint in range(model.njnt):
         dof = model.jnt_dofadr[joint]
@@ -94,18 +94,6 @@ def trim(rows: ElementRows) -> StaticTrim:
             position = model.jnt_qposadr[joint]
             model.qpos_spring[position] = model.qpos0[position] - displacement[dof]
     return _loads(rows.anew(preload), stiffness, hard)
-
-
-def joint_spring_stiffness(model: mujoco.MjModel) -> Vector:
-    """Stiffness of the springs inside joints, per velocity coordinate; (nv,)."""
-    result = np.zeros(model.nv)
-    for joint in range(model.njnt):
-        result[model.jnt_dofadr[joint]] = float(np.ravel(model.jnt_stiffness[joint])[0])
-    return result
-
-
-def _reset_joint_springs(model: mujoco.MjModel) -> None:
-    model.qpos_spring[:] = model.qpos0
 
 
 def _settle(stiffness: Vector, hard: Vector, force: Vector) -> tuple[Vector, Vector]:
@@ -124,15 +112,14 @@ def _settle(stiffness: Vector, hard: Vector, force: Vector) -> tuple[Vector, Vec
     return solution[:size], solution[size:]
 
 
-def _loads(rows: ElementRows, stiffness: Vector, hard: Vector) -> StaticTrim:
+def _loads(rows: Rows, stiffness: Vector, hard: Vector) -> StaticTrim:
     """Static loads with the preloads in place, and the displacement that is left."""
     data = mujoco.MjData(rows.model)
     with installed(rows):
         mujoco.mj_forward(rows.model, data)
-    preload = rows.preload
-    e = rows.elements
+    preload = rows.weights.preload
     remaining, _ = _settle(stiffness, hard, data.qfrc_smooth)
-    vertical = dict(zip(e.names, preload[e.rows][:, 2], strict=True))
+    vertical = dict(zip(rows.names, preload[rows.layout.bushings.rows][:, 2], strict=True))
     return StaticTrim(
         preload=preload,
         tyre_load={wheel: float(vertical[f"bushing/tyre_{wheel}"]) for wheel in WHEELS},

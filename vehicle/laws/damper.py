@@ -1,0 +1,112 @@
+"""The laws of a damper as one record: written into a model as the parameters of its actuator, read back as an array.
+
+    F = D v + clamp(c v, L(v)) + clamp(d v, M),   d = Ddeg - D, M = d Vdeg: the degressive law, else zero
+
+with the friction of `vehicle.laws.friction`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.compiler import jitable
+from vehicle.laws.degressive import Degressive
+from vehicle.laws.friction import Friction
+from vehicle.laws.law import Parallel
+from vehicle.parameters.elements import FRICTION_LAWS, Damper
+
+RECORD = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "viscous_damping",  # D [N s/m]
+            "smoothing",  # eps [s/m]
+            "friction_limit",  # Fd [N]
+            "static_limit",  # Fs [N]
+            "stribeck_velocity",  # vs [m/s]
+            "stribeck_exponent",  # delta [-]
+            "degressive_slope",  # d [N s/m]
+            "degressive_limit",  # M [N]
+            "friction_law",  # index of its word
+            "spare",
+        )
+    ],
+    align=True,
+)
+"""As long as the parameters of an actuator."""
+
+
+def pack(damper: Damper) -> npt.NDArray[Any]:
+    """Record of the laws of a damper; ()."""
+    slope = damper.degressive_viscous - damper.viscous if damper.viscous_law == "degressive" else 0.0
+    return np.array(
+        (
+            damper.viscous,
+            damper.smoothing,
+            damper.coulomb_friction,
+            damper.static_friction,
+            damper.stribeck_velocity,
+            damper.stribeck_exponent,
+            slope,
+            slope * damper.degressive_velocity,
+            FRICTION_LAWS.index(damper.friction_law),
+            0.0,
+        ),
+        dtype=RECORD,
+    )
+
+
+def actuator_parameters(record: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """Parameters of the actuator of a damper with this record; (10,)."""
+    return np.atleast_1d(record).view(np.float64)
+
+
+def unpack(parameters: npt.ArrayLike) -> npt.NDArray[Any]:
+    """Records (w,) of the parameters of actuators (w, 10)."""
+    return np.array(parameters, dtype=np.float64, ndmin=2).view(RECORD).reshape(-1)
+
+
+def damper_law(damper: Damper) -> Parallel:
+    """Whole force of a damper as a law of arrays, its friction in the smooth form."""
+    record, law = pack(damper), FRICTION[damper.friction_law]
+    viscous = Degressive(
+        low_damping=float(record["viscous_damping"] + record["degressive_slope"]),
+        high_damping=damper.viscous,
+        knee_velocity=damper.degressive_velocity,
+    )
+    friction = law(**{entry.name: float(record[entry.name]) for entry in dataclasses.fields(law)})
+    return Parallel(laws=(viscous, friction))
+
+
+def _friction_laws() -> dict[str, type[Friction]]:
+    """The classes of the laws by their words."""
+    rooms = {word: importlib.import_module(f"vehicle.laws.{word}") for word in FRICTION_LAWS}
+    return {word: getattr(room, word.title().replace("_", "")) for word, room in rooms.items()}
+
+
+def _limit_of(laws: list[type[Friction]], index: int = 0) -> Callable[[Any, Any], Any]:
+    """Limit of the law that a record names by its index: compiled code has no tables of functions, but a chain."""
+    this = laws[0].limit_at
+
+    def last(record: Any, velocity: Any) -> Any:
+        return this(velocity, record)
+
+    if len(laws) == 1:
+        return jitable(last)
+    others = _limit_of(laws[1:], index + 1)
+
+    def limit(record: Any, velocity: Any) -> Any:
+        return this(velocity, record) if record["friction_law"] == index else others(record, velocity)
+
+    return jitable(limit)
+
+
+FRICTION = _friction_laws()
+friction_limit = _limit_of(list(FRICTION.values()))
+"""Friction limit [N] of a record at a velocity [m/s]."""

@@ -1,0 +1,287 @@
+"""The element laws as constraint rows: what `mjcb_control` writes before MuJoCo solves. One source for both forms.
+
+MuJoCo answers a quadratic row with f = D (aref - J a). The callback rewrites each row of an element so that, with
+the explicit part f0 given to the generalised forces,
+
+    f = f0 - D J a,    f0 = preload - K r - B r' - f2,    D = B h/2 + beta K h2 + branch,
+
+r' being the rate at the middle of the past step: B (r' + h a/2) is the damping at the present time (centred, second
+order), and beta = 1/12 makes the step of a linear system fourth order in its frequencies (Fox and Goodwin, Numerov);
+stiff local springs take up to beta = 1/4, which is stable at any step (Newmark; see `step_weights`). The friction
+row of a damper is f = -clamp(c (v + h a)): D = c h, aref = -v/h, its limit the friction force: set-valued in effect,
+sticking is exact. With c = (2/pi) Fd eps it is a line through zero, clamped at the limit Fd: the slope at rest of the
+published Fd (2/pi) atan(eps v), without its tail (`vehicle.laws.friction`).
+The second row of a degressive damper, F = D v + clamp((Ddeg - D) v) with the limit (Ddeg - D) Vdeg, is a friction row
+too; its law is smooth, so that it is centred like the viscous one: D = (Ddeg - D) h/2, aref = -2 v/h, second order.
+The two forces of a bushing are opposite and act each at the point of its own part, in the axes of the carrier; the
+moment r x f of their distance r is left out, which changes no frequency by more than 0.05 %.
+Rotations need no rows: K_rot is soft against every inertia and undamped, so its torque is given explicitly,
+T = -K_rot sin(angle) n from the frames of both sites.
+
+Modal coordinates q of the flexible body move node n by d = R Phi_n q, R being the rotation of the body. They enter a
+row there as r -> r +- d, and its derivative by the coordinates as J -> J +- (R Phi_n, -[d]x on what turns the body):
+without the second part the body would miss the torque d x F of every force at a node. The line of a main spring goes
+through the displaced seat: n = (x_up + d - x_low) / length, r = length - L0, J = n' (J_up + R Phi - [d]x - J_low).
+Without d in n, the transverse stiffness F / length of a loaded spring would not act on the modes.
+
+The functions are compiled (`vehicle.simulation.compiled`), or run as they stand where there is no compiler.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle.compiler import jitable
+from vehicle.laws.damper import friction_limit
+from vehicle.laws.friction import slope_at_rest
+from vehicle.simulation.records import Efc, Fields, Layout, State, Weights
+
+EMPTY_ROW = 1e-9
+"""Impedance [kg] of a row without damping and stiffness: small against every mass, and not zero."""
+
+
+@jitable
+def modal_rows(d: Fields, efc: Efc, e: Layout, s: State) -> None:
+    """J -> J +- (R Phi_n, -[d]x), r -> r +- d, r' -> r' +- (R Phi_n q' + w x d) for the rows at flexible nodes."""
+    m = e.modes
+    modes, column, place = m.size, m.first_velocity, m.first_position
+    turn = d.xmat[m.body]
+    nodes, count = m.rows.shape[1], m.mode_shapes.shape[1]
+    t0, t1, t2, t3, t4 = turn[0], turn[1], turn[2], turn[3], turn[4]
+    t5, t6, t7, t8 = turn[5], turn[6], turn[7], turn[8]
+    moved, moving = s.deflection[0], s.deflection[1]
+    moved[:], moving[:] = 0.0, 0.0
+    # Deflections of all nodes in body axes, mode by mode: long loops without sums that wait for each other.
+    for k in range(modes):
+        q, v, shape = d.qpos[place + k], d.qvel[column + k], m.mode_shapes[k]
+        for j in range(count):
+            moved[j] += shape[j] * q
+            moving[j] += shape[j] * v
+    for node in range(nodes):
+        at = node * modes
+        r0, r1, r2 = m.rows[0, node], m.rows[1, node], m.rows[2, node]
+        x, y, z = moved[node], moved[nodes + node], moved[2 * nodes + node]
+        dx, dy, dz = t0 * x + t1 * y + t2 * z, t3 * x + t4 * y + t5 * z, t6 * x + t7 * y + t8 * z
+        efc.pos[r0] += dx
+        efc.pos[r1] += dy
+        efc.pos[r2] += dz
+        x, y, z = moving[node], moving[nodes + node], moving[2 * nodes + node]
+        vx, vy, vz = t0 * x + t1 * y + t2 * z, t3 * x + t4 * y + t5 * z, t6 * x + t7 * y + t8 * z
+        for k in range(m.turns.shape[0]):
+            dof = m.turns[k]
+            x, y, z = d.cdof[dof, 0], d.cdof[dof, 1], d.cdof[dof, 2]
+            x, y, z = y * dz - z * dy, z * dx - x * dz, x * dy - y * dx
+            efc.J[r0, dof] += x
+            efc.J[r1, dof] += y
+            efc.J[r2, dof] += z
+            turning = d.qvel[dof]
+            vx, vy, vz = vx + x * turning, vy + y * turning, vz + z * turning
+        efc.vel[r0] += vx
+        efc.vel[r1] += vy
+        efc.vel[r2] += vz
+        for k in range(modes):
+            x, y, z = m.node_shapes[0, at + k], m.node_shapes[1, at + k], m.node_shapes[2, at + k]
+            efc.J[r0, column + k] = t0 * x + t1 * y + t2 * z
+            efc.J[r1, column + k] = t3 * x + t4 * y + t5 * z
+            efc.J[r2, column + k] = t6 * x + t7 * y + t8 * z
+
+
+@jitable
+def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Main springs: the line through the displaced seat, its derivatives, and the elastic force."""
+    own, m = e.springs, e.modes
+    modes, column, place, turn = m.size, m.first_velocity, m.first_position, d.xmat[m.body]
+    for spring in range(own.rows.shape[0]):
+        row = own.rows[spring]
+        ends, line = s.ends[2 * spring : 2 * spring + 2], s.line[spring]
+        for i in range(3):
+            ends[0, i] = d.site_xpos[own.sites[spring, 0], i]
+            ends[1, i] = d.site_xpos[own.sites[spring, 1], i]
+            for j in range(3):
+                for k in range(modes):
+                    ends[1, i] += turn[3 * i + j] * own.shapes[spring, j * modes + k] * d.qpos[place + k]
+            line[i] = ends[1, i] - ends[0, i]
+        length = np.sqrt(line[0] * line[0] + line[1] * line[1] + line[2] * line[2])
+        for i in range(3):
+            line[i] /= length
+        for dof in range(efc.J.shape[1]):
+            efc.J[row, dof] = 0.0
+        for j in range(3):
+            along = line[0] * turn[j] + line[1] * turn[3 + j] + line[2] * turn[6 + j]
+            for k in range(modes):
+                efc.J[row, column + k] += along * own.shapes[spring, j * modes + k]
+        s.explicit[row] = c.preload[row] - own.stiffness[spring] * (length - own.lengths[spring])
+        efc.D[row] = c.spring_impedance[spring]
+        efc.aref[row] = 0.0
+    for entry in range(own.dofs.shape[0]):
+        spring, end, dof, tree = own.dofs[entry, 0], own.dofs[entry, 1], own.dofs[entry, 2], own.dofs[entry, 3]
+        line, point, centre, motion = s.line[spring], s.ends[2 * spring + end], d.subtree_com[tree], d.cdof[dof]
+        # MuJoCo refers the motion of a tree to its centre of mass.
+        x, y, z = point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]
+        velocity = (
+            line[0] * (motion[3] + motion[1] * z - motion[2] * y)
+            + line[1] * (motion[4] + motion[2] * x - motion[0] * z)
+            + line[2] * (motion[5] + motion[0] * y - motion[1] * x)
+        )
+        efc.J[own.rows[spring], dof] += (2 * end - 1) * velocity
+
+
+@jitable
+def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
+    """Residual and rate of every element in its own axes, with the velocity of the plates taken off."""
+    b = e.bushings
+    for n in range(b.rows.shape[0]):
+        for i in range(3):
+            s.force[n, i] = efc.vel[b.rows[n, i]]
+    for tyre in range(e.tyres.shape[0]):
+        for i in range(3):
+            s.force[e.tyres[tyre], i] -= s.plate_velocity[tyre, i]
+    for n in range(b.rows.shape[0]):
+        frame = d.xmat[b.carriers[n]]
+        x, y, z = efc.pos[b.rows[n, 0]], efc.pos[b.rows[n, 1]], efc.pos[b.rows[n, 2]]
+        u, v, w = s.force[n, 0], s.force[n, 1], s.force[n, 2]
+        for i in range(3):
+            s.residual[n, i] = frame[i] * x + frame[3 + i] * y + frame[6 + i] * z
+            s.rate[n, i] = frame[i] * u + frame[3 + i] * v + frame[6 + i] * w
+
+
+@jitable
+def advance_branches(time: float, c: Weights, s: State) -> None:
+    """Carry the Maxwell branches over the step that has just been completed."""
+    last = s.last_time[0]
+    if time == last:
+        return
+    for n in range(s.rate.shape[0]):
+        for i in range(3):
+            rate = s.rate[n, i]
+            if last >= 0.0:
+                acceleration = (rate - s.last_rate[n, i]) / c.timestep
+                s.branch_force[n, i] = s.branch_past[n, i] + c.slope[n, i] * acceleration
+                s.branch_past[n, i] = c.decay[n, i] * s.branch_force[n, i] + c.gain[n, i] * rate
+            s.last_rate[n, i] = rate
+    s.last_time[0] = time
+
+
+@jitable
+def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """f0 = preload - K r - B r' - f2, turned into world axes; impedance and reference of the rows.
+
+    The known part of the branch force is f2 + beta (f2(+h) - 2 f2 + f2(-h)) without what the acceleration adds.
+    """
+    b = e.bushings
+    for n in range(b.rows.shape[0]):
+        for i in range(3):
+            rate, past = s.rate[n, i], s.branch_past[n, i]
+            curvature = (c.decay[n, i] - 2.0) * past + c.gain[n, i] * rate + s.branch_force[n, i]
+            branch = past + c.average[n, i] * curvature
+            elastic = b.stiffness[n, i] * s.residual[n, i]
+            s.force[n, i] = c.preload[b.rows[n, i]] - elastic - b.damping[n, i] * rate - branch
+    for tyre in range(e.tyres.shape[0]):
+        for i in range(3):
+            s.force[e.tyres[tyre], i] += c.inertial[tyre, i] * s.plate_acceleration[tyre, i]
+    for n in range(b.rows.shape[0]):
+        frame = d.xmat[b.carriers[n]]
+        x, y, z = s.force[n, 0], s.force[n, 1], s.force[n, 2]
+        for i in range(3):
+            row = b.rows[n, i]
+            s.explicit[row] = frame[3 * i] * x + frame[3 * i + 1] * y + frame[3 * i + 2] * z
+            efc.D[row] = c.impedance[n, i]
+            efc.aref[row] = 0.0
+
+
+@jitable
+def rotations(d: Fields, e: Layout, c: Weights, s: State) -> None:
+    """Torques of the mounts, T = R p - K_rot sin(angle) n, on the coordinates; after the forces of the rows.
+
+    sin(angle) n is half the sum of c_k x m_k over the axes of carrier and moving part.
+    """
+    own, first = e.rotations, c.preload.shape[0] - 3 * e.rotations.sites.shape[0]
+    for n in range(own.sites.shape[0]):
+        moving, carrier = d.site_xmat[own.sites[n, 0]], d.site_xmat[own.sites[n, 1]]
+        half = 0.5 * own.stiffness[n]
+        x, y, z = 0.0, 0.0, 0.0
+        for axis in range(3):
+            p = c.preload[first + 3 * n + axis]
+            cx, cy, cz = carrier[axis], carrier[3 + axis], carrier[6 + axis]
+            mx, my, mz = moving[axis], moving[3 + axis], moving[6 + axis]
+            x += p * cx - half * (cy * mz - cz * my)
+            y += p * cy - half * (cz * mx - cx * mz)
+            z += p * cz - half * (cx * my - cy * mx)
+        s.torque[n, 0], s.torque[n, 1], s.torque[n, 2] = x, y, z
+    for entry in range(own.turning.shape[0]):
+        n, dof, sign = own.turning[entry, 0], own.turning[entry, 1], own.turning[entry, 2]
+        turning = d.cdof[dof, 0] * s.torque[n, 0] + d.cdof[dof, 1] * s.torque[n, 1] + d.cdof[dof, 2] * s.torque[n, 2]
+        d.qfrc_applied[dof] += sign * turning
+
+
+@jitable
+def ideal_joints(efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Ball joints without a law: MuJoCo's own reference, which it made before it knew of the modal coordinates."""
+    for n in range(e.joints.shape[0]):
+        for i in range(3):
+            row = e.joints[n, i]
+            s.explicit[row] = c.preload[row]
+            efc.aref[row] = -efc.KBIP[row, 1] * efc.vel[row] - efc.KBIP[row, 0] * efc.KBIP[row, 2] * efc.pos[row]
+
+
+@jitable
+def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Viscous, friction and valve rows of the dampers."""
+    own = e.dampers
+    for n in range(own.rows.shape[0]):
+        efc.D[own.rows[n]] = c.damper_impedance[n]
+        efc.aref[own.rows[n]] = 0.0
+        row, sliding = own.frictions[n], d.qvel[own.dofs[n]]
+        limit = friction_limit(own.laws[n], sliding)
+        efc.D[row] = max(slope_at_rest(limit, own.laws[n]["smoothing"]) * c.timestep, EMPTY_ROW)
+        efc.aref[row] = -sliding / c.timestep
+        efc.frictionloss[row] = limit
+    for n in range(own.valves.shape[0]):
+        row, damper = own.valves[n, 0], own.valves[n, 1]
+        efc.D[row] = c.valve_impedance[n]
+        efc.aref[row] = -2.0 * d.qvel[own.dofs[damper]] / c.timestep
+        efc.frictionloss[row] = own.laws[damper]["degressive_limit"]
+
+
+@jitable
+def generalised_forces(d: Fields, efc: Efc, e: Layout, s: State) -> None:
+    """R = 1 / D, and the explicit forces of the rows on the coordinates that they reach, J' f0."""
+    total = d.qfrc_applied
+    total[:] = 0.0
+    for row in range(efc.D.shape[0]):
+        efc.R[row] = 1.0 / efc.D[row]
+    for entry in range(e.reach.shape[0]):
+        row, rows, first, last = e.reach[entry, 0], e.reach[entry, 1], e.reach[entry, 2], e.reach[entry, 3]
+        # Views spare the inner loop the look for negative indices.
+        part = total[first:last]
+        if rows == 3:
+            x, y, z = s.explicit[row], s.explicit[row + 1], s.explicit[row + 2]
+            jx, jy, jz = efc.J[row, first:last], efc.J[row + 1, first:last], efc.J[row + 2, first:last]
+            for j in range(last - first):
+                part[j] += x * jx[j] + y * jy[j] + z * jz[j]
+        else:
+            force, along = s.explicit[row], efc.J[row, first:last]
+            for j in range(last - first):
+                part[j] += force * along[j]
+
+
+@jitable
+def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Rewrite the rows of one state."""
+    if e.modes.size > 0:
+        modal_rows(d, efc, e, s)
+    local_axes(d, efc, e, s)
+    advance_branches(time, c, s)
+    elements(d, efc, e, c, s)
+    springs(d, efc, e, c, s)
+    ideal_joints(efc, e, c, s)
+    dampers(d, efc, e, c, s)
+    generalised_forces(d, efc, e, s)
+    rotations(d, e, c, s)
+
+
+@jitable
+def damper_force(damper: int, d: Fields, e: Layout) -> float:
+    """Viscous force of a user actuator [N], -D v at the present velocity."""
+    force: float = -e.dampers.laws[damper]["viscous_damping"] * d.actuator_velocity[damper]
+    return force

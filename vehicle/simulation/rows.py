@@ -1,0 +1,195 @@
+"""Rows: the elements of a compiled car with the weights of its time step, and the state of their laws."""
+
+from __future__ import annotations
+
+import copy
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.simulation.kernel import EMPTY_ROW, damper_force, rewrite
+from vehicle.simulation.layout import element_names, read_layout
+from vehicle.simulation.records import Efc, Fields, Layout, State, Weights
+from vehicle.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
+
+Vector = npt.NDArray[np.float64]
+
+
+def prepare_model(model: mujoco.MjModel) -> None:
+    """Give springs and dampers inside joints the same centred treatment as the rows, through the armature.
+
+    (M + B h/2 + K h2/12) a = ... - K q - B q' for the modal coordinates and the stabilizer torsion.
+
+    Args:
+        model: compiled car, as generated; changed in place, once.
+    """
+    model.dof_armature += joint_weights(model)
+    model.dof_damping *= np.reshape(damping_factors(model), (-1, *[1] * (model.dof_damping.ndim - 1)))
+    # Bodies with a single slide take their mass from constants that are derived here.
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
+def joint_springs(model: mujoco.MjModel) -> Vector:
+    """Stiffness of the springs inside joints, per velocity coordinate; (nv,)."""
+    stiffness = np.zeros(model.nv)
+    stiffness[model.jnt_dofadr] = model.jnt_stiffness.reshape(model.njnt, -1)[:, 0]
+    return stiffness
+
+
+def joint_dampers(model: mujoco.MjModel) -> Vector:
+    """Damping inside joints, per velocity coordinate; (nv,)."""
+    return np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
+
+
+def damping_factors(model: mujoco.MjModel) -> Vector:
+    """Factor 1 + K h2/12 of the damping inside joints, per velocity coordinate; (nv,).
+
+    A centred damping is weaker by w2 h2/12 than the average of all else. That of a mode counts at its resonance, where
+    w2 = K, its mass being 1.
+    """
+    return np.asarray(1.0 + FOURTH_ORDER * joint_springs(model) * model.opt.timestep**2)
+
+
+def joint_weights(model: mujoco.MjModel) -> Vector:
+    """Weight B h/2 + K h2/12 [kg or kg m2] of the springs and dampers inside joints of a model as generated; (nv,)."""
+    step = model.opt.timestep
+    damping = np.zeros(model.nv)
+    damping[model.jnt_dofadr] = joint_dampers(model)[model.jnt_dofadr]
+    return np.asarray(damping_factors(model) * damping * step / 2 + FOURTH_ORDER * joint_springs(model) * step**2)
+
+
+class Rows:
+    """The rows of one simulation: what their laws need, and what these remember between steps.
+
+    Args:
+        model: compiled car; its armatures are changed by `prepare_model`.
+        preload: static forces as in `Weights`; zeros by default.
+
+    Attributes:
+        names: of the elements, in the order of `layout.bushings`.
+        layout, weights, state: records of the laws.
+    """
+
+    def __init__(self, model: mujoco.MjModel, preload: Vector | None = None) -> None:
+        self.model, self.names, self.layout = model, element_names(model), read_layout(model)
+        size = self.layout.row_count + 3 * len(self.layout.rotations.sites)
+        self.weights = weights(model, self.layout, np.zeros(size) if preload is None else preload)
+        self.state = _at_rest(self.layout)
+
+    def anew(self, preload: Vector | None = None) -> Rows:
+        """The same rows at rest with a state of their own, under these static forces; under the same by default."""
+        other = copy.copy(self)
+        if preload is not None:
+            other.weights = self.weights._replace(preload=preload)
+        other.state = _at_rest(self.layout)
+        return other
+
+    def reset(self) -> None:
+        """Forget the past: no branch forces, no rates."""
+        for own, fresh in zip(self.state, _at_rest(self.layout), strict=True):
+            own[...] = fresh
+
+    def fields(self, data: mujoco.MjData) -> Fields:
+        """What the laws read and write in a state at fixed places."""
+        return Fields(**{name: getattr(data, name) for name in Fields._fields})
+
+    def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        """Rewrite the rows of `data` without a compiler; installed as `mjcb_control`."""
+        efc = {name: getattr(data, f"efc_{name}") for name in Efc._fields}
+        efc["J"] = efc["J"].reshape(self.layout.row_count, model.nv)
+        # A state that is lost is found by the guard of the run.
+        with np.errstate(all="ignore"):
+            rewrite(data.time, self.fields(data), Efc(**efc), self.layout, self.weights, self.state)
+
+    def actuator_bias(self, model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
+        """Viscous force of a damper; installed as `mjcb_act_bias`."""
+        return float(damper_force(index, self.fields(data), self.layout))
+
+    @staticmethod
+    def actuator_gain(model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
+        """No control acts on a damper; installed as `mjcb_act_gain`."""
+        return 0.0
+
+    def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
+        """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""
+        frames = data.site_xmat[self.layout.rotations.sites].reshape(-1, 2, 3, 3)
+        moving, carrier = frames[:, 0], frames[:, 1]
+        return 0.5 * np.sum(np.cross(carrier, moving, axis=1), axis=2), carrier
+
+    def rotation_jacobian(self, data: mujoco.MjData) -> Vector:
+        """Angular velocity of each moving part against its carrier over the velocity coordinates; (m, 3, nv)."""
+        found = np.zeros((len(self.layout.rotations.sites), 3, self.model.nv))
+        element, dof, sign = self.layout.rotations.turning.T
+        found[element, :, dof] = sign[:, None] * data.cdof[dof, :3]
+        return found
+
+
+def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
+    """Weights of the rows for the time step of a model.
+
+    Args:
+        model: with its step.
+        layout: of its elements.
+        preload: static forces.
+
+    Returns:
+        The weights.
+    """
+    b, h = layout.bushings, float(model.opt.timestep)
+    masses = _row_masses(model, layout)
+    averaged = np.where(b.averaged[:, None] > 0, average(b.stiffness * h**2 / masses), FOURTH_ORDER)
+    present = b.branch_time > 0.0
+    tau = np.where(present, b.branch_time, 1.0)
+    decay = np.where(present, np.exp(-h / tau), 0.0)
+    # A branch may be as stiff as the sheet metal behind a mount; then its force is averaged over three steps too.
+    phase = (b.stiffness + b.branch_stiffness) * h**2 / masses
+    branch_average = average(phase)
+    # Exact response of the branch to a rate that is linear over the step: mean rate and its slope.
+    gain = np.where(present, b.branch_stiffness * tau * -np.expm1(-h / tau), 0.0)
+    series = tau * (0.5 * h * (1.0 + np.exp(-h / tau)) + tau * np.expm1(-h / tau))
+    # A light part that the branch damps strongly must not ring.
+    share = np.where(phase > FITTED_PHASE**2, 0.5, implicit_share(gain * h / masses))
+    slope = np.where(present, b.branch_stiffness * series * 2.0 * share, 0.0)
+    rise = branch_average * ((decay - 1.0) * slope + gain * h)
+    branch = np.where(present, slope + rise, 0.0)
+    laws = layout.dampers.laws
+    return Weights(
+        timestep=h,
+        preload=preload,
+        decay=decay,
+        gain=gain,
+        slope=slope,
+        average=branch_average,
+        impedance=np.maximum(b.damping * h / 2 + averaged * b.stiffness * h**2 + branch, EMPTY_ROW),
+        inertial=averaged[layout.tyres] * b.stiffness[layout.tyres] * h**2,
+        spring_impedance=np.maximum(FOURTH_ORDER * layout.springs.stiffness * h**2, EMPTY_ROW),
+        damper_impedance=np.maximum(laws["viscous_damping"] * h / 2, EMPTY_ROW),
+        valve_impedance=np.maximum(laws["degressive_slope"][layout.dampers.valves[:, 1]] * h / 2, EMPTY_ROW),
+    )
+
+
+def _row_masses(model: mujoco.MjModel, layout: Layout) -> Vector:
+    """Mass 1 / (j M^-1 j') [kg] that each element row moves in the design position; (n, 3)."""
+    data = mujoco.MjData(model)
+    mujoco.mj_fwdPosition(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    rows = data.efc_J.reshape(-1, model.nv)[layout.bushings.rows.ravel()]
+    inverse = np.einsum("ij,ji->i", rows, np.linalg.solve(mass, rows.T))
+    # A row that nothing can move moves an infinite mass.
+    moved = np.divide(1.0, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0.0)
+    return np.asarray(moved).reshape(layout.bushings.rows.shape)
+
+
+def _at_rest(layout: Layout) -> State:
+    """A state without a past."""
+    elements, tyres, springs = layout.bushings.rows.shape, len(layout.tyres), len(layout.springs.rows)
+    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(State._fields, elements)
+    shapes |= dict.fromkeys(("plate_velocity", "plate_acceleration"), (tyres, 3))
+    shapes |= {"last_time": (1,), "explicit": (layout.row_count,)}
+    shapes |= {"torque": (len(layout.rotations.sites), 3), "ends": (2 * springs, 3), "line": (springs, 3)}
+    shapes |= {"deflection": (2, layout.modes.mode_shapes.shape[1])}
+    state = State(**{name: np.zeros(shapes[name]) for name in State._fields})
+    state.last_time[0] = -1.0
+    return state

@@ -1,0 +1,101 @@
+"""One step of a run around `mj_step`: the plates in, the sample out. The loop does this compiled or as it stands."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from vehicle.compiler import jitable
+from vehicle.simulation.records import Index, Table, Vector
+
+
+class Plates(NamedTuple):
+    """Motion of the plates over the steps (steps, t), and the places it goes to."""
+
+    height: Table
+    velocity: Table
+    acceleration: Table
+    mocap: Index
+    mocap_position: Table
+    row_velocity: Table
+    row_acceleration: Table
+
+
+class Sources(NamedTuple):
+    """What is read after a step: views of mjData and of the state of the rows, and which sites and dampers."""
+
+    position: Vector
+    velocity: Vector
+    acceleration: Vector
+    orientation: Table
+    site_positions: Table
+    actuator: Vector
+    explicit: Vector
+    rate: Table
+    branch: Table
+    sites: Index
+    dampers: Index
+
+
+class Samples(NamedTuple):
+    """Where it goes: buffers with one row a sample, and poses."""
+
+    places: Table
+    turn: Table
+    modal_position: Table
+    modal_velocity: Table
+    damper_velocity: Table
+    actuator: Table
+    solved: Table
+    explicit: Table
+    rate: Table
+    branch: Table
+    poses: Table
+
+
+class Order(NamedTuple):
+    """Addresses of `mj_step`, mjModel and mjData, offset of the constraint forces, steps to a sample, samples to a
+    pose, the flexible body and its modes, half a step back [s]."""
+
+    step: int
+    model: int
+    data: int
+    force_offset: int
+    every: int
+    pose_every: int
+    body: int
+    first_velocity: int
+    first_position: int
+    modes: int
+    half: float
+
+
+@jitable
+def move_plates(index: int, p: Plates) -> None:
+    """Put the plates where they are at a step, and tell the tyre rows."""
+    for plate in range(p.mocap.shape[0]):
+        p.mocap_position[p.mocap[plate], 2] = p.height[index, plate]
+        p.row_velocity[plate, 2] = p.velocity[index, plate]
+        p.row_acceleration[plate, 2] = p.acceleration[index, plate]
+
+
+@jitable
+def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector, b: Samples) -> None:
+    """Copy the present time's forces, rates and positions.
+
+    MuJoCo's velocity is that of the middle of a step: `half` a step of acceleration carries it to the present.
+    """
+    for place in range(s.sites.shape[0]):
+        for axis in range(3):
+            b.places[row, 3 * place + axis] = s.site_positions[s.sites[place], axis]
+    b.turn[row] = s.orientation[order.body]
+    for mode in range(order.modes):
+        dof = order.first_velocity + mode
+        b.modal_velocity[row, mode] = s.velocity[dof] + half * s.acceleration[dof]
+    for damper in range(s.dampers.shape[0]):
+        dof = s.dampers[damper]
+        b.damper_velocity[row, damper] = s.velocity[dof] + half * s.acceleration[dof]
+    b.actuator[row] = s.actuator
+    b.solved[row] = solved
+    b.explicit[row] = s.explicit
+    b.rate[row] = s.rate
+    b.branch[row] = s.branch
