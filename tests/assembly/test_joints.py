@@ -121,7 +121,7 @@ def test_the_constants_of_the_elements_are_in_the_model(car):
         if model.eq_objtype[index] == mujoco.mjtObj.mjOBJ_SITE:
             ends = (model.eq_obj1id[index], model.eq_obj2id[index])
             touches = body in [model.site_bodyid[site] for site in ends]
-            shape = numeric(model, f"shape/{model.equality(index).name}")
+            shape = layout.numeric(model, f"shape/{model.equality(index).name}")
             assert (shape is not None) == touches
             count += touches
     assert count == 15  # four mounts and arm bushings, two rear supports, three of the engine, six balls

@@ -111,12 +111,12 @@ class Modes(NamedTuple):
     @property
     def velocities(self) -> slice:
         """Columns of the modal coordinates."""
-        return slice(self.first_velocity, self.first_velocity + self.count)
+        return slice(self.first_velocity, self.first_velocity + self.size)
 
     @property
     def positions(self) -> slice:
         """Their generalised positions."""
-        return slice(self.first_position, self.first_position + self.count)
+        return slice(self.first_position, self.first_position + self.size)
 
 
 class Layout(NamedTuple):
