@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.parameters.elements import FRICTION_LAWS
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.rows import Rows, prepare_model
 
@@ -94,7 +95,8 @@ def add_damper(spec, body, parameters, *, stiffness=0.0):
     )
     actuator = spec.add_actuator(name="damper_fr", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="damper_fr")
     actuator.gaintype, actuator.biastype = mujoco.mjtGain.mjGAIN_USER, mujoco.mjtBias.mjBIAS_USER
-    actuator.biasprm = [*parameters, *np.zeros(10 - len(parameters))]
+    law = FRICTION_LAWS.index("coulomb" if parameters[3] == parameters[2] else "stribeck")
+    actuator.biasprm = [*parameters, *np.zeros(8 - len(parameters)), law, 0.0]
     if len(parameters) > 6:
         tendon = spec.add_tendon(name="valve_fr")
         tendon.wrap_joint("damper_fr", 1.0)
