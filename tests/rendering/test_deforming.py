@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from vehicle.names import BODY_OUTPUTS
-from vehicle.rendering.deforming import Coil, Wireframe
-from vehicle.rendering.exaggeration import Motion
-from vehicle.rendering.scale import colours, round_up
+from vehicle.rendering.motion import Coil, Motion, Wireframe
+from vehicle.rendering.overlay import colours, round_up
 
 
 @pytest.fixture(scope="module")

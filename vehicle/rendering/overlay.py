@@ -1,8 +1,8 @@
-"""Where things are in a frame, and what is written on it: input, time, lamps, colour bar, traces that run along."""
+"""Where things are in a frame, and what is written on it: input, time, lamps, colour bar with its scale, traces."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +12,6 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
 from vehicle.errors import ConfigurationError
-from vehicle.rendering.scale import colours
 
 Picture = npt.NDArray[np.uint8]
 Vector = npt.NDArray[np.float64]
@@ -26,6 +25,16 @@ TRACE_COLOURS = ((31, 95, 168), (46, 139, 87), (209, 73, 91))
 BAND = (226, 240, 231)
 FINE = 2
 """Traces are drawn this many times larger and reduced, which smooths their lines."""
+
+SCALE_COLOURS = (
+    (0.10, 0.18, 0.55),
+    (0.00, 0.50, 0.75),
+    (0.05, 0.68, 0.45),
+    (0.98, 0.80, 0.10),
+    (0.95, 0.40, 0.05),
+    (0.80, 0.06, 0.04),
+)
+"""From rest (blue) to the top of the scale (red), evenly spaced; the order of the rainbow, as modal analysis has it."""
 
 SMALLEST = (320, 180)
 """Width and height of a frame that can still be read [pixel]."""
@@ -85,14 +94,6 @@ class Trace:
     """half height of a shaded band"""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Lamp:
-    """State of a damper: slipping is above `damper.slip_velocity`, as in all tables."""
-
-    label: str
-    slipping: bool
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Overlay:
     """Draws onto frames of one size."""
@@ -110,13 +111,13 @@ class Overlay:
     scale_top: float
     """displacement at the top of the colour bar [mm]"""
 
-    def draw(self, picture: Picture, time: float, lamps: Sequence[Lamp]) -> Picture:
+    def draw(self, picture: Picture, time: float, lamps: Mapping[str, bool]) -> Picture:
         """Finish a frame.
 
         Args:
             picture: views of the car, (height above the traces, width, 3).
             time: [s].
-            lamps: states of the dampers.
+            lamps: label of each damper, and whether it slips: is faster than `damper.slip_velocity`, as in all tables.
 
         Returns:
             The whole frame, (height, width, 3).
@@ -146,18 +147,17 @@ class Overlay:
             pen.text((x, y), line, fill=INK, font=self._font(21 if number == 0 else 17, bold))
             y += self._px(28 if number == 0 else 24)
 
-    def _lamps(self, pen: ImageDraw.ImageDraw, lamps: Sequence[Lamp]) -> None:
+    def _lamps(self, pen: ImageDraw.ImageDraw, lamps: Mapping[str, bool]) -> None:
         """One lamp for each damper on a white plate above the close-up."""
         right, radius, row = self.layout.width - self._px(12), self._px(9), self._px(30)
         left, top = right - self._px(236), self._px(12)
         pen.rounded_rectangle([left, top, right, top + row * len(lamps) + self._px(6)], self._px(8), fill=PAPER)
-        for number, lamp in enumerate(lamps):
+        for number, (label, slipping) in enumerate(lamps.items()):
+            colour, word = (SLIP_COLOUR, "SLIP") if slipping else (STICK_COLOUR, "STICK")
             y = top + self._px(3) + row * number + row // 2
-            colour = SLIP_COLOUR if lamp.slipping else STICK_COLOUR
             x = left + self._px(20)
             pen.ellipse([x - radius, y - radius, x + radius, y + radius], fill=colour, outline=INK)
-            pen.text((x + self._px(20), y), lamp.label, fill=INK, font=self._font(16), anchor="lm")
-            word = "SLIP" if lamp.slipping else "STICK"
+            pen.text((x + self._px(20), y), label, fill=INK, font=self._font(16), anchor="lm")
             pen.text((right - self._px(12), y), word, fill=colour, font=self._font(16, True), anchor="rm")
 
     @cached_property
@@ -226,3 +226,35 @@ def font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
 
     name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
     return ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / name), size)
+
+
+def colours(values: npt.ArrayLike, top: float) -> npt.NDArray[np.float32]:
+    """Colours of values between 0 and the top of the scale; what lies above is drawn as the top.
+
+    Args:
+        values: (n,), same unit as `top`.
+        top: largest value of the scale, above 0.
+
+    Returns:
+        Red, green, blue and opacity 1, (n, 4).
+    """
+    table = np.array(SCALE_COLOURS)
+    place = np.clip(np.atleast_1d(np.asarray(values, dtype=float)) / top, 0.0, 1.0) * (len(table) - 1)
+    rgb = [np.interp(place, np.arange(len(table)), column) for column in table.T]
+    return np.column_stack([*rgb, np.ones(len(place))]).astype(np.float32)
+
+
+def round_up(value: float) -> float:
+    """The next 1, 1.5, 2, 3, 4, 5, 6, 8 or 10 times a power of ten; 1 for zero."""
+    if value <= 0.0:
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(value))
+    steps = np.array([1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0])
+    return float(steps[steps >= value / power * (1.0 - 1e-12)][0] * power)
+
+
+def round_factor(factor: float) -> float:
+    """Round an exaggeration down to 1, 1.5, 2, 3, 5 or 7 times a power of ten; never below 1."""
+    power = 10.0 ** np.floor(np.log10(max(factor, 1.0)))
+    steps = np.array([1.0, 1.5, 2.0, 3.0, 5.0, 7.0])
+    return float(steps[steps <= max(factor, 1.0) / power * (1.0 + 1e-12)][-1] * power)

@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.names import acceleration_channels
 from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, shade, wrapped_phase
 from vehicle.rendering.recorded_run import RecordedRun, liveliest, side_of, wheels_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-Vector = npt.NDArray[np.float64]
 
 REGION = 1.96
 """Half width of the band around a magnitude, in standard errors: 95 % of all records lie within it."""
@@ -143,18 +136,13 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
         histories.align_ylabels(axes[:, 0])
         for axis, name in zip(characteristics.subplots(len(wheels), 1, squeeze=False)[:, 0], wheels, strict=True):
-            _characteristic(axis, recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"], slip)
-            axis.set_title(f"{side_of(name)} damper")
+            speed, force = 1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"]
+            axis.plot(speed, force, ".", markersize=1.5, color=COLOURS[0], zorder=3)
+            for limit in (-1e3 * slip, 1e3 * slip):
+                axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
+            axis.set(xlabel="damper velocity [mm/s]", ylabel="damper force [N]", title=f"{side_of(name)} damper")
 
 
 def _each(channel: str, label: str, wheels: Sequence[str]) -> dict[str, str]:
     """Channel of each wheel to its legend text."""
     return {channel.format(wheel): f"{label} {side_of(wheel)}" for wheel in wheels}
-
-
-def _characteristic(axis: Axes, velocity: Vector, force: Vector, slip: float) -> None:
-    """Damper force [N] over its velocity [m/s], every sample a point."""
-    axis.plot(1e3 * velocity, force, ".", markersize=1.5, color=COLOURS[0], zorder=3)
-    for limit in (-1e3 * slip, 1e3 * slip):
-        axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
-    axis.set(xlabel="damper velocity [mm/s]", ylabel="damper force [N]")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import closing, contextmanager
+from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,16 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.rendering.canvas import Canvas
-from vehicle.rendering.deforming import Coil, Wireframe
-from vehicle.rendering.exaggeration import Motion
-from vehicle.rendering.overlay import Lamp, Layout, Overlay, Trace
+from vehicle.rendering.motion import Coil, Motion, Wireframe
+from vehicle.rendering.overlay import Layout, Overlay, Trace, colours, round_factor, round_up
 from vehicle.rendering.recorded_run import RecordedRun, excerpt_start, side_of, wheels_of
-from vehicle.rendering.scale import colours, round_factor, round_up
-from vehicle.rendering.stage import close_up, stage_model, whole_car
+from vehicle.rendering.stage import Canvas, Picture, close_up, stage_model, whole_car
 from vehicle.shapes import SHELL
 
-Picture = npt.NDArray[np.uint8]
 Vector = npt.NDArray[np.float64]
 
 VISIBLE_TRAVEL = 0.08
@@ -157,21 +153,24 @@ class Shot:
                     canvas.upload(coil.mesh)
                 places = self.wireframe.places(state, factor)
                 shades = colours(self.wireframe.displacement(state), self.scale_top)
-                for camera, viewport, opacities in views:
-                    with _opacity(model, opacities):
-                        canvas.update(data, camera)
-                        self.wireframe.draw(canvas.scene, places, shades)
-                        canvas.render(viewport)
+                for camera, viewport, opacity in views:
+                    model.mat_rgba[:, 3] = opacity
+                    canvas.update(data, camera)
+                    self.wireframe.draw(canvas.scene, places, shades)
+                    canvas.render(viewport)
                 yield self.overlay.draw(canvas.read(), time, self._lamps(time))
 
-    def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], dict[str, float]]]:
-        """Camera, viewport and changed opacities of each view."""
+    def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]]:
+        """Camera, viewport and opacity of all materials of each view."""
         layout, wheel = self.layout, self.run.wheel
-        ghosts = {f"{name}_{wheel}": GHOST_OPACITY for name in GHOSTS}
+        usual, cleared = self.model.mat_rgba[:, 3].copy(), self.model.mat_rgba[:, 3].copy()
+        for name in GHOSTS:
+            cleared[self.model.material(f"{name}_{wheel}").id] = GHOST_OPACITY
+        cleared[[self.model.material(name).id for name in CLEARED]] = 0.0
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
         return [
-            (whole_car(), (0, 0, layout.main_width, layout.view_height), {}),
-            (close_up(self.motion, wheel), right, ghosts | dict.fromkeys(CLEARED, 0.0)),
+            (whole_car(), (0, 0, layout.main_width, layout.view_height), usual),
+            (close_up(self.motion, wheel), right, cleared),
         ]
 
     def _largest(self, times: Vector, exposure: float) -> tuple[float, float]:
@@ -215,28 +214,11 @@ class Shot:
             found.append(Trace(label=label, values=values, top=top, band=band))
         return found
 
-    def _lamps(self, time: float) -> list[Lamp]:
-        """Whether a damper slipped at any sample of the time between two frames."""
+    def _lamps(self, time: float) -> dict[str, bool]:
+        """Label of each damper, and whether it slipped at any sample of the time between two frames."""
         recording = self.run.recording
         half = max(0.5 * self.cut.interval, 0.5 * recording.timestep)
         first, last = np.searchsorted(recording.time, [time - half, time + half])
         part = slice(int(first), max(int(last), int(first) + 1))
-        return [
-            Lamp(
-                label=f"damper {side_of(wheel)}",
-                slipping=bool(np.any(np.abs(recording[f"damper_{wheel}_velocity"][part]) > self.slip)),
-            )
-            for wheel in self.wheels
-        ]
-
-
-@contextmanager
-def _opacity(model: mujoco.MjModel, opacities: Mapping[str, float]) -> Iterator[None]:
-    """Draw some shapes with another opacity; 0 leaves them out."""
-    materials = [model.material(name).id for name in opacities]
-    before = model.mat_rgba[materials, 3].copy()
-    model.mat_rgba[materials, 3] = list(opacities.values())
-    try:
-        yield
-    finally:
-        model.mat_rgba[materials, 3] = before
+        speeds = {wheel: recording[f"damper_{wheel}_velocity"][part] for wheel in self.wheels}
+        return {f"damper {side_of(wheel)}": bool(np.any(np.abs(speeds[wheel]) > self.slip)) for wheel in self.wheels}

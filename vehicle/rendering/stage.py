@@ -1,15 +1,24 @@
-"""The scene of a film: the generated car with its shapes, translucent shell, lights and floor."""
+"""The scene of a film: the car with its shapes, translucent shell, lights, floor, cameras; its off-screen picture."""
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import Any
+
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.assembly.studio import add_studio
 from vehicle.assembly.visuals import add_shapes
-from vehicle.rendering.exaggeration import Motion
+from vehicle.rendering.motion import Motion
 from vehicle.shapes import SHELL, car_shapes
 from vehicle.simulation.car_model import CarModel
+
+Picture = npt.NDArray[np.uint8]
+
+MOST_GEOMS = 2000
+"""Room in a scene: shapes, and nodes and members of the wireframe."""
 
 SAMPLES = 4
 """Multisampling of the picture."""
@@ -68,3 +77,57 @@ def close_up(motion: Motion, wheel: str) -> mujoco.MjvCamera:
     camera.distance, camera.elevation = 2.0, -7.0
     camera.azimuth = -60.0 * np.sign(camera.lookat[1])
     return camera
+
+
+class Canvas:
+    """OpenGL context, scene and buffer; close it when done.
+
+    MuJoCo's own Renderer takes the backend that MUJOCO_GL named when mujoco was imported; this takes the one it is
+    told, so a notebook that has imported mujoco already can make films too.
+
+    Args:
+        model: what is drawn; its off-screen buffer must be at least as large as the picture.
+        size: width and height [pixel].
+        backend: "osmesa" or "egl".
+    """
+
+    def __init__(self, model: mujoco.MjModel, size: tuple[int, int], backend: str) -> None:
+        self.model, self.size = model, size
+        self.gl: Any = import_module(f"mujoco.{backend}").GLContext(*size)
+        self.gl.make_current()
+        self.context: mujoco.MjrContext | None = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self.context)
+        self.scene = mujoco.MjvScene(model, maxgeom=MOST_GEOMS)
+        for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
+            self.scene.flags[flag] = False
+        self.option = mujoco.MjvOption()
+        # Springs are drawn as coils, not as tendons.
+        self.option.flags[mujoco.mjtVisFlag.mjVIS_TENDON] = False
+        self.picture = np.zeros((size[1], size[0], 3), dtype=np.uint8)
+
+    def close(self) -> None:
+        """Give all of OpenGL back; harmless a second time."""
+        if self.context is not None:
+            self.gl.make_current()
+            self.context.free()
+            self.context = None
+            self.gl.free()
+
+    def upload(self, mesh: int) -> None:
+        """Pass the changed vertices of a mesh on to OpenGL."""
+        mujoco.mjr_uploadMesh(self.model, self.context, mesh)
+
+    def update(self, data: mujoco.MjData, camera: mujoco.MjvCamera) -> None:
+        """Fill the scene with the geoms as they are placed, seen by a camera; more may be appended to it then."""
+        everything = mujoco.mjtCatBit.mjCAT_ALL
+        mujoco.mjv_updateScene(self.model, data, self.option, None, camera, everything, self.scene)
+
+    def render(self, viewport: tuple[int, int, int, int]) -> None:
+        """Draw the scene into a part of the picture: left, bottom, width and height [pixel]."""
+        mujoco.mjr_render(mujoco.MjrRect(*viewport), self.scene, self.context)
+
+    def read(self) -> Picture:
+        """The picture drawn so far, (height, width, 3), first row on top."""
+        width, height = self.size
+        mujoco.mjr_readPixels(self.picture, None, mujoco.MjrRect(0, 0, width, height), self.context)
+        return np.asarray(self.picture[::-1])

@@ -30,6 +30,7 @@ NORMAL = np.column_stack([-np.gradient(PLAN[:, 1]), np.gradient(PLAN[:, 0])])
 NORMAL[[0, -1], 1] = 0.0  # ends lie in the middle plane
 NORMAL = NORMAL / np.linalg.norm(NORMAL, axis=1)[:, None]
 STATION = np.linspace(0, 1, len(PLAN))  # runs along the plan curve
+THIRD = len(PLAN) // 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,14 +49,8 @@ class Outline:
     def place(self, reference: Array) -> Array:
         """Reference points (X, Y, H), shape (..., 3), as vehicle points; linear beyond the outermost knots too."""
         X, Y, H = np.moveaxis(np.asarray(reference, dtype=float), -1, 0)
-        return np.stack(
-            [
-                _linear(X, DRAWING["reference_x"], self.x_knots),
-                Y * self.widen,
-                _linear(H, DRAWING["reference_h"], self.z_knots),
-            ],
-            axis=-1,
-        )
+        x, z = _linear(X, DRAWING["reference_x"], self.x_knots), _linear(H, DRAWING["reference_h"], self.z_knots)
+        return np.stack([x, Y * self.widen, z], axis=-1)
 
     def height(self, z: float | Array) -> Array:
         """Reference height H [m] of a vehicle height z."""
@@ -109,14 +104,12 @@ def station_at(X: float | Array) -> Array:
 
 def station_front(Y: float | Array) -> Array:
     """Station of the plan curve at a reference Y [m] on the front."""
-    ahead = slice(len(PLAN) // 3)
-    return np.asarray(np.interp(Y, PLAN[ahead, 1], STATION[ahead]))
+    return np.asarray(np.interp(Y, PLAN[:THIRD, 1], STATION[:THIRD]))
 
 
 def station_rear(Y: float | Array) -> Array:
     """Station of the plan curve at a reference Y [m] on the rear."""
-    behind = slice(None, -(len(PLAN) // 3) - 1, -1)
-    return np.asarray(np.interp(Y, PLAN[behind, 1], STATION[behind]))
+    return np.asarray(np.interp(Y, PLAN[: -THIRD - 1 : -1, 1], STATION[: -THIRD - 1 : -1]))
 
 
 OUTLINE = ("wheel_center", "tyre_patch", "rear_axle", "roof")

@@ -10,9 +10,8 @@ from vehicle.shapes.body_outline import outline
 from vehicle.shapes.placement import both, joined, placed, shifted
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
 from vehicle.shapes.solids import block, box, drum, hull, lathe, plate, ring, rod, tube
-from vehicle.shapes.strut import SEAT_BELOW_TOP, strut_axis
 from vehicle.shapes.surface import spline
-from vehicle.shapes.suspension import stabilizer_clamp
+from vehicle.shapes.suspension import SEAT_BELOW_TOP, stabilizer_clamp, strut_axis
 
 FORE_AFT, UPRIGHT = 0, 2
 SHEET = (-0.004, 0.004)  # [m] faces of an 8 mm sheet

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Final
 
-from vehicle.shapes import body_structure, engine, rig, strut, suspension, wheel
+from vehicle.shapes import body_structure, engine, rig, suspension, wheel
 from vehicle.shapes.body_outline import OUTLINE
 from vehicle.shapes.body_trim import estate_body
 from vehicle.shapes.placement import mirrored
 from vehicle.shapes.shape import SIZES, Piece, Points, Shape, Sizes
-from vehicle.shapes.strut import STRUT
+from vehicle.shapes.suspension import STRUT
 
 ENGINE: Final = ("engine_cog", "hydromount", "linear_mount", "bottom_engine")
 RAILS: Final = (*OUTLINE, *STRUT, "body_front", "arm_front")
@@ -33,10 +33,10 @@ ROLES: Final[dict[str, tuple[Callable[[Points, Sizes], list[Piece]], tuple[str, 
     "brake_disc": (wheel.brake_disc, ("wheel_center",)),
     "caliper": (wheel.caliper, ("wheel_center",)),
     "wheel": (wheel.wheel, ("wheel_center", "tyre_patch")),
-    "damper_tube": (strut.damper_tube, STRUT),
-    "damper_rod": (strut.damper_rod, STRUT),
-    "top_mount": (strut.top_mount, STRUT),
-    "coil_spring": (strut.coil_spring, STRUT),
+    "damper_tube": (suspension.damper_tube, STRUT),
+    "damper_rod": (suspension.damper_rod, STRUT),
+    "top_mount": (suspension.top_mount, STRUT),
+    "coil_spring": (suspension.coil_spring, STRUT),
     "steering_rod": (suspension.steering_rod, ("tie_inner", "tie_outer")),
     "stabilizer_half": (suspension.stabilizer_half, ("stab_end", "stab_body", "stab_rod_top")),
     "stabilizer_rod": (suspension.stabilizer_rod, ("stab_end", "stab_rod_top")),

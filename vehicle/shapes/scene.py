@@ -41,6 +41,9 @@ CORNER: Final = {
 }
 """part of a corner to its role"""
 
+RIG: Final = {True: ("shaker_table", "shaker"), False: ("fixed_plate", "pedestal")}
+"""roles of what moves and of what stands under a wheel on the right, and under any other"""
+
 WHEEL: Final = "wheel_center_"
 SUPPORT: Final = "rear_support_"
 
@@ -80,15 +83,13 @@ def car_parts(points: Mapping[str, np.ndarray]) -> Iterator[Part]:
         left = bool(corner["wheel_center"][1] < 0.0)
         for part, role in CORNER.items():
             yield Part(name=part, role=role, points=corner, suffix=f"_{wheel}", left=left)
-    right = {wheel: corner["wheel_center"][1] > 0.0 for wheel, corner in corners.items()}
-    for wheel, corner in corners.items():
-        plate = "shaker_table" if right[wheel] else "fixed_plate"
-        yield Part(name="plate", role=plate, points=corner, suffix=f"_{wheel}")
-    for wheel, corner in corners.items():
-        under = "shaker" if right[wheel] else "pedestal"
-        yield Part(name=under, role=under, points=corner, suffix=f"_{wheel}", carrier="world")
+    stands = {wheel: RIG[bool(corner["wheel_center"][1] > 0.0)] for wheel, corner in corners.items()}
+    for wheel, (plate, _) in stands.items():
+        yield Part(name="plate", role=plate, points=corners[wheel], suffix=f"_{wheel}")
+    for wheel, (_, under) in stands.items():
+        yield Part(name=under, role=under, points=corners[wheel], suffix=f"_{wheel}", carrier="world")
     standing = {wheel: corner["tyre_patch"] for wheel, corner in corners.items()} | supports
     yield Part(name="bed_plate", role="bed_plate", points=standing, carrier="world")
     for side, support in supports.items():
-        block = {"support": support}
-        yield Part(name="rubber_block", role="rear_block", points=block, suffix=f"_{side}", carrier="world")
+        points = {"support": support}
+        yield Part(name="rubber_block", role="rear_block", points=points, suffix=f"_{side}", carrier="world")

@@ -8,8 +8,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.rendering.conftest import fabricated
-from vehicle.rendering.exaggeration import Motion
-from vehicle.rendering.scale import round_factor
+from vehicle.rendering.motion import Motion
+from vehicle.rendering.overlay import round_factor
 
 EXACT = 1e-9
 """[m], [1]: a spline passes through its knots; what remains is rounding through a rotation vector and back."""
