@@ -8,14 +8,16 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.charts import LEVEL_COLOURS, draw_frf, measured_curve
-from scenarios.claims import COMPARED, FITTED, INFERRED, PREDICTED, Claim, Findings
-from scenarios.levels import TOO_SHORT, level_signal
+from scenarios.claims import COMPARED, FITTED, INFERRED, PREDICTED, Claim, Findings, markdown
+from scenarios.inputs.make_inputs import level_signal
+from scenarios.levels import TOO_SHORT
 from scenarios.study import car_study, computed_by, estimator_text, setting
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonance_peaks
@@ -39,10 +41,9 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     inertia_figure(folder / "seat_rail.png", by_label, responses, frequencies)
     peaks = [roll_peak(response, roll) for response, roll in zip(responses, frequencies, strict=True)]
     seen = roll_claims(peaks, frequencies)
-    claims = mode_claims(cars)
     return Findings(
         title="Moment of inertia Ixx of the body (source 1, sections 3.2.1 and 3.4)",
-        claims=claims if options.quick else [*claims, *seen],
+        claims=[*mode_claims(cars), *seen],
         unjudged={claim.name: TOO_SHORT for claim in seen} if options.quick else {},
         notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, found[0], options.quick)],
         data={
@@ -184,17 +185,12 @@ def roll_claims(peaks: Sequence[float], modes: Sequence[float]) -> list[Claim]:
 
 def mode_table(cars: Mapping[str, Car]) -> str:
     """Modes below 20 Hz of all cars beside each other."""
-    columns = [car.modes("stuck", highest=20.0) for car in cars.values()]
-    lines = ["Modes below 20 Hz, dampers stuck (natural frequency, damping ratio, what moves):", ""]
-    lines += ["| " + " | ".join(cars) + " |", "|" + "---|" * len(cars)]
-    for row in range(max(len(column) for column in columns)):
-        cells = [_cell(column[row]) if row < len(column) else "" for column in columns]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
-
-
-def _cell(mode: Mode) -> str:
-    return f"{mode.frequency:.2f} Hz, {100 * mode.damping_ratio:.1f} %, {mode.description}"
+    columns = [
+        [f"{one.frequency:.2f} Hz, {100 * one.damping_ratio:.1f} %, {one.description}" for one in modes]
+        for modes in (car.modes("stuck", highest=20.0) for car in cars.values())
+    ]
+    head = "Modes below 20 Hz, dampers stuck (natural frequency, damping ratio, what moves):\n\n"
+    return head + markdown(tuple(cars), list(zip_longest(*columns, fillvalue="")))
 
 
 def _list(values: Sequence[float]) -> str:
@@ -218,15 +214,9 @@ def inertia_figure(
         rolls: roll mode of each, dampers stuck [Hz].
     """
     colours = (LEVEL_COLOURS[0], LEVEL_COLOURS[2])
+    looks = list(zip(responses, runs, colours, strict=True))
     columns = [
-        (
-            title,
-            [
-                measured_curve(response, row, label, colour)
-                for label, response, colour in zip(runs, responses, colours, strict=True)
-            ],
-        )
-        for row, title in enumerate(TITLES)
+        (title, [measured_curve(response, row, *look) for response, *look in looks]) for row, title in enumerate(TITLES)
     ]
     marks = [(f"roll mode {roll:.2f} Hz", roll, colour) for roll, colour in zip(rolls, colours, strict=True)]
     run, response = next(iter(runs.values())), responses[0]

@@ -9,6 +9,7 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -16,38 +17,18 @@ import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
 from scenarios.charts import LEVEL_COLOURS, FrfCurve, draw_frf, measured_curve
-from scenarios.claims import FITTED, PREDICTED, Claim, Findings, Kind, interval_claim
-from scenarios.inputs.make_inputs import LEVELS, SEED
+from scenarios.claims import FITTED, PREDICTED, Claim, Findings, Kind, interval_claim, markdown
+from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
 from scenarios.study import car_study, computed_by, estimator_text, setting
 from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.peaks import phase_resonance
 from vehicle.car import Run
-from vehicle.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER
-from vehicle.excitation.input_files import find_input
-from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import read_signal
 from vehicle.excitation.slip_set import sets_text
-
-QUICK_DURATION = 5.0
-"""Length of the signals with --quick [s]."""
 
 QUICK_OUTPUTS = ("seat_rail_acc_z",)
 """Outputs drawn with --quick."""
 
 TOO_SHORT = f"{QUICK_DURATION:g} s of signal tell it too coarsely"
-
-
-def level_signal(level: str, *, quick: bool) -> Signal:
-    """The shipped input of a level, or a short one of the same spectrum and level."""
-    if not quick:
-        return read_signal(find_input(f"{level}.csv"))
-    return random_road(
-        rms=LEVELS[level],
-        seed=SEED,
-        duration=QUICK_DURATION,
-        lower_band_edge=SHAKER_EDGE_HZ,
-        roll_off_order=SHAKER_ROLL_OFF_ORDER,
-    )
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
@@ -60,12 +41,11 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     slip_velocity = runs.car().vehicle.damper.slip_velocity
     claims = [*slip_claims(values, slip_velocity), *frequency_claims(values), *order_claims(values)]
     claims += axis_claims(responses)
-    judged = order_claims(values) if options.quick else claims
-    names = {claim.name for claim in judged}
+    sure = {claim.name for claim in order_claims(values)}
     return Findings(
         title="Low, mid and high level (source 1, sections 3.2.1 and 3.3)",
-        claims=judged,
-        unjudged={claim.name: TOO_SHORT for claim in claims if claim.name not in names},
+        claims=claims,
+        unjudged={one.name: TOO_SHORT for one in claims if one.name not in sure} if options.quick else {},
         notes=[slip_table(values, slip_velocity), sets_text(), *setting(runs, found[0], options.quick)],
         data={"levels": {level: asdict(value) for level, value in values.items()}, "slip_velocity": slip_velocity},
     )
@@ -129,7 +109,7 @@ def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:
     return LevelNumbers(
         slip=(run.slip_share("fr"), run.slip_share("fl")),
         saturated=(run.slip_share("fr", 1e-3), run.slip_share("fl", 1e-3)),
-        wheel_hz=quarter_turn(frequency[wheel], complex_knuckle[wheel], knuckle[wheel]),
+        wheel_hz=phase_resonance(frequency[wheel], complex_knuckle[wheel]),
         wheel_peak_hz=float(frequency[wheel][np.nanargmax(knuckle[wheel])]),
         wheel_peak=float(np.nanmax(knuckle[wheel])),
         body_peak=float(np.nanmax(knuckle[body])),
@@ -137,32 +117,12 @@ def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:
     )
 
 
-def quarter_turn(frequency: Vector, response: npt.NDArray[np.complex128], magnitude: Vector) -> float:
-    """Frequency where the phase falls through 90 deg, nearest to the largest line: the resonance, whatever its damping.
-
-    Args:
-        frequency: lines of the band [Hz], (m,).
-        response: acceleration over displacement, (m,); it turns from 180 to 0 deg through a resonance.
-        magnitude: its magnitude, (m,).
-
-    Returns:
-        Interpolated frequency [Hz]; NaN where the phase passes 90 deg nowhere.
-    """
-    # Through 90 deg from above, the real part changes from negative to positive while the imaginary part is positive.
-    real, upper = response.real, response.imag > 0.0
-    at = np.flatnonzero((real[:-1] < 0.0) & (real[1:] >= 0.0) & upper[:-1] & upper[1:])
-    if not at.size:
-        return float("nan")
-    crossings = frequency[at] - real[at] * (frequency[at + 1] - frequency[at]) / (real[at + 1] - real[at])
-    return float(crossings[np.argmin(np.abs(crossings - frequency[np.nanargmax(magnitude)]))])
-
-
 def slip_claims(found: Mapping[str, LevelNumbers], slip_velocity: float) -> list[Claim]:
     """Rows of table 3.2."""
     claims = []
     for level, published in PUBLISHED_SLIP.items():
-        for wheel, share, ours in zip(("right", "left"), published, found[level].slip, strict=True):
-            saturated = found[level].saturated[("right", "left").index(wheel)]
+        shares = (("right", "left"), published, found[level].slip, found[level].saturated)
+        for wheel, share, ours, saturated in zip(*shares, strict=True):
             why = (
                 f"share of the samples above {1e3 * slip_velocity:g} mm/s ({100 * saturated:.2f} % above 1 mm/s); the "
                 "slip velocity and the band edge of the input are not published and were fitted, once, to these six "
@@ -240,46 +200,39 @@ def axis_claims(responses: Mapping[str, FrequencyResponse]) -> list[Claim]:
     Args:
         responses: level to FRFs, rows as `CHANNELS`.
     """
-    lines = {
-        f"{channel}, {level}, {frequency:.3g} Hz": magnitude
+    lines = [
+        (float(magnitude), f"{channel}, {level}, {frequency:.3g} Hz")
         for level, found in responses.items()
         for channel, row in zip(CHANNELS, np.abs(found.response), strict=True)
         for frequency, magnitude in zip(found.frequency, row, strict=True)
         if np.isfinite(magnitude)
-    }
-    values = np.array(list(lines.values()))
-    outside = 100.0 * np.mean((values < FRF_AXIS[0]) | (values > FRF_AXIS[1]))
+    ]
+    outside = 100.0 * np.mean([not FRF_AXIS[0] <= value <= FRF_AXIS[1] for value, _ in lines])
     return [
         interval_claim(
             f"{word} line of the FRFs, 1 to 50 Hz [(m/s2)/m]",
             FRF_AXIS,
-            float(lines[where]),
+            value,
             f"{where}; every figure from 3.3 to 3.36 has this axis; {len(CHANNELS)} outputs, {len(responses)} levels, "
             f"{outside:.1f} % of all lines outside; the axis may cut off antiresonances",
         )
-        for word, where in (
-            ("largest", max(lines, key=lines.__getitem__)),
-            ("smallest", min(lines, key=lines.__getitem__)),
-        )
+        for word, extreme in (("largest", max), ("smallest", min))
+        for value, where in [extreme(lines, key=itemgetter(0))]
     ]
 
 
 def slip_table(found: Mapping[str, LevelNumbers], slip_velocity: float) -> str:
     """Table 3.2 with ours beside it."""
-    lines = [
-        f"Share of the time in slip [%], |v| > {1e3 * slip_velocity:g} mm/s (in brackets: > 1 mm/s):",
-        "",
-        "| level | right, published | right, ours | left, published | left, ours |",
-        "|---|---|---|---|---|",
-    ]
+    rows = []
     for level, published in PUBLISHED_SLIP.items():
-        cells = [
-            cell
-            for share, ours, loose in zip(published, found[level].slip, found[level].saturated, strict=True)
-            for cell in (f"{100 * share:g}", f"{100 * ours:.2f} ({100 * loose:.2f})")
-        ]
-        lines.append(f"| {level} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+        shares = zip(published, found[level].slip, found[level].saturated, strict=True)
+        rows.append([level, *(text for share in shares for text in _both(*share))])
+    head = f"Share of the time in slip [%], |v| > {1e3 * slip_velocity:g} mm/s (in brackets: > 1 mm/s):\n\n"
+    return head + markdown(("level", "right, published", "right, ours", "left, published", "left, ours"), rows)
+
+
+def _both(published: float, ours: float, loose: float) -> tuple[str, str]:
+    return f"{100 * published:g}", f"{100 * ours:.2f} ({100 * loose:.2f})"
 
 
 OUTPUTS = {
@@ -299,8 +252,6 @@ DAMPER = ("knuckle_fr_acc_z", "damper_top_fr_acc_z")
 CHANNELS = (*OUTPUTS, DAMPER[1])
 """Channels whose FRFs are estimated."""
 
-LINEAR_LABEL = "linear model, dampers stuck"
-
 
 def level_figures(
     folder: Path, runs: Mapping[str, Run], responses: Mapping[str, FrequencyResponse], outputs: Sequence[str]
@@ -313,41 +264,35 @@ def level_figures(
         responses: level to FRFs, rows as `CHANNELS`.
         outputs: channels of `OUTPUTS` to draw.
     """
-    any_run = next(iter(runs.values()))
+    run = next(iter(runs.values()))
+    levels = ", ".join(f"{level} {1e3 * run.signal.rms(run.wheel):.3g} mm RMS" for level, run in runs.items())
+    note = (
+        f"FRFs to the plate under the right front wheel. {levels}; {run.signal.duration:g} s each; "
+        f"{estimator_text(next(iter(responses.values())))}; {computed_by(run)}"
+    )
     lines = np.geomspace(1.0, 50.0, 800)
-    linear = any_run.car.matrix_frf(outputs, lines)
-    note = caption(runs, responses)
-    for row, channel in enumerate(outputs):
+    for channel, row in zip(outputs, run.car.matrix_frf(outputs, lines), strict=True):
         name, title = OUTPUTS[channel]
         curves = [
             measured_curve(responses[level], CHANNELS.index(channel), level, colour)
             for level, colour in zip(runs, LEVEL_COLOURS, strict=True)
         ]
-        curves.append(FrfCurve(label=LINEAR_LABEL, frequency=lines, response=linear[row], colour="#222222", style=":"))
+        label = "linear model, dampers stuck"
+        curves.append(FrfCurve(label=label, frequency=lines, response=row, colour="#222222", style=":"))
         draw_frf(folder / f"{name}.png", title, note, [("", curves)])
-    columns = []
-    for level in runs:
-        pair = [
-            measured_curve(responses[level], CHANNELS.index(channel), label, colour, style)
-            for channel, label, colour, style in (
-                (DAMPER[0], "knuckle", LEVEL_COLOURS[0], "-"),
-                (DAMPER[1], "damper top", LEVEL_COLOURS[2], "--"),
-            )
-        ]
-        columns.append((level, pair))
+    looks = (("knuckle", LEVEL_COLOURS[0], "-"), ("damper top", LEVEL_COLOURS[2], "--"))
+    columns = [
+        (
+            level,
+            [
+                measured_curve(response, CHANNELS.index(channel), *look)
+                for channel, look in zip(DAMPER, looks, strict=True)
+            ],
+        )
+        for level, response in responses.items()
+    ]
     title = "Right damper top and knuckle, vertical (figures 3.6, 3.27, 3.28)"
     draw_frf(folder / "damper_top_and_knuckle_z.png", title, note, columns)
-
-
-def caption(runs: Mapping[str, Run], responses: Mapping[str, FrequencyResponse]) -> str:
-    """Levels, estimator, averages, engine."""
-    response = next(iter(responses.values()))
-    run = next(iter(runs.values()))
-    levels = ", ".join(f"{level} {1e3 * run.signal.rms(run.wheel):.3g} mm RMS" for level, run in runs.items())
-    return (
-        f"FRFs to the plate under the right front wheel. {levels}; {run.signal.duration:g} s each; "
-        f"{estimator_text(response)}; {computed_by(run)}"
-    )
 
 
 if __name__ == "__main__":

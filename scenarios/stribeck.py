@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scenarios.bump.runs import FULL, QUICK, SIZES, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
-from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings
+from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
 from scenarios.study import car_study, computed_by, setting
 from vehicle.analysis.slip_peaks import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
 from vehicle.car import SATURATED_VELOCITY, Run
@@ -131,23 +131,18 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
 
 def peak_table(phases: Mapping[str, list[SlipPhase]], start: float) -> str:
     """Every slip with its break-away jump and its most prominent later peak."""
-    lines = [
+    rows = []
+    for name, phase in ((name, phase) for name, found in phases.items() for phase in found):
+        top = most_prominent([phase])
+        text = "none" if top is None else f"{1e3 * top.delay:.0f}, {top.height:.2f}, {top.prominence:.2f}"
+        times = (f"{phase.start - start + BUMP_START_S:.3f}", f"{1e3 * (phase.end - phase.start):.0f}")
+        rows.append((name, *times, f"{1e3 * phase.velocity:.1f}", f"{phase.jump:.2f}", text))
+    columns = ("law", "stick ends [s]", "sliding lasts [ms]", "largest velocity [mm/s]", "break-away jump [m/s2]")
+    peak = "most prominent later extremum: delay [ms], height, prominence [m/s2]"
+    return (
         f"Slides of the right damper from the end of stick, above {1e3 * SATURATED_VELOCITY:g} mm/s, where friction "
-        "is saturated (bump begins at 5 s):",
-        "",
-        "| law | stick ends [s] | sliding lasts [ms] | largest velocity [mm/s] | break-away jump [m/s2] "
-        "| most prominent later extremum: delay [ms], height, prominence [m/s2] |",
-        "|---|---|---|---|---|---|",
-    ]
-    for name, found in phases.items():
-        for phase in found:
-            top = most_prominent([phase])
-            text = "none" if top is None else f"{1e3 * top.delay:.0f}, {top.height:.2f}, {top.prominence:.2f}"
-            lines.append(
-                f"| {name} | {phase.start - start + BUMP_START_S:.3f} | {1e3 * (phase.end - phase.start):.0f} "
-                f"| {1e3 * phase.velocity:.1f} | {phase.jump:.2f} | {text} |"
-            )
-    return "\n".join(lines)
+        f"is saturated (bump begins at 5 s):\n\n{markdown((*columns, peak), rows)}"
+    )
 
 
 DETAIL = (-0.01, 0.08)

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from vehicle.excitation.band import LOWEST_FREQUENCY_HZ, SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER, UPPER_BAND_EDGE_HZ
 from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
-from vehicle.excitation.input_files import INPUT_FOLDER
+from vehicle.excitation.input_files import INPUT_FOLDER, find_input
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import write_signal
+from vehicle.excitation.signal_file import read_signal, write_signal
 
 LEVELS = {"low": 1.06e-4, "mid": 3.17e-4, "high": 5.25e-4}
 """RMS of the displacement [m] (thesis sections 3.2 and 3.3)."""
@@ -22,6 +22,23 @@ SEED = 2006
 """One seed for all levels: the same road, scaled. The year of the source; not chosen for any result."""
 
 FRAME = "frame: z up, positive displacement lifts the plate; SI units; made by: python -m scenarios.inputs.make_inputs"
+
+
+QUICK_DURATION = 5.0
+"""Length of the signals with --quick [s]."""
+
+
+def level_signal(level: str, *, quick: bool) -> Signal:
+    """The shipped input of a level, or a short one of the same spectrum and level."""
+    if not quick:
+        return read_signal(find_input(f"{level}.csv"))
+    return random_road(
+        rms=LEVELS[level],
+        seed=SEED,
+        duration=QUICK_DURATION,
+        lower_band_edge=SHAKER_EDGE_HZ,
+        roll_off_order=SHAKER_ROLL_OFF_ORDER,
+    )
 
 
 def make_inputs() -> dict[str, tuple[Signal, list[str]]]:

@@ -126,3 +126,22 @@ def resonances(response: FrequencyResponse, row: int) -> tuple[Peak, ...]:
     return resonance_peaks(
         response.frequency, np.abs(response.response[row]), response.coherence[row], response.random_error[row]
     )
+
+
+def phase_resonance(frequency: NDArray[np.float64], response: NDArray[np.complex128]) -> float:
+    """Frequency where the phase falls through 90 deg, nearest to the largest line: the resonance, whatever its damping.
+
+    Args:
+        frequency: lines of the band [Hz], (m,).
+        response: acceleration over displacement, (m,); it turns from 180 to 0 deg through a resonance.
+
+    Returns:
+        Interpolated frequency [Hz]; NaN where the phase passes 90 deg nowhere.
+    """
+    # Through 90 deg from above, the real part changes from negative to positive while the imaginary part is positive.
+    real, upper = response.real, response.imag > 0.0
+    at = np.flatnonzero((real[:-1] < 0.0) & (real[1:] >= 0.0) & upper[:-1] & upper[1:])
+    if not at.size:
+        return float("nan")
+    crossings = frequency[at] - real[at] * (frequency[at + 1] - frequency[at]) / (real[at + 1] - real[at])
+    return float(crossings[np.argmin(np.abs(crossings - frequency[np.nanargmax(np.abs(response))]))])
