@@ -9,14 +9,13 @@ import argparse
 import json
 import sys
 import time as clock
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
 from scenarios.bump.claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
-from scenarios.claims import LEGEND, claim_table, headline
+from scenarios.claims import LEGEND, claim_table, headline, markdown
 from scenarios.comfort_sensitivity.claims import PUBLISHED_SLIP as PUBLISHED_ROAD_SLIP
 from scenarios.levels import PUBLISHED_SLIP, SLIP_TOLERANCE
 from scenarios.study import main_of
@@ -36,40 +35,28 @@ HOME = Path("renders/published")
 QUICK_HOME = Path("runs/published/quick_table")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Row:
-    """A published result and the rows of the scenarios that answer it.
-
-    Attributes:
-        name: the row of the table of published results.
-        patterns: names of claims that answer it, `scenario: name` with wild cards.
-    """
-
-    name: str
-    patterns: tuple[str, ...]
-
-
-COMPLETE_CAR = (
-    Row(name="slip share, low / mid / high", patterns=("levels: slip share of the *",)),
-    Row(name="vertical wheel mode", patterns=("levels: vertical wheel mode*",)),
-    Row(name="damper top and knuckle FRF", patterns=("levels: damper top against knuckle*",)),
-    Row(name="roll mode of the body", patterns=("inertia: roll peak*",)),
-    Row(name="six rigid body modes", patterns=("inertia: six rigid body modes",)),
-    Row(name="engine modes", patterns=("inertia: engine modes",)),
-    Row(name="flexible body modes", patterns=("inertia: flexible modes*",)),
-    Row(name="FRFs, axes", patterns=("levels: * line of the FRFs*",)),
-    Row(name="bump 7.5 mm, first slip", patterns=("bump: bump 7.5 mm, first slip*",)),
-    Row(name="bump 7.5 mm, extremes", patterns=("bump: bump 7.5 mm, lowest*", "bump: bump 7.5 mm, highest*")),
-    Row(name="bump 1.5 mm, no slip, rings down slowly", patterns=("bump: bump 1.5 mm*", "bump: *ring*down*")),
-    Row(name="Stribeck law, extra peak", patterns=("stribeck: *",)),
-    Row(name="road slip share", patterns=("comfort_sensitivity: *slip share*",)),
-    Row(name="level of the seat rail", patterns=("comfort_sensitivity: largest *",)),
-    Row(name="swing of a road", patterns=("comfort_sensitivity: swing *",)),
-    Row(name="comfort against Fd", patterns=("comfort_sensitivity: *Fd*",)),
-    Row(name="comfort against mount damping", patterns=("comfort_sensitivity: *mount damping*",)),
-    Row(name="comfort against mount stiffness", patterns=("comfort_sensitivity: *mount stiffness*",)),
-)
-"""Rows of "Published results: what the model must reproduce", and where they are answered."""
+COMPLETE_CAR = {
+    "slip share, low / mid / high": ("levels: slip share of the *",),
+    "vertical wheel mode": ("levels: vertical wheel mode*",),
+    "damper top and knuckle FRF": ("levels: damper top against knuckle*",),
+    "roll mode of the body": ("inertia: roll peak*",),
+    "six rigid body modes": ("inertia: six rigid body modes",),
+    "engine modes": ("inertia: engine modes",),
+    "flexible body modes": ("inertia: flexible modes*",),
+    "FRFs, axes": ("levels: * line of the FRFs*",),
+    "bump 7.5 mm, first slip": ("bump: bump 7.5 mm, first slip*",),
+    "bump 7.5 mm, extremes": ("bump: bump 7.5 mm, lowest*", "bump: bump 7.5 mm, highest*"),
+    "bump 1.5 mm, no slip, rings down slowly": ("bump: bump 1.5 mm*", "bump: *ring*down*"),
+    "Stribeck law, extra peak": ("stribeck: *",),
+    "road slip share": ("comfort_sensitivity: *slip share*",),
+    "level of the seat rail": ("comfort_sensitivity: largest *",),
+    "swing of a road": ("comfort_sensitivity: swing *",),
+    "comfort against Fd": ("comfort_sensitivity: *Fd*",),
+    "comfort against mount damping": ("comfort_sensitivity: *mount damping*",),
+    "comfort against mount stiffness": ("comfort_sensitivity: *mount stiffness*",),
+}
+"""Rows of "Published results: what the model must reproduce", and the claims that answer each: `scenario: name` with
+wild cards."""
 
 
 def parser() -> Parser:
@@ -159,9 +146,9 @@ def missing_rows(results: Mapping[str, Mapping[str, Any]]) -> list[str]:
         for name in (*(row["name"] for row in content["rows"]), *content.get("not_judged", {}))
     ]
     return [
-        row.name
-        for row in COMPLETE_CAR
-        if not any(fnmatchcase(name, pattern) for name in names for pattern in row.patterns)
+        row
+        for row, patterns in COMPLETE_CAR.items()
+        if not any(fnmatchcase(name, pattern) for name in names for pattern in patterns)
     ]
 
 
@@ -199,74 +186,57 @@ def definition_lines(results: Mapping[str, Mapping[str, Any]]) -> list[str]:
     """
     try:
         velocity = results["levels"]["slip_velocity"]
-        rows = [*_level_rows(results["levels"]), *_road_rows(results["comfort_sensitivity"])]
-        rows += _bump_rows(results["bump"], velocity)
+        roads = results["comfort_sensitivity"]["source"]["coulomb_friction"]
+        rows = [*_share_rows(results["levels"]["levels"], roads), *_bump_rows(results["bump"], velocity)]
     except KeyError:
         return []
-    lines = [
+    table = [
+        (name, published, *(cell for text, agrees in found for cell in (text, "yes" if agrees else "NO")))
+        for name, published, *found in rows
+    ]
+    columns = ("result", "published", f"slip: above {1e3 * velocity:g} mm/s", "agrees")
+    return [
         "## One definition of slip",
         "",
         f"A damper slips above {1e3 * velocity:g} mm/s, in every row, table, figure and film. That velocity and the "
         "band edges of shaker and road are not published; they were fitted, as one set, to the slip shares below. "
         "Above 1 mm/s the friction is saturated: stick has ended.",
         "",
-        f"| result | published | slip: above {1e3 * velocity:g} mm/s | agrees | stick ended: above 1 mm/s | agrees |",
-        "|---|---|---|---|---|---|",
+        *markdown((*columns, "stick ended: above 1 mm/s", "agrees"), table).split("\n"),
     ]
-    for name, published, *found in rows:
-        cells = [cell for text, agrees in found for cell in (text, "yes" if agrees else "NO")]
-        lines.append(f"| {name} | {published} | {' | '.join(cells)} |")
-    return lines
 
 
 SlipRow = tuple[str, str, tuple[str, bool], tuple[str, bool]]
+"""Name, published value, and ours with whether it agrees: above the slip velocity, and above 1 mm/s."""
 
 
-def _share(name: str, published: float, *ours: float) -> SlipRow:
-    slip, saturated = ((f"{100 * share:.1f} %", abs(share - published) <= SLIP_TOLERANCE) for share in ours)
-    return name, f"{100 * published:g} %", slip, saturated
-
-
-def _level_rows(content: Mapping[str, Any]) -> list[SlipRow]:
-    return [
-        _share(
-            f"slip share, {wheel} damper, {level}",
-            published[side],
-            content["levels"][level]["slip"][side],
-            content["levels"][level]["saturated"][side],
-        )
+def _share_rows(levels: Mapping[str, Any], roads: Mapping[str, Sequence[Mapping[str, float]]]) -> Iterator[SlipRow]:
+    """Slip shares of the shaker levels, and of the roads with the nominal friction."""
+    shares = [
+        (f"{wheel} damper, {level}", published[side], *(levels[level][name][side] for name in ("slip", "saturated")))
         for side, wheel in enumerate(("right", "left"))
         for level, published in PUBLISHED_SLIP.items()
     ]
-
-
-def _road_rows(content: Mapping[str, Any]) -> list[SlipRow]:
-    rows = []
     for road, published in PUBLISHED_ROAD_SLIP.items():
-        nominal = next(
-            point for point in content["source"]["coulomb_friction"][road] if point["value"] == PUBLISHED_FRICTION
-        )
-        rows.append(_share(f"slip share, {road} road", published, nominal["slip"], nominal["saturated"]))
-    return rows
+        nominal = next(point for point in roads[road] if point["value"] == PUBLISHED_FRICTION)
+        shares.append((f"{road} road", published, nominal["slip"], nominal["saturated"]))
+    for name, share, *ours in shares:
+        slip, saturated = ((f"{100 * one:.1f} %", abs(one - share) <= SLIP_TOLERANCE) for one in ours)
+        yield f"slip share, {name}", f"{100 * share:g} %", slip, saturated
 
 
-def _bump_rows(content: Mapping[str, Any], velocity: float) -> list[SlipRow]:
+def _bump_rows(content: Mapping[str, Any], velocity: float) -> Iterator[SlipRow]:
     low = content["low_bump"]
     times = [content[key][f"{PUBLISHED_FRICTION:g} N"] for key in ("first_slip_s", "first_saturated_s")]
     slip, saturated = (
         ("never", False) if time is None else (f"{time:.3f} s", abs(time - FIRST_SLIP) <= FIRST_SLIP_TOLERANCE)
         for time in times
     )
+    yield "first slip, 7.5 mm bump", f"{FIRST_SLIP:g} s", slip, saturated
     largest = f"largest {1e3 * low['largest_velocity']:.1f} mm/s"
-    return [
-        ("first slip, 7.5 mm bump", f"{FIRST_SLIP:g} s", slip, saturated),
-        (
-            "1.5 mm bump",
-            "no slip",
-            (largest, low["largest_velocity"] <= velocity),
-            (f"for {1e3 * low['time_above_1_mm_s']:.0f} ms", low["time_above_1_mm_s"] == 0.0),
-        ),
-    ]
+    above = f"for {1e3 * low['time_above_1_mm_s']:.0f} ms"
+    slips, ends = low["largest_velocity"] <= velocity, low["time_above_1_mm_s"] == 0.0
+    yield "1.5 mm bump", "no slip", (largest, slips), (above, ends)
 
 
 if __name__ == "__main__":

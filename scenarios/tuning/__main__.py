@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -118,70 +117,35 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     final = tuning.finish(result, measurements, engine)
     source = f"hidden car, engine {engine or runs.engine}, {100 * NOISE:g} % noise"
     _draw(folder, tuning, final.result, measurements, source)
-    steps = None if quick else authors_steps(tuning, parameters, measurements)
-    found = {"all levels in one fit": final.result} | (
-        {} if steps is None else {"bump records alone": steps.alone.result}
-    )
+    found, alone = {"all levels in one fit": final.result}, None
+    notes = [
+        data_note(measurements, engine or runs.engine, quick),
+        *fit_notes("All levels and bumps in one fit", final.result, final),
+    ]
+    data: dict[str, Any] = {"true": true, "all": fit_numbers(final.result), "all_fast": fit_numbers(result)}
+    if not quick:
+        # The authors' order: the low level, which comes first, then the damper from the bumps, the rest frozen.
+        bumps = [one for one in measurements if isinstance(one.target, RecordTarget)]
+        records = [one.target for one in bumps]
+        rest, damper_only = ([one for one in parameters if (one.path in SLIDING) is slides] for slides in (False, True))
+        stuck = tuning.fit("low level", rest, [measurements[0].target])
+        damper = tuning.fit("damper", damper_only, records, stuck.values)
+        alone = tuning.finish(tuning.fit("bump records", parameters, records), bumps, None)
+        found["bump records alone"] = alone.result
+        notes += [
+            *fit_notes("Bump records alone (time-domain step)", alone.result, alone),
+            *fit_notes("As the authors: low level alone, dampers stuck", stuck, None),
+            *fit_notes("Then the damper alone from the bump records, the rest frozen", damper, None),
+            frozen_note(damper, true),
+        ]
+        data |= {"bumps": fit_numbers(alone.result), "low": fit_numbers(stuck), "damper_frozen": fit_numbers(damper)}
     parameter_figure(folder / "parameters.png", found, true)
     return Findings(
         title="Parameters fitted to FRFs and bump records (source 1, section 3.2, automatic)",
-        claims=demonstration_claims(final, None if steps is None else steps.alone, true),
-        unjudged={} if steps else {"bump records alone, and the authors' own order": "left out with --quick"},
-        notes=[
-            data_note(measurements, engine or runs.engine, quick),
-            *fit_notes("All levels and bumps in one fit", final.result, final),
-            *([] if steps is None else steps.notes(true)),
-        ],
-        data={
-            "true": true,
-            "all": fit_numbers(final.result),
-            "all_fast": fit_numbers(result),
-            **({} if steps is None else steps.numbers()),
-        },
-    )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class AuthorsSteps:
-    """The authors' order: the low level, then the damper from the bumps; and what the bumps tell alone.
-
-    Attributes:
-        stuck: low level alone, dampers stuck.
-        damper: D and Fd from the bump records, the rest frozen at the low level.
-        alone: everything from the bump records.
-    """
-
-    stuck: TuningResult
-    damper: TuningResult
-    alone: FullSteps
-
-    def notes(self, true: Mapping[str, float]) -> list[str]:
-        """Paragraphs of the results."""
-        return [
-            *fit_notes("Bump records alone (time-domain step)", self.alone.result, self.alone),
-            *fit_notes("As the authors: low level alone, dampers stuck", self.stuck, None),
-            *fit_notes("Then the damper alone from the bump records, the rest frozen", self.damper, None),
-            frozen_note(self.damper, true),
-        ]
-
-    def numbers(self) -> dict[str, Any]:
-        """For `results.json`."""
-        return {
-            "bumps": fit_numbers(self.alone.result),
-            "low": fit_numbers(self.stuck),
-            "damper_frozen": fit_numbers(self.damper),
-        }
-
-
-def authors_steps(tuning: Tuning, parameters: Sequence[Range], measurements: Sequence[Measurement]) -> AuthorsSteps:
-    """Fit the low level, which comes first, and the bump records, one after the other."""
-    bumps = [one for one in measurements if isinstance(one.target, RecordTarget)]
-    records = [one.target for one in bumps]
-    stuck = tuning.fit("low level", [one for one in parameters if one.path not in SLIDING], [measurements[0].target])
-    return AuthorsSteps(
-        stuck=stuck,
-        damper=tuning.fit("damper", [one for one in parameters if one.path in SLIDING], records, stuck.values),
-        alone=tuning.finish(tuning.fit("bump records", parameters, records), bumps, None),
+        claims=demonstration_claims(final, alone, true),
+        unjudged={"bump records alone, and the authors' own order": "left out with --quick"} if quick else {},
+        notes=notes,
+        data=data,
     )
 
 

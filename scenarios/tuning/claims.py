@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
-from scenarios.claims import OWN_CHECK, Claim
+from scenarios.claims import OWN_CHECK, Claim, markdown
 from scenarios.tuning.data import NOISE, SLIDING, Measurement
 from vehicle.tuning.full_steps import SMALL, FullSteps
 from vehicle.tuning.identifiability import WIDEST
@@ -124,21 +125,16 @@ def fit_notes(title: str, result: TuningResult, final: FullSteps | None) -> list
 
 def _values(result: TuningResult, final: FullSteps | None) -> str:
     moved = {} if final is None else final.moved
-    lines = [
-        "| parameter | bounds | start | fitted | standard error | relative | strongest correlation "
-        "| moved by the full simulation [standard errors] |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for one in result.parameters:
         value, error = result.values[one.path], result.standard_errors[one.path]
         known = not math.isnan(error)
         shift = f"{moved[one.path]:+.2f}" if one.path in moved else ""
-        lines.append(
-            f"| {one.path} | {one.low:g} to {one.high:g} | {one.start:g} | {value:.4g} "
-            f"| {f'{error:.2g}' if known else 'none'} | {f'{100 * error / value:.2g} %' if known else ''} "
-            f"| {_strongest(result, one.path)} | {shift} |"
-        )
-    return "\n".join(lines)
+        errors = (f"{error:.2g}", f"{100 * error / value:.2g} %") if known else ("none", "")
+        fit = (one.path, f"{one.low:g} to {one.high:g}", f"{one.start:g}", f"{value:.4g}")
+        rows.append((*fit, *errors, _strongest(result, one.path), shift))
+    columns = ("parameter", "bounds", "start", "fitted", "standard error", "relative", "strongest correlation")
+    return markdown((*columns, "moved by the full simulation [standard errors]"), rows)
 
 
 def _strongest(result: TuningResult, path: str) -> str:
@@ -151,36 +147,28 @@ def _strongest(result: TuningResult, path: str) -> str:
 
 
 def _rows(result: TuningResult) -> str:
-    lines = [
-        "Residuals over their assumed standard deviation (FRFs: from the coherence; records: the RMS of the record). "
-        "The fit weighs every row with its own RMS, and with the correlation of neighbours where it is beyond three "
-        "standard errors.",
-        "",
-        "| row | values | mean | RMS | correlation of neighbours | counted as one independent value |",
-        "|---|---|---|---|---|---|",
-    ]
-    lines += [
-        f"| {row.name} | {row.count} | {row.mean:+.3f} | {row.rms:.3g} | {row.neighbours:+.2f} | {row.inflation:.2g} |"
+    columns = ("row", "values", "mean", "RMS", "correlation of neighbours", "counted as one independent value")
+    rows = [
+        (
+            *(row.name, str(row.count), f"{row.mean:+.3f}", f"{row.rms:.3g}"),
+            *(f"{row.neighbours:+.2f}", f"{row.inflation:.2g}"),
+        )
         for row in result.rows
     ]
-    return "\n".join(lines)
+    return (
+        "Residuals over their assumed standard deviation (FRFs: from the coherence; records: the RMS of the record). "
+        "The fit weighs every row with its own RMS, and with the correlation of neighbours where it is beyond three "
+        f"standard errors.\n\n{markdown(columns, rows)}"
+    )
 
 
 def fit_numbers(result: TuningResult) -> dict[str, Any]:
     """A fit for `results.json`."""
+    plain = ("values", "standard_errors", "free", "at_bound", "condition", "evaluations", "converged")
     return {
-        "values": dict(result.values),
-        "standard_errors": dict(result.standard_errors),
+        **{name: getattr(result, name) for name in plain},
         "start": {one.path: one.start for one in result.parameters},
-        "free": list(result.free),
         "correlation": result.correlation.tolist(),
-        "unidentified": [
-            {"path": one.path, "held_at": one.held_at, "partners": list(one.partners), "spread": one.spread}
-            for one in result.unidentified
-        ],
-        "at_bound": list(result.at_bound),
-        "condition": result.condition,
+        "unidentified": [asdict(one) for one in result.unidentified],
         "weighted_residual": {"before": result.before, "after": result.after},
-        "evaluations": result.evaluations,
-        "converged": result.converged,
     }

@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -96,7 +97,7 @@ def make_measurements(
             continue
         response = _noisy(run.frf(channels), noise)
         file = folder / f"{name}_frf.csv"
-        _write(file, response, channels)
+        write_whole(file, partial(write_frf, response=response, channels=channels, frame=FRAME))
         target = FrfTarget(
             name=name,
             data=read_frf(file).select(channels, band=BAND, spacing=spacing),
@@ -105,10 +106,6 @@ def make_measurements(
         )
         found.append(Measurement(target=target, signal=signal))
     return found
-
-
-def _write(file: Path, response: FrequencyResponse, channels: Sequence[str]) -> None:
-    write_whole(file, lambda path: write_frf(path, response, channels, FRAME))
 
 
 def _noisy(clean: FrequencyResponse, noise: np.random.Generator) -> FrequencyResponse:
