@@ -36,7 +36,7 @@ def _list(given: Sequence[str]) -> None:
         raise ConfigurationError(f"no command {given[0]!r}; allowed are {', '.join(COMMANDS)}{nearest}")
     print("usage: python -m vehicle COMMAND [options]; --help behind a command lists its options\n")
     for name in COMMANDS:
-        print(f"  {name:<9} {import_module(f'vehicle.commands.{name}').parser().description}")
+        print(f"  {name:<11} {import_module(f'vehicle.commands.{name}').parser().description}")
 
 
 if __name__ == "__main__":

@@ -10,13 +10,11 @@ from scipy.spatial.transform import Rotation
 from vehicle.errors import SimulationError
 from vehicle.simulation.axle_statics import AxleStatics
 
-WHEELS = ("tyre_fr", "tyre_fl")
-
 
 def axle(car, *, ideal=False):
-    points = car.vehicle.hardpoints.all_points()
-    patches = [np.array(points[f"tyre_patch_{wheel}"]) for wheel in ("fr", "fl")]
-    return AxleStatics(car.model.model, car.model.static.preload, wheels=WHEELS, patches=patches, ideal=ideal)
+    wheels = car.vehicle.composition.wheels
+    assert [wheel.name for wheel in wheels] == ["fr", "fl"]
+    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal)
 
 
 def strut_geometry(points, height):
@@ -56,7 +54,7 @@ def strut_geometry(points, height):
 def test_ideal_kinematics_of_the_strut(car, travel):
     # Asked for: 1e-3 mm and 1e-4 degree.
     pose, other = axle(car, ideal=True).solve([travel, travel])
-    moved, turn = strut_geometry(car.vehicle.hardpoints.all_points(), travel)
+    moved, turn = strut_geometry(car.vehicle.points, travel)
     assert pose.wheel_travel_m == pytest.approx(travel, abs=1e-9)
     assert (pose.longitudinal_m, pose.lateral_m) == pytest.approx(tuple(moved[:2]), abs=1e-6)
     assert pose.camber_deg == pytest.approx(-np.degrees(np.arcsin(turn[2, 1])), abs=1e-4)
@@ -68,17 +66,13 @@ def test_ideal_kinematics_of_the_strut(car, travel):
 
 def test_signs_of_camber_and_toe(car):
     """Top outwards and front inwards count positive, on both sides."""
-    points = car.vehicle.hardpoints.all_points()
-    for side, wheel in ((1.0, "fr"), (-1.0, "fl")):
-        statics = axle(car)
+    for index, wheel in enumerate(car.vehicle.composition.wheels):
+        statics, load = axle(car), np.zeros((2, 6))
         # A moment about the upward axis that turns the front of the wheel towards the middle of the car.
-        load = np.zeros((2, 6))
-        index = WHEELS.index(f"tyre_{wheel}")
-        load[index, 5] = side * 50.0
+        load[index, 5] = wheel.side * 50.0
         assert statics.solve([0.0, 0.0], load)[index].toe_deg > 0.01
-        load[index] = [0.0, side * 2000.0, 0.0, 0.0, 0.0, 0.0]  # outwards at the ground: the top goes inwards
+        load[index] = [0.0, wheel.side * 2000.0, 0.0, 0.0, 0.0, 0.0]  # outwards at the ground: the top goes inwards
         assert statics.solve([0.0, 0.0], load)[index].camber_deg < -0.01
-        assert points[f"wheel_center_{wheel}"][1] * side > 0.0
 
 
 def test_in_the_design_position_nothing_moves_and_the_load_is_the_static_one(car):
@@ -91,18 +85,20 @@ def test_in_the_design_position_nothing_moves_and_the_load_is_the_static_one(car
 def test_small_travel_and_load_are_those_of_the_matrices(car):
     """K and the joints of the linear car, body held; the tyre's hold in other directions than upwards taken off."""
     system, statics = car.matrices.system, axle(car)
-    free, bushing = statics.columns, car.vehicle.bushings.tyre
+    free = statics.columns
+    bushing = next(one.law for one in car.vehicle.composition.connections if one.name.endswith("tyre_fr"))
+    assert bushing is not None
     stiffness, joints = system.stiffness[np.ix_(free, free)].copy(), system.constraints[:, free]
     joints = joints[np.abs(joints).max(axis=1) > 0.0]
     for index, wheel in enumerate(statics.wheels):
-        moved, turned = statics.jacobian(wheel, statics.patch(index))
+        moved, turned = statics.jacobian(wheel, statics.places(index)[1])
         stiffness -= moved[:2].T @ np.diag(bushing.stiffness[:2]) @ moved[:2]
         stiffness -= bushing.rotational_stiffness * turned.T @ turned
     lift = 1e-4
     system_matrix = np.block([[stiffness, joints.T], [joints, np.zeros((len(joints), len(joints)))]])
     force = system.input_stiffness[free] @ (lift * np.ones(2))
     solved = np.linalg.solve(system_matrix, np.concatenate([force, np.zeros(len(joints))]))[: free.size]
-    points = car.vehicle.hardpoints.all_points()
+    points = car.vehicle.points
     (center, turns), (patch, _) = (
         statics.jacobian(statics.wheels[0], np.array(points[f"{name}_fr"])) for name in ("wheel_center", "tyre_patch")
     )

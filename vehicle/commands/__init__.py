@@ -1,4 +1,7 @@
 """Commands, one file each; what they print is printed here and nowhere else in the package."""
 
-COMMANDS = ("shaker", "modes", "sweep", "comfort", "mjcf")
+COMMANDS = ("shaker", "modes", "sweep", "comfort", "mjcf", "kinematics")
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
+
+OLDER = COMMANDS[:5]
+"""Those that are called as `python -m vehicle.NAME` too."""

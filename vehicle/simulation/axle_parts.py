@@ -129,8 +129,8 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             lower, upper = (model.site(f"{name}/{end}").id for end in ("lower", "upper"))
             if bodies & {int(model.site_bodyid[lower]), int(model.site_bodyid[upper])}:
                 length = float(model.tendon_length0[model.eq_obj1id[index]])
-                force = float(preload[rows[index]])
-                springs.append(Spring(lower=lower, upper=upper, stiffness=float(law[0]), length=length, preload=force))
+                pull = float(preload[rows[index]])
+                springs.append(Spring(lower=lower, upper=upper, stiffness=float(law[0]), length=length, preload=pull))
     if not ties:
         raise ConfigurationError(f"axle of {', '.join(wheels)}: nothing ties its wheels to the body")
     return AxleParts(

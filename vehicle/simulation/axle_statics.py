@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import SimulationError
+from vehicle.parameters.composition import PlacedWheel
 from vehicle.simulation.axle_parts import Spring, Tie, axle_parts
 
 Vector = npt.NDArray[np.float64]
@@ -66,8 +67,7 @@ class AxleStatics:
         model: mujoco.MjModel,
         preload: Vector,
         *,
-        wheels: Sequence[str],
-        patches: Sequence[Vector],
+        wheels: Sequence[PlacedWheel],
         ideal: bool = False,
     ) -> None:
         """Find the parts; arguments as of `axle_parts`.
@@ -75,18 +75,17 @@ class AxleStatics:
         Args:
             model: the car.
             preload: as of the trim.
-            wheels: bodies of the wheels.
-            patches: contact point of each wheel in the design position [m].
+            wheels: of the axle.
             ideal: every connection to be an ideal ball joint.
         """
         self.model, self.data, self.ideal = model, mujoco.MjData(model), ideal
-        self.parts = axle_parts(model, np.asarray(preload), wheels, ideal=ideal)
+        self.parts = axle_parts(model, np.asarray(preload), [wheel.part for wheel in wheels], ideal=ideal)
         self.wheels, self.columns = self.parts.wheels, self.parts.columns
         mujoco.mj_forward(model, self.data)
-        self.centers = [self.data.xpos[wheel].copy() for wheel in self.wheels]
-        self.patches = [
-            self.data.xmat[wheel].reshape(3, 3).T @ (np.asarray(patch) - self.data.xpos[wheel])
-            for wheel, patch in zip(self.wheels, patches, strict=True)
+        self.at_rest = [(np.array(wheel.center), np.array(wheel.patch)) for wheel in wheels]
+        self.offsets = [
+            [self.data.xmat[number].reshape(3, 3).T @ (point - self.data.xpos[number]) for point in points]
+            for number, points in zip(self.wheels, self.at_rest, strict=True)
         ]
 
     def solve(self, travel: Sequence[float], loads: Vector | None = None) -> list[WheelPose]:
@@ -117,7 +116,7 @@ class AxleStatics:
             )[0]
             step, reactions = (scale * solution)[:count], (scale * solution)[count:]
             full = np.zeros(model.nv)
-            # Half a radian at a time at the most: the linear step of a turned part is no better than that.
+            # A fifth of a radian at a time at the most: the linear step of a turned part is no better than that.
             full[self.columns] = step * min(1.0, 0.2 / max(np.max(np.abs(step)), 1e-300))
             mujoco.mj_integratePos(model, data.qpos, full, 1.0)
             if np.max(np.abs(step)) < TOLERANCE:
@@ -197,7 +196,7 @@ class AxleStatics:
             force[column] += rate * (model.qpos_spring[place] - data.qpos[place])
             stiffness[column, column] += rate
         for index, (wheel, load) in enumerate(zip(self.wheels, loads, strict=True)):
-            moved, turned = self.jacobian(wheel, self.patch(index))
+            moved, turned = self.jacobian(wheel, self.places(index)[1])
             force += moved.T @ load[:3] + turned.T @ load[3:]
         return force, stiffness
 
@@ -213,32 +212,32 @@ class AxleStatics:
                 rows.append(moved)
                 reacting.append(moved)
                 gaps.append(gap)
-        for index, (wheel, center, height) in enumerate(zip(self.wheels, self.centers, travel, strict=True)):
-            position = self.data.xpos[wheel]
-            rows.append(self.jacobian(wheel, position)[0][2:])
-            reacting.append(self.jacobian(wheel, self.patch(index))[0][2:])
-            gaps.append(position[2:] - center[2] - height)
+        for index, (wheel, height) in enumerate(zip(self.wheels, travel, strict=True)):
+            center, patch = self.places(index)
+            rows.append(self.jacobian(wheel, center)[0][2:])
+            reacting.append(self.jacobian(wheel, patch)[0][2:])
+            gaps.append(center[2:] - self.at_rest[index][0][2] - height)
         return np.vstack(rows), np.vstack(reacting), np.concatenate(gaps)
 
-    def patch(self, index: int) -> Vector:
-        """Present place of the contact point of a wheel [m]."""
-        wheel = self.wheels[index]
-        return np.asarray(self.data.xpos[wheel] + self.data.xmat[wheel].reshape(3, 3) @ self.patches[index])
+    def places(self, index: int) -> tuple[Vector, Vector]:
+        """Where the centre of a wheel and its contact point, a point of the wheel, are now [m]."""
+        position, frame = self.data.xpos[self.wheels[index]], self.data.xmat[self.wheels[index]].reshape(3, 3)
+        center, patch = (position + frame @ offset for offset in self.offsets[index])
+        return center, patch
 
     def _pose(self, index: int, load: float) -> WheelPose:
-        wheel, side = self.wheels[index], float(np.sign(self.centers[index][1]))
-        frame, position = self.data.xmat[wheel].reshape(3, 3), self.data.xpos[wheel]
-        moved = position - self.centers[index]
-        patch = moved + frame @ self.patches[index] - self.patches[index]
-        axle = side * frame[:, 1]  # outwards; along the axis of the wheel in the design position
+        center, patch = (now - then for now, then in zip(self.places(index), self.at_rest[index], strict=True))
+        side = float(np.sign(self.at_rest[index][0][1]))
+        # Outwards; along y in the design position.
+        axle = side * self.data.xmat[self.wheels[index]].reshape(3, 3)[:, 1]
         return WheelPose(
-            wheel_travel_m=float(moved[2]),
-            lateral_m=float(side * moved[1]),
-            longitudinal_m=float(moved[0]),
+            wheel_travel_m=float(center[2]),
+            lateral_m=float(side * center[1]),
+            longitudinal_m=float(center[0]),
             patch_lateral_m=float(side * patch[1]),
             patch_longitudinal_m=float(patch[0]),
             camber_deg=float(np.degrees(np.arcsin(-axle[2]))),
-            toe_deg=float(np.degrees(np.arctan2(axle[0], side * axle[1]))) * -1.0,
+            toe_deg=float(np.degrees(np.arctan2(-axle[0], side * axle[1]))),
             load_n=float("nan") if self.ideal else load,
             strut_length_m=self._shortened(index),
         )

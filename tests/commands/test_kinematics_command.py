@@ -1,0 +1,71 @@
+"""The rig for axles as a command: table, JSON, files, refusals."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from vehicle.commands.kinematics import main
+
+
+def test_rows_and_rates(capsys):
+    assert main(["--travel=-20:20:10", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    travel = [row["wheel_travel_m"] for row in found["rows"]]
+    assert travel == pytest.approx([-0.02, -0.01, 0.0, 0.01, 0.02], abs=1e-9)
+    middle = found["rows"][2]
+    assert max(abs(middle[name]) for name in ("camber_deg", "toe_deg", "lateral_m")) < 1e-6
+    slope = (found["rows"][3]["load_n"] - found["rows"][1]["load_n"]) / 0.02
+    assert found["rates"]["wheel_rate_n_per_m"] == pytest.approx(slope, rel=2e-3)
+    # The bar of the source is stiff: twisted over its arms of 0.22 m it adds 2 k / r^2 or so to the spring.
+    assert main(["--travel=-1:1:1", "--opposite", "--json"]) == 0
+    opposite = json.loads(capsys.readouterr().out)["rates"]["wheel_rate_n_per_m"]
+    assert opposite > 4.0 * found["rates"]["wheel_rate_n_per_m"]
+
+
+def test_ideal_joints_have_no_load(capsys):
+    assert main(["--ideal", "--travel=0:10:10", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [row["load_n"] for row in found["rows"]] == [None, None]
+    assert found["rates"]["wheel_rate_n_per_m"] is None
+    assert main(["--ideal", "--travel=0:10:10"]) == 0
+    assert "ideal joints" in capsys.readouterr().out
+
+
+def test_files(tmp_path, capsys):
+    folder = tmp_path / "axle"
+    arguments = ["--travel=-10:10:10", "--force", "x=100", "--moment", "z=100", "--output", str(folder)]
+    assert main(arguments) == 0
+    lines = (folder / "kinematics.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[2].startswith("wheel_travel [m],camber [deg],toe [deg],lateral [m]")
+    table = np.loadtxt(lines[3:], delimiter=",")
+    assert table.shape == (3, 9) and abs(table[1, 2]) > 0.01  # toe under load at no travel
+    assert (folder / "kinematics.png").stat().st_size > 10_000
+    assert "load [N]" in capsys.readouterr().out
+    assert main(arguments) == 2
+    assert main([*arguments, "--replace"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--axle", "middle"], "--axle 'middle': no axle with wheels; focus has front"),
+        (["--axle", "rear"], "--axle 'rear': no axle with wheels"),
+        (["--travel", "50:10"], "--travel '50:10': needed is A:B or A:B:STEP in mm"),
+        (["--travel", "a:b"], "--travel 'a:b': needed is A:B"),
+        (["--travel", "0:100:0.001"], "100001 positions; at most 2001"),
+        (["--force", "w=1"], "--force 'w=1': needed is AXIS=VALUE"),
+        (["--moment", "x=nan"], "--moment 'x=nan': needed is AXIS=VALUE"),
+        (["--ideal", "--force", "x=1"], "--ideal: ideal joints do not yield"),
+    ],
+)
+def test_refusals(arguments, message, capsys):
+    assert main(arguments) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_too_much_travel_is_no_position(capsys):
+    assert main(["--ideal", "--travel=0:600:100"]) == 4
+    assert "axle: " in capsys.readouterr().err

@@ -1,0 +1,212 @@
+"""`python -m vehicle kinematics`: kinematics and compliance of an axle, as on a rig that lifts the wheels."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.options import FORCE_HELP, command_parser, message_options, vehicle_options
+from vehicle.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from vehicle.simulation.axle_statics import AxleStatics, WheelPose
+
+MOST_POSITIONS = 2001
+SMALL = 1e-3
+"""Travel [m] to both sides over which the rates in the design position are taken."""
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser("kinematics", "Camber, toe, track and loads of an axle over wheel travel and load.")
+    vehicle_options(found)
+    found.add_argument(
+        "--axle", default="front", metavar="NAME", help="table of the vehicle file; %(default)s by default"
+    )
+    found.add_argument(
+        "--travel",
+        default="-50:50:5",
+        metavar="A:B[:STEP]",
+        help="of the wheel centres [mm], upwards; written --travel=-50:50; %(default)s by default",
+    )
+    found.add_argument("--opposite", action="store_true", help="the left wheel goes down where the right one goes up")
+    for name, what in (("force", "force [N]"), ("moment", "moment [N m]")):
+        found.add_argument(
+            f"--{name}",
+            action="append",
+            default=[],
+            metavar="AXIS=VALUE",
+            help=f"{what} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
+            "right, z up), as x=1000; with --opposite against each other; may be repeated",
+        )
+    found.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
+    found.add_argument("--output", type=Path, metavar="DIR", help="write kinematics.csv and kinematics.png there")
+    found.add_argument("--replace", action="store_true", help=FORCE_HELP)
+    found.add_argument("--json", action="store_true", help="print JSON")
+    message_options(found)
+    return found
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return parse_and_run(parser(), _job, arguments)
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.car import Car
+
+    travels = _travels(options.travel)
+    load = np.array([*_vector("--force", options.force), *_vector("--moment", options.moment)])
+    if options.ideal and load.any():
+        raise ConfigurationError("--ideal: ideal joints do not yield to --force or --moment; leave one of them out")
+    car = Car.load(options.vehicle, options.overrides)
+    statics = axle_statics(car, options.axle, ideal=options.ideal)
+    other = -1.0 if options.opposite else 1.0
+    loads = np.array([load, other * load])
+    rates = [statics.solve([z, other * z], loads)[0] for z in (-SMALL, SMALL)]
+    # From the design position outwards, so that every solution begins at its neighbour.
+    found = {}
+    for part in ([z for z in travels[::-1] if z < 0.0], [z for z in travels if z >= 0.0]):
+        for z in part:
+            found[z] = statics.solve([z, other * z], loads)[0]
+    poses = [found[z] for z in travels]
+    if options.output is not None:
+        _write(options, car.vehicle.name, poses)
+    if options.json:
+        rows = [{k: None if math.isnan(v) else v for k, v in dataclasses.asdict(pose).items()} for pose in poses]
+        print(json.dumps({"axle": options.axle, "rates": _rates(*rates), "rows": rows}, indent=2, allow_nan=False))
+    else:
+        print(_report(options, poses, _rates(*rates)))
+
+
+def axle_statics(car: Any, name: str, *, ideal: bool) -> AxleStatics:
+    """An axle of a car, ready to be lifted.
+
+    Args:
+        car: the car.
+        name: table of the axle in its vehicle file.
+        ideal: every connection an ideal ball joint.
+
+    Raises:
+        ConfigurationError: no wheel belongs to such a table.
+    """
+    from vehicle.simulation.axle_statics import AxleStatics
+
+    wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == name]
+    if not wheels:
+        axles = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
+        raise ConfigurationError(f"--axle {name!r}: no axle with wheels; {car.vehicle.name} has {', '.join(axles)}")
+    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal)
+
+
+def _travels(text: str) -> list[float]:
+    """Wheel travels [m] of A:B[:STEP] in mm."""
+    parts = text.split(":")
+    try:
+        first, last, step = (float(part) for part in (*parts, "5")[:3])
+    except ValueError:
+        first = last = step = math.nan
+    if len(parts) not in (2, 3) or not (math.isfinite(first) and math.isfinite(last) and first < last and step > 0.0):
+        raise ConfigurationError(f"--travel {text!r}: needed is A:B or A:B:STEP in mm with A below B, as -50:50:5")
+    count = math.floor((last - first) / step + 1e-9) + 1
+    if count > MOST_POSITIONS:
+        raise ConfigurationError(f"--travel {text!r}: {count} positions; at most {MOST_POSITIONS}; take a larger step")
+    return [round(first + index * step, 9) * 1e-3 for index in range(count)]
+
+
+def _vector(option: str, entries: list[str]) -> list[float]:
+    """Components of repeated AXIS=VALUE."""
+    found = dict.fromkeys("xyz", 0.0)
+    for entry in entries:
+        axis, _, text = entry.partition("=")
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if axis not in found or not math.isfinite(value):
+            raise ConfigurationError(f"{option} {entry!r}: needed is AXIS=VALUE with x, y or z and a number, as x=1000")
+        found[axis] = value
+    return list(found.values())
+
+
+def _rates(down: WheelPose, up: WheelPose) -> dict[str, float | None]:
+    """Slopes over the wheel travel in the design position, by central differences over 1 mm."""
+    slope = {
+        name: (getattr(up, name) - getattr(down, name)) / (2.0 * SMALL)
+        for name in ("load_n", "camber_deg", "toe_deg", "lateral_m", "patch_lateral_m", "strut_length_m")
+    }
+    names = {"load_n": "wheel_rate_n_per_m", "strut_length_m": "spring_ratio"}
+    return {
+        names.get(name, f"{name.removesuffix('_m')}_per_m"): None if math.isnan(value) else value
+        for name, value in slope.items()
+    }
+
+
+HEADS = {
+    "wheel_travel_m": "travel [mm]",
+    "camber_deg": "camber [deg]",
+    "toe_deg": "toe-in [deg]",
+    "lateral_m": "lateral [mm]",
+    "longitudinal_m": "longitudinal [mm]",
+    "patch_lateral_m": "patch lateral [mm]",
+    "patch_longitudinal_m": "patch long. [mm]",
+    "load_n": "load [N]",
+    "strut_length_m": "spring [mm]",
+}
+"""Columns of the printed table: lengths in mm."""
+
+
+def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str, float | None]) -> str:
+    """The table as text."""
+    kind = "ideal joints" if options.ideal else "bushings as they are"
+    lines = [
+        f"{options.axle} axle, wheel on the right, against its design position; {kind}"
+        + ("; left wheel opposite" if options.opposite else ""),
+        "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
+        "  ".join(f"{head:>{max(len(head), 8)}}" for head in HEADS.values()),
+    ]
+    for pose in poses:
+        cells = []
+        for name, head in HEADS.items():
+            value = getattr(pose, name) * (1e3 if name.endswith("_m") else 1.0)
+            text = "-" if math.isnan(value) else f"{value + 0.0:.{0 if name == 'wheel_travel_m' else 3}f}"
+            cells.append(f"{text:>{max(len(head), 8)}}")
+        lines.append("  ".join(cells))
+    if rates["wheel_rate_n_per_m"] is not None:
+        lines.append(f"wheel rate {1e-3 * rates['wheel_rate_n_per_m']:.2f} N/mm")
+    camber, toe = (0.1 * (rates[f"{name}_deg_per_m"] or 0.0) for name in ("camber", "toe"))
+    lines.append(f"in the design position: camber {camber:.3f} and toe-in {toe:.3f} deg per 100 mm")
+    return "\n".join(lines)
+
+
+def _write(options: argparse.Namespace, name: str, poses: list[WheelPose]) -> None:
+    from vehicle.output.folder import output_folder
+    from vehicle.records.text_format import write_table
+    from vehicle.rendering.kinematics_plot import plot_kinematics
+
+    units = {"m": "m", "deg": "deg", "n": "N"}
+    names = list(HEADS)
+    heads = [f"{one.rpartition('_')[0]} [{units[one.rpartition('_')[2]]}]" for one in names]
+    columns = [np.array([getattr(pose, one) for pose in poses]) for one in names]
+    comments = [
+        f"{name}, {options.axle} axle, wheel on the right, against its design position",
+        "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
+    ]
+    with output_folder(options.output, force=options.replace) as folder:
+        write_table(folder / "kinematics.csv", heads, columns, comments)
+        caption = "; ".join(
+            [
+                "opposite travel" if options.opposite else "equal travel",
+                "ideal joints" if options.ideal else "bushings as they are",
+                *(f"force {entry} N" for entry in options.force),
+                *(f"moment {entry} N m" for entry in options.moment),
+            ]
+        )
+        plot_kinematics(folder / "kinematics.png", poses, f"{name}: {options.axle} axle, wheel on the right", caption)
