@@ -187,7 +187,7 @@ def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str
 
 
 def _write(options: argparse.Namespace, name: str, poses: list[WheelPose]) -> None:
-    from vehicle.output.folder import output_folder
+    from vehicle.output.folder import output_folder, write_whole
     from vehicle.records.text_format import write_table
     from vehicle.rendering.kinematics_plot import plot_kinematics
 
@@ -200,7 +200,7 @@ def _write(options: argparse.Namespace, name: str, poses: list[WheelPose]) -> No
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
     ]
     with output_folder(options.output, force=options.replace) as folder:
-        write_table(folder / "kinematics.csv", heads, columns, comments)
+        write_whole(folder / "kinematics.csv", lambda file: write_table(file, heads, columns, comments))
         caption = "; ".join(
             [
                 "opposite travel" if options.opposite else "equal travel",
@@ -209,4 +209,5 @@ def _write(options: argparse.Namespace, name: str, poses: list[WheelPose]) -> No
                 *(f"moment {entry} N m" for entry in options.moment),
             ]
         )
-        plot_kinematics(folder / "kinematics.png", poses, f"{name}: {options.axle} axle, wheel on the right", caption)
+        title = f"{name}: {options.axle} axle, wheel on the right"
+        write_whole(folder / "kinematics.png", lambda file: plot_kinematics(file, poses, title, caption))
