@@ -117,9 +117,9 @@ def test_the_last_steps_lead_to_the_full_simulation(build, car, high_run):
 def test_a_run_and_its_target_have_the_same_residuals(build, car, high_piece):
     target = target_of(build({FRICTION.path: 100.0}), high_piece)
     run = car.run(high_piece, engine="reduced")
-    np.testing.assert_allclose(target.run_residuals(run), target.residuals(car), atol=1e-6)
+    np.testing.assert_allclose(target.residuals(run), target.residuals(car), atol=1e-6)
     windowed = dataclasses.replace(target, window=0.5)
-    np.testing.assert_allclose(windowed.run_residuals(run), windowed.residuals(car), atol=1e-6)
+    np.testing.assert_allclose(windowed.residuals(run), windowed.residuals(car), atol=1e-6)
     assert len(target.rows) == len(target.residuals(car)) == 4
     record = record_of(car.run(bump(amplitude=7.5e-3, duration=1.3, start=0.3), engine="reduced"))
     assert len(record.rows) == len(record.residuals(car)) == 2

@@ -7,7 +7,7 @@ import json
 import sys
 from typing import Any
 
-from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.command_line import Parser, command
 from vehicle.commands.options import command_parser, message_options
 from vehicle.errors import DataError
 
@@ -119,14 +119,12 @@ def _table(result: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
-
-
 def _job(options: argparse.Namespace) -> None:
     """Evaluate and print."""
     result = _evaluate(options)
     print(json.dumps(result, indent=2, allow_nan=False) if options.json else _table(result), flush=True)
     for remark in (*result["notices"], *result["reasons"]):
         print(f"notice: {remark}", file=sys.stderr)
+
+
+main = command(parser, _job)

@@ -134,6 +134,18 @@ def parse_and_run(
     return run_command(lambda: job(checked(given)), debug="--debug" in given)
 
 
+def command(
+    parser: Callable[[], argparse.ArgumentParser], job: Callable[[argparse.Namespace], None]
+) -> Callable[..., int]:
+    """The `main` of a command: given its arguments (of the process by default) it returns the exit code.
+
+    Args:
+        parser: makes its parser.
+        job: as of `parse_and_run`.
+    """
+    return lambda arguments=None: parse_and_run(parser(), job, arguments)
+
+
 FAULT = "a fault of the program"
 """What every error begins with that no one has foreseen."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.command_line import Parser, command
 from vehicle.commands.options import command_parser, message_options, vehicle_options
 
 
@@ -24,11 +24,6 @@ def parser() -> Parser:
     return found
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
-
-
 def _job(options: argparse.Namespace) -> None:
     from vehicle.assembly.mjcf_files import mjcf_files, write_mjcf
     from vehicle.car import Car
@@ -37,3 +32,6 @@ def _job(options: argparse.Namespace) -> None:
     files = mjcf_files(car.vehicle, car.trimmed_body)
     write_mjcf(options.output, files)
     print(f"{options.output}: car.xml, scene.xml, {len(files) - 2} meshes")
+
+
+main = command(parser, _job)

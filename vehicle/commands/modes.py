@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.command_line import Parser, command
 from vehicle.commands.options import command_parser, message_options, vehicle_options
 
 
@@ -18,11 +18,6 @@ def parser() -> Parser:
     found.add_argument("--json", action="store_true", help="print JSON")
     message_options(found)
     return found
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -87,3 +82,6 @@ def report(found: dict[str, Any]) -> str:
     for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):
         lines.append(f"{frequency:8.3f}           {name}")
     return "\n".join(lines)
+
+
+main = command(parser, _job)

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.commands.command_line import Parser, ProgressLine, command
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -48,11 +48,6 @@ def parser() -> Parser:
     found.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     message_options(found, quiet=True)
     return found
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -221,3 +216,6 @@ def _balance(solver: dict[str, Any]) -> str:
 
 def _time(value: float | None) -> str:
     return "never" if value is None else f"at {value:.3f} s"
+
+
+main = command(parser, _job)

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle.commands.command_line import Parser, ProgressLine, parse_and_run
+from vehicle.commands.command_line import Parser, ProgressLine, command
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -54,11 +54,6 @@ def parser() -> Parser:
     found.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
     message_options(found, quiet=True)
     return found
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -161,3 +156,6 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
         paths.append(path.strip())
         values.append(items)
     return paths, list(product(*values))
+
+
+main = command(parser, _job)

@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
-from vehicle.excitation.plausibility import aliasing_notices, check_level
+from vehicle.excitation.plausibility import aliasing_notices, check_level, drifts, pauses
 from vehicle.excitation.rest import start_from_rest
 from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
-from vehicle.excitation.steadiness import drifts, pauses
 from vehicle.excitation.time_grid import LOWEST_RATE, check_rate, decimate, fill_missing, refine
 from vehicle.names import WHEELS
 from vehicle.records.clock import check_increasing, check_uniform, is_uniform, without_rounding

@@ -78,12 +78,14 @@ class FrfTarget:
         deviation = np.where(np.isfinite(told) & np.isfinite(deviation), told, deviation)
         return np.where(np.isfinite(self.data.response), deviation, np.nan)
 
-    def model_response(self, car: Car) -> Complex:
-        """FRFs of the model at the frequencies of the data, (channels, frequencies)."""
+    def model_response(self, model: Car | Run) -> Complex:
+        """FRFs at the frequencies of the data, of a car by its fast models or of a run of the signal, (channels, m)."""
+        if isinstance(model, Run):
+            return self.estimated(model)
         if self.signal is None:
-            return car.matrix_frf(self.data.channels, self.data.frequency, wheel=self.wheel)
+            return model.matrix_frf(self.data.channels, self.data.frequency, wheel=self.wheel)
         channels = [*self.data.channels, f"plate_{self.wheel}_displacement"]
-        return self.estimated(car.run(self.signal, engine="reduced", channels=channels))
+        return self.estimated(model.run(self.signal, engine="reduced", channels=channels))
 
     def estimated(self, run: Run) -> Complex:
         """FRFs of a run, by the estimator of the data, at the frequencies of the data; (channels, frequencies)."""
@@ -102,15 +104,9 @@ class FrfTarget:
             found = frequency_response(step, plate, answers, window_s=self.window, band=band)
         return np.array([np.interp(frequency, found.frequency, row) for row in found.response])
 
-    def residuals(self, car: Car) -> Vector:
+    def residuals(self, model: Car | Run) -> Vector:
         """ln(H / Hm) over its standard deviation: two rows a channel, (2 channels, frequencies); 0 where undefined."""
-        return self._rows(log_ratio(self.data.response, self.model_response(car)))
-
-    def run_residuals(self, run: Run) -> Vector:
-        """The same for a run of the signal, of any engine."""
-        return self._rows(log_ratio(self.data.response, self.estimated(run)))
-
-    def _rows(self, logarithm: Complex) -> Vector:
+        logarithm = log_ratio(self.data.response, self.model_response(model))
         known = np.isfinite(logarithm) & np.isfinite(self.deviation) & (self.deviation > 0.0)
         scaled = np.divide(logarithm, self.deviation, out=np.full(known.shape, np.nan + 0j), where=known)
         rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)

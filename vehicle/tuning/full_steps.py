@@ -5,29 +5,18 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.car import Run
+from vehicle.tuning.fit import Target
 from vehicle.tuning.result import TuningResult, row_statistics
 
 Vector = npt.NDArray[np.float64]
 
 SMALL = 0.3
 """Step in standard errors below which the values stay: taking it would change no statement about them."""
-
-
-class Checkable(Protocol):
-    """A target that a finished run can be compared with."""
-
-    @property
-    def rows(self) -> tuple[str, ...]:
-        """What each row of the residuals is."""
-
-    def run_residuals(self, run: Run) -> Vector:
-        """Residuals of a run over their assumed standard deviation, (rows, samples)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -54,7 +43,7 @@ class FullSteps:
 
 def full_steps(
     result: TuningResult,
-    targets: Sequence[Checkable],
+    targets: Sequence[Target],
     simulate: Callable[[Mapping[str, float]], Sequence[Run]],
     *,
     most_rounds: int = 4,
@@ -84,7 +73,7 @@ def full_steps(
     first = 0.0
     while True:
         runs = simulate(values)
-        rows = [row for target, run in zip(targets, runs, strict=True) for row in target.run_residuals(run)]
+        rows = [row for target, run in zip(targets, runs, strict=True) for row in target.residuals(run)]
         joined = np.concatenate(rows)
         if not steps:
             first = float(np.sqrt(np.mean((joined * result.weights) ** 2)))

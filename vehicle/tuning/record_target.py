@@ -79,35 +79,28 @@ class RecordTarget:
         """The filtered data in the window, (channels, samples)."""
         return self._filtered(np.array(list(self.record.channels.values())))
 
-    def model_histories(self, car: Car) -> Vector:
-        """Those of the model by the reduced engine, filtered, (channels, samples)."""
-        return self.taken(car.run(self.signal, engine="reduced", channels=tuple(self.record.channels)))
-
-    def taken(self, run: Run) -> Vector:
-        """The channels of a run, filtered, in the window, (channels, samples).
+    def model_histories(self, model: Car | Run) -> Vector:
+        """Those of a car by the reduced engine, or of a run of the signal, filtered, (channels, samples).
 
         Raises:
             DataError: the run is not sampled as the data.
         """
-        time = self.record.time
+        names, time = tuple(self.record.channels), self.record.time
+        run = model if isinstance(model, Run) else model.run(self.signal, engine="reduced", channels=names)
         if run.time.size != time.size or abs(run.time[-1] - time[-1]) > 1e-6:
             raise DataError(
                 f"{self.name}: {time.size} samples to {time[-1]:g} s, the model gives {run.time.size} to "
                 f"{run.time[-1]:g} s; resample the record to solver.record_rate"
             )
-        return self._filtered(np.array([run[channel] for channel in self.record.channels]))
+        return self._filtered(np.array([run[name] for name in names]))
 
-    def residuals(self, car: Car) -> Vector:
-        """(y - ym) over the RMS of y, (channels, samples)."""
-        return self._rows(self.measured() - self.model_histories(car))
-
-    def run_residuals(self, run: Run) -> Vector:
-        """The same for a run of the signal, of any engine."""
-        return self._rows(self.measured() - self.taken(run))
+    def residuals(self, model: Car | Run) -> Vector:
+        """(y - ym) over the RMS of y, (channels, samples); ym as of `model_histories`."""
+        measured = self.measured()
+        return np.asarray(
+            (measured - self.model_histories(model)) / np.sqrt(np.mean(measured**2, axis=1, keepdims=True))
+        )
 
     def _filtered(self, histories: Vector) -> Vector:
         sections = butter(4, 2.0 * self.record.step * self.lowpass, output="sos")
         return np.asarray(sosfiltfilt(sections, histories, axis=1)[:, self.kept])
-
-    def _rows(self, difference: Vector) -> Vector:
-        return np.asarray(difference / np.sqrt(np.mean(self.measured() ** 2, axis=1, keepdims=True)))
