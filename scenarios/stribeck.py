@@ -19,7 +19,7 @@ from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
 from scenarios.study import car_study, computed_by, setting
-from vehicle.analysis.slip_peaks import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
+from vehicle.analysis.slip import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, bump
 from vehicle.laws.damper import damper_law

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from scenarios.claims import FITTED, PREDICTED, Claim, Interval, interval_claim, spread_claim
 from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation
-from vehicle.analysis.window_extremes import window_extremes
+from vehicle.analysis.segments import window_extremes
 from vehicle.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
 
 Ends = Mapping[float, Interval]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehicle.analysis.window_extremes import window_extremes
+from vehicle.analysis.segments import window_extremes
 from vehicle.errors import ConfigurationError, DataError
 
 

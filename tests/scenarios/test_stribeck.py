@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.stribeck import force_error, law_force, main, peak_claims
-from vehicle.analysis.slip_peaks import extra_peaks, most_prominent, slip_phases
+from vehicle.analysis.slip import extra_peaks, most_prominent, slip_phases
 from vehicle.car import Car
 from vehicle.excitation.bump import bump
 

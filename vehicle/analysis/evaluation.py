@@ -35,7 +35,7 @@ START_UP_EFFECT = 0.01
 """Share by which a maximum in the start-up of a filter must exceed those after it to be worth a sentence [-]"""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Application:
     """Weightings and multiplying factors of one point of contact."""
 
@@ -45,60 +45,24 @@ class Application:
     """for x, y, z"""
     comfort_factors: tuple[float, float, float]
     """multiplying factors k for comfort [-]"""
-    health_factors: tuple[float, float, float] | None
+    health_factors: tuple[float, float, float] | None = None
     """multiplying factors k for health [-]; None where the standard gives none"""
 
 
+_CLAUSE = "ISO 2631-1:1997, 8.2.2"
+_SEAT, _BACKREST, _FEET = (1.0, 1.0, 1.0), (0.8, 0.5, 0.4), (0.25, 0.25, 0.4)
+_ROTATION = f"{_CLAUSE}.1 (rx, ry, rz in rad/s2, factors in m/rad)"
+
 APPLICATIONS: MappingProxyType[str, Application] = MappingProxyType(
     {
-        "seat": Application(
-            standard="ISO 2631-1:1997, 7.2.3 and 8.2.2.1",
-            weightings=("Wd", "Wd", "Wk"),
-            comfort_factors=(1.0, 1.0, 1.0),
-            health_factors=(1.4, 1.4, 1.0),
-        ),
-        "backrest": Application(
-            standard="ISO 2631-1:1997, 8.2.2.1",
-            weightings=("Wc", "Wd", "Wd"),
-            comfort_factors=(0.8, 0.5, 0.4),
-            health_factors=None,
-        ),
-        "feet": Application(
-            standard="ISO 2631-1:1997, 8.2.2.1",
-            weightings=("Wk", "Wk", "Wk"),
-            comfort_factors=(0.25, 0.25, 0.4),
-            health_factors=None,
-        ),
-        "seat_rotation": Application(
-            standard="ISO 2631-1:1997, 8.2.2.1 (rx, ry, rz in rad/s2, factors in m/rad)",
-            weightings=("We", "We", "We"),
-            comfort_factors=(0.63, 0.4, 0.2),
-            health_factors=None,
-        ),
-        "standing": Application(
-            standard="ISO 2631-1:1997, 8.2.2.2",
-            weightings=("Wd", "Wd", "Wk"),
-            comfort_factors=(1.0, 1.0, 1.0),
-            health_factors=None,
-        ),
-        "seat_bs6841": Application(
-            standard="BS 6841:1987",
-            weightings=("Wd", "Wd", "Wb"),
-            comfort_factors=(1.0, 1.0, 1.0),
-            health_factors=None,
-        ),
-        "backrest_bs6841": Application(
-            standard="BS 6841:1987",
-            weightings=("Wc", "Wd", "Wd"),
-            comfort_factors=(0.8, 0.5, 0.4),
-            health_factors=None,
-        ),
-        "feet_bs6841": Application(
-            standard="BS 6841:1987",
-            weightings=("Wb", "Wb", "Wb"),
-            comfort_factors=(0.25, 0.25, 0.4),
-            health_factors=None,
-        ),
+        "seat": Application("ISO 2631-1:1997, 7.2.3 and 8.2.2.1", ("Wd", "Wd", "Wk"), _SEAT, (1.4, 1.4, 1.0)),
+        "backrest": Application(f"{_CLAUSE}.1", ("Wc", "Wd", "Wd"), _BACKREST),
+        "feet": Application(f"{_CLAUSE}.1", ("Wk", "Wk", "Wk"), _FEET),
+        "seat_rotation": Application(_ROTATION, ("We", "We", "We"), (0.63, 0.4, 0.2)),
+        "standing": Application(f"{_CLAUSE}.2", ("Wd", "Wd", "Wk"), (1.0, 1.0, 1.0)),
+        "seat_bs6841": Application("BS 6841:1987", ("Wd", "Wd", "Wb"), _SEAT),
+        "backrest_bs6841": Application("BS 6841:1987", ("Wc", "Wd", "Wd"), _BACKREST),
+        "feet_bs6841": Application("BS 6841:1987", ("Wb", "Wb", "Wb"), _FEET),
     }
 )
 """Points of contact by name."""

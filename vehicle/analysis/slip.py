@@ -1,4 +1,4 @@
-"""How long a damper slips: share of the time, first instant, intervals.
+"""How long a damper slips: share of the time, first instant, intervals; peaks after it has begun to.
 
 A damper slips while |v| > v_slip, with v_slip = `damper.slip_velocity` of the parameters. Slip shares, first slips,
 sweeps, tables, figures and the lamps of the films all use that velocity. Where the friction alone is meant, which
@@ -7,11 +7,28 @@ reaches its limit at 1 mm/s, the name says "saturated".
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.signal import find_peaks
 
 from vehicle.analysis.samples import checked_same_length, checked_signals
 from vehicle.errors import ConfigurationError, DataError
+
+Real = NDArray[np.float64]
+
+SHORTEST_SLIP = 0.020
+"""Shorter slips [s] have no room for a peak after the break-away."""
+
+BREAK_AWAY = 0.005
+"""The jump of breaking away itself lies within this time of the end of stick [s]."""
+
+SEARCHED = 0.060
+"""Peaks are looked for this long after the end of stick [s]: 'just after'."""
+
+STANDING_OUT = 0.5
+"""A peak counts when it stands out by at least this share of the largest break-away jump of the run."""
 
 
 def _slipping(velocity: ArrayLike, slip_velocity: float) -> NDArray[np.bool_]:
@@ -25,7 +42,7 @@ def _slipping(velocity: ArrayLike, slip_velocity: float) -> NDArray[np.bool_]:
     return np.asarray(np.abs(signal[0]) > limit)
 
 
-def _instants(time: ArrayLike, samples: int) -> NDArray[np.float64]:
+def _instants(time: ArrayLike, samples: int) -> Real:
     """Return the time stamps [s], shape (n,), when they fit the velocity and increase."""
     stamps = checked_signals("time", time)
     checked_same_length("time", stamps, "the damper velocity", samples)
@@ -58,7 +75,7 @@ def first_slip(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> fl
     return float(instants[np.argmax(slips)]) if slips.any() else None
 
 
-def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> NDArray[np.float64]:
+def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> Real:
     """Return start and end [s] of every slip, shape (s, 2): first sample above the limit, first sample back below.
 
     A slip that lasts to the end of the record ends with its last time stamp.
@@ -74,3 +91,98 @@ def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -
     starts = np.flatnonzero(change == 1)
     ends = np.minimum(np.flatnonzero(change == -1), slips.size - 1)
     return np.column_stack((instants[starts], instants[ends]))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SlipPeak:
+    """A local extremum of the relative acceleration after a break-away.
+
+    Attributes:
+        time: [s].
+        delay: after the end of stick [s].
+        height: relative acceleration [m/s2].
+        prominence: how far it stands out from its surroundings [m/s2].
+    """
+
+    time: float
+    delay: float
+    height: float
+    prominence: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SlipPhase:
+    """A slip of a damper, from the end of stick on.
+
+    Attributes:
+        start, end: [s].
+        jump: largest |relative acceleration| within `BREAK_AWAY` of its start [m/s2].
+        velocity: largest damper velocity [m/s].
+        peaks: every extremum between `BREAK_AWAY` and `SEARCHED` after its start.
+    """
+
+    start: float
+    end: float
+    jump: float
+    velocity: float
+    peaks: tuple[SlipPeak, ...]
+
+
+def slip_phases(
+    time: Real, velocity: Real, relative: Real, *, saturated: float, begin: float, until: float
+) -> list[SlipPhase]:
+    """Slips that begin in a stretch of a run, with the peaks that follow each break-away.
+
+    Args:
+        time: [s], (n,).
+        velocity: of the damper [m/s], (n,).
+        relative: acceleration of the damper top relative to the knuckle [m/s2], (n,).
+        saturated: velocity above which the friction is saturated and stick has ended [m/s].
+        begin, until: stretch [s].
+
+    Returns:
+        Phases of at least `SHORTEST_SLIP`, in the order of time.
+    """
+    phases = []
+    for start, end in slip_intervals(time, velocity, saturated):
+        if not begin <= start <= until or end - start < SHORTEST_SLIP:
+            continue
+        # The jump back to zero at the end of the slip is no peak: the window ends before it.
+        window = np.flatnonzero((time >= start - BREAK_AWAY) & (time <= min(end - BREAK_AWAY, start + SEARCHED)))
+        found = []
+        for sign in (1.0, -1.0):
+            tops, properties = find_peaks(sign * relative[window], prominence=0.0)
+            for top, prominence in zip(window[tops], properties["prominences"], strict=True):
+                delay = float(time[top] - start)
+                if delay > BREAK_AWAY:
+                    found.append(
+                        SlipPeak(
+                            time=float(time[top]),
+                            delay=delay,
+                            height=float(relative[top]),
+                            prominence=float(prominence),
+                        )
+                    )
+        near = np.abs(time - start) <= BREAK_AWAY
+        during = (time >= start) & (time <= end)
+        phases.append(
+            SlipPhase(
+                start=float(start),
+                end=float(end),
+                jump=float(np.max(np.abs(relative[near]))),
+                velocity=float(np.max(np.abs(velocity[during]))),
+                peaks=tuple(sorted(found, key=lambda peak: peak.time)),
+            )
+        )
+    return phases
+
+
+def extra_peaks(phases: list[SlipPhase]) -> list[SlipPeak]:
+    """Peaks after break-away that stand out by half of the largest break-away jump of all phases."""
+    limit = STANDING_OUT * max((phase.jump for phase in phases), default=float("inf"))
+    return [peak for phase in phases for peak in phase.peaks if peak.prominence >= limit]
+
+
+def most_prominent(phases: list[SlipPhase]) -> SlipPeak | None:
+    """The peak after break-away that stands out most; None where there is none at all."""
+    return max((peak for phase in phases for peak in phase.peaks), key=lambda peak: peak.prominence, default=None)

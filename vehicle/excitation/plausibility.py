@@ -1,4 +1,4 @@
-"""Is this the displacement of a shaker plate in metres? Level, acceleration and bandwidth checks before a run."""
+"""Is this the displacement of a shaker plate in metres? Level, acceleration, bandwidth, drift, pauses."""
 
 from __future__ import annotations
 
