@@ -30,9 +30,8 @@ from vehicle.flexbody.library import body_model
 from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices, car_matrices
-from vehicle.linear.modes import Mode, car_modes
+from vehicle.linear.modes import Mode, car_modes, require_stable
 from vehicle.linear.response import frequency_response as exact_response
-from vehicle.linear.stability import require_stable
 from vehicle.linear.step_error import require_accurate_step
 from vehicle.names import AXES, ENGINES, WHEELS, acceleration_channels, channel_units
 from vehicle.parameters.vehicle import Vehicle, load_vehicle

@@ -14,7 +14,7 @@ from vehicle.car import Car
 from vehicle.commands import modes
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.random_road import random_road
-from vehicle.linear.modes import grows
+from vehicle.linear.natural_modes import grows
 from vehicle.simulation.judgement import require_finite
 from vehicle.sweeps.case import Case
 from vehicle.sweeps.program import program_digest

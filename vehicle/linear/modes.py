@@ -1,4 +1,4 @@
-"""Modes of the assembled car: constraints eliminated, Maxwell branches as states, damped eigenvalues."""
+"""Modes of the assembled car and what moves in them; a car whose motion grows by itself is refused by what moves."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.errors import ConfigurationError
 from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices
-
-Vector = npt.NDArray[np.float64]
+from vehicle.linear.natural_modes import grows, natural_modes
+from vehicle.linear.strained_part import holding_parameter
+from vehicle.simulation.car_model import CarModel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -36,18 +38,6 @@ class Mode:
     description: str
 
 
-GROWTH_FLOOR = 1e-4
-"""Growth [1/s] below which a pole counts as neutral: e-fold in three hours, far beyond any record."""
-
-ROUND_OFF = 1e-6
-"""Growth over |s| below which it is round-off of the matrices, whose differences are good to 1e-8."""
-
-
-def grows(poles: npt.NDArray[np.complex128]) -> npt.NDArray[np.bool_]:
-    """Which poles [rad/s] grow beyond round-off."""
-    return np.asarray(poles.real > GROWTH_FLOOR + ROUND_OFF * np.abs(poles))
-
-
 def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> list[Mode]:
     """Modes of the car up to a frequency.
 
@@ -60,27 +50,23 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> l
         Modes sorted by natural frequency; overdamped motions (real poles) are left out. What grows is listed at any
         frequency, real poles too, with "grows: " before its description.
     """
-    form = first_order(matrices.system, stuck=stuck)
-    poles, vectors = np.linalg.eig(form.state)
+    modes = natural_modes(first_order(matrices.system, stuck=stuck))
     found = []
-    growing = grows(poles)
-    for index in np.flatnonzero((poles.imag > 1e-6) | (growing & (poles.imag >= 0.0))):
-        frequency = float(abs(poles[index])) / (2.0 * np.pi)
-        if frequency <= highest or growing[index]:
-            shape = form.shape(vectors[:, index])
-            energy = _energy(matrices, shape)
-            found.append(
-                Mode(
-                    frequency=frequency,
-                    damping_ratio=float(-poles[index].real / abs(poles[index])),
-                    growth=float(poles[index].real),
-                    grows=bool(growing[index]),
-                    shape=shape,
-                    energy=energy,
-                    description=("grows: " if growing[index] else "") + _describe(matrices, shape, energy),
-                )
+    for index in np.flatnonzero((modes.frequency <= highest) | grows(modes.pole)):
+        shape, growing = modes.motion[index], bool(grows(modes.pole)[index])
+        energy = _energy(matrices, shape)
+        found.append(
+            Mode(
+                frequency=float(modes.frequency[index]),
+                damping_ratio=float(modes.damping_ratio[index]),
+                growth=float(modes.pole[index].real),
+                grows=growing,
+                shape=shape,
+                energy=energy,
+                description=("grows: " if growing else "") + _describe(matrices, shape, energy),
             )
-    return sorted(found, key=lambda mode: mode.frequency)
+        )
+    return found
 
 
 def group_of(body: str) -> str:
@@ -135,3 +121,31 @@ def _rigid_direction(matrices: CarMatrices, body: str, shape: npt.NDArray[np.com
     weights = np.real(np.conj(velocity) * (matrices.body_masses[body] @ velocity))
     names = ("longitudinal (x)", "lateral (y)", "heave (z)", "roll (Rx)", "pitch (Ry)", "yaw (Rz)")
     return names[int(np.argmax(weights))]
+
+
+def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.complex128]) -> None:
+    """Refuse a car with a growing pole.
+
+    The poles with sliding dampers tell: what buckles while the friction holds buckles all the more without it, for
+    a stiffness that is indefinite in a part of the motions is so in all of them.
+
+    Args:
+        car: the car.
+        matrices: its matrices.
+        poles: its poles with sliding dampers [rad/s].
+
+    Raises:
+        ConfigurationError: what moves, how fast it grows, and what could be wrong.
+    """
+    if not np.any(grows(poles)):
+        return
+    growing = [mode for mode in car_modes(matrices, stuck=False) if mode.grows]
+    worst = max(growing, key=lambda mode: mode.growth)
+    vehicle = car.vehicle
+    raise ConfigurationError(
+        f"this car does not stand: {worst.description.removeprefix('grows: ')} grows by itself, e-fold in "
+        f"{1.0 / worst.growth:.3g} s. Its weight and preloads are more than its springs hold: what works most there is "
+        f"{holding_parameter(car, matrices, worst.growth + 0j, worst.shape)}; check it against "
+        f"body.mass ({vehicle.body.mass:g} kg), body.cog and gravity ({vehicle.gravity:g} m/s2), or look at "
+        "python -m vehicle.modes"
+    )

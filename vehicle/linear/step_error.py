@@ -22,7 +22,7 @@ from scipy.optimize import linear_sum_assignment
 from vehicle.errors import ConfigurationError
 from vehicle.linear.first_order import FirstOrder, first_order
 from vehicle.linear.matrices import CarMatrices
-from vehicle.linear.stability import require_stable
+from vehicle.linear.modes import require_stable
 from vehicle.linear.step_map import StepMap, step_map, step_rows
 from vehicle.linear.strained_part import holding_parameter, moving_part
 from vehicle.simulation.car_model import CarModel
