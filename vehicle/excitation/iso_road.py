@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,17 @@ RISE_S = 1.0
 """Time [s] over which the road rises out of a plane, where the car stands."""
 
 Side = Literal["right", "left"]
+
+
+class Road(Protocol):
+    """Heights of two tracks along a road."""
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages and headers."""
+
+    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
+        """Heights [m] at equal distances; arguments as of `IsoRoad.height`."""
 
 
 def isotropic_coherence(wavenumber: NDArray[np.float64], track: float) -> NDArray[np.float64]:
@@ -94,6 +105,15 @@ class IsoRoad:
         if not 0.0 <= self.patch < 1.0:
             raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
 
+    @property
+    def words(self) -> str:
+        """What it is, for messages and headers."""
+        related = "isotropic plane" if self.coherence is None else f"coherence {self.coherence:g}"
+        return (
+            f"road of ISO 8608, G(0.1 cycles/m) = {self.level:g} m3, {self.lowest:g} to {self.highest:g} cycles/m, "
+            f"tracks {self.track:g} m apart ({related}), contact patch {self.patch:g} m, seed {self.seed}"
+        )
+
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
         """Heights of a track at equal distances.
 
@@ -135,7 +155,7 @@ class IsoRoad:
 
 
 def drive(
-    road: IsoRoad, *, speed: float, wheels: Mapping[str, tuple[float, Side]], duration: float, rate: float = 1000.0
+    road: Road, *, speed: float, wheels: Mapping[str, tuple[float, Side]], duration: float, rate: float = 1000.0
 ) -> Signal:
     """Plate displacements of a car that drives over a road: z(t) = w(V t - d) z(V t - d).
 
@@ -162,24 +182,16 @@ def drive(
         raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")
     # Longer than the record by the last wheel's delay: no wheel meets the beginning of the road again.
     period = steps + 1 + int(np.ceil(max(behind) / speed * rate))
-    step = speed / rate
-    displacement = {}
+    step, displacement = speed / rate, {}
     for wheel, (distance, side) in wheels.items():
         # 0.8 of the Nyquist frequency, as for every generated signal.
         z = road.height(-distance, step, period, side, 0.4 / step)[: steps + 1]
         late = np.arange(steps + 1) / rate - distance / speed
-        displacement[wheel] = z * half_cosine_at(late, RISE_S)
-    lowest = max(road.lowest, 1.0 / (period * step)) * speed
+        displacement[wheel] = z * half_cosine_at(late, RISE_S) + 0.0  # no -0.0 in files
     return Signal(
         time=uniform_time(samples=steps + 1, timestep=1.0 / rate),
         displacement=displacement,
-        source=(
-            f"road of ISO 8608, G(0.1 cycles/m) = {road.level:g} m3, {road.lowest:g} to {road.highest:g} cycles/m, at "
-            f"{speed * 3.6:g} km/h ({lowest:.3g} to {min(road.highest * speed, 0.4 * rate):.4g} Hz), tracks "
-            f"{road.track:g} m apart, "
-            f"{'isotropic plane' if road.coherence is None else f'coherence {road.coherence:g}'}, seed {road.seed}, "
-            f"{RISE_S:g} s rise from rest"
-        ),
+        source=f"{road.words}; {speed * 3.6:.6g} km/h, {RISE_S:g} s rise from rest",
     )
 
 

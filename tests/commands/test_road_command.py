@@ -1,0 +1,69 @@
+"""Roads as files: class and speed, measured profiles, what the shaker reads of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.commands.road import main
+from vehicle.excitation.signal_file import read_signal
+
+
+def test_a_class_and_a_speed_make_a_signal_that_is_read_back(tmp_path, capsys):
+    file = tmp_path / "road.csv"
+    arguments = ["--class", "c", "--speed", "80", "--duration", "10", "--output", str(file)]
+    assert main(arguments) == 0
+    said = capsys.readouterr().out
+    assert "G(0.1 cycles/m) = 0.000256 m3" in said and "80 km/h" in said and "10 s" in said
+    signal = read_signal(file, accept_implausible=True)
+    assert signal.wheels == ("fr", "fl") and signal.duration == pytest.approx(10.0)
+    first = file.read_bytes()
+    assert main(arguments) == 2 and "exists; give --force" in capsys.readouterr().err
+    assert main([*arguments, "--force"]) == 0
+    assert file.read_bytes() == first
+    assert main([*arguments, "--force", "--seed", "2"]) == 0
+    assert file.read_bytes() != first
+
+
+def test_a_measured_profile_is_met_at_the_speed(tmp_path):
+    """A sine of 4 m under the right wheels, half as high under the left: 5 Hz at 20 m/s."""
+    distance = np.arange(0.0, 100.0, 0.05)
+    right = 0.01 * np.sin(2.0 * np.pi * distance / 4.0) + 0.3
+    rows = np.column_stack([distance, 500.0 * (right - 0.3), right])
+    profile = tmp_path / "profile.csv"
+    np.savetxt(profile, rows, delimiter=",", header="distance [m],left [mm],right [m]", comments="", fmt="%.9g")
+    file = tmp_path / "road.csv"
+    assert main(["--profile", str(profile), "--speed", "72", "--output", str(file), "--quiet"]) == 0
+    signal = read_signal(file, accept_implausible=True)
+    assert signal.duration == pytest.approx(4.997, abs=2e-3)
+    late = signal.time > 1.0
+    wave = 0.01 * np.sin(2.0 * np.pi * 5.0 * signal.time[late])
+    # Seven digits in the file, a spline through 80 points a wave.
+    np.testing.assert_allclose(signal.displacement["fr"][late], wave, atol=1e-8)
+    np.testing.assert_allclose(signal.displacement["fl"][late], 0.5 * wave, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (["--speed", "80"], 2, "either --class or --profile"),
+        (["--class", "K", "--speed", "80"], 2, "--class 'K': allowed are A, B"),
+        (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: allowed above 0"),
+        (["--class", "A", "--speed", "nan"], 2, "--speed nan km/h"),
+        (["--class", "A", "--speed", "80", "--coherence", "2"], 2, "coherence 2.0; allowed: 0 to 1"),
+        (["--profile", "p.csv", "--speed", "80", "--patch", "0.1"], 2, "--patch: belongs to --class"),
+        (["--profile", "missing.csv", "--speed", "80"], 2, "missing.csv"),
+        (["--profile", "p.csv", "--speed", "80", "--duration", "9"], 3, "the road ends after 30 m, 200 m are driven"),
+        (["--profile", "q.csv", "--speed", "80"], 3, "q.csv:4: the distance must increase"),
+        (["--profile", "r.csv", "--speed", "80"], 3, "r.csv:1: found 'distance [m]', 'left [m]'; needed are"),
+    ],
+)
+def test_refusals(arguments, code, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    head = "distance [m],left [m],right [m]\n"
+    (tmp_path / "p.csv").write_text(head + "".join(f"{x},0,0\n" for x in range(31)), encoding="utf-8")
+    (tmp_path / "q.csv").write_text(head + "0,0,0\n1,0,0\n0.5,0,0\n2,0,0\n3,0,0\n", encoding="utf-8")
+    (tmp_path / "r.csv").write_text("distance [m],left [m]\n0,0\n1,0\n", encoding="utf-8")
+    assert main(arguments) == code
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "road.csv").exists()

@@ -1,0 +1,94 @@
+"""A measured road: heights of two tracks over the distance, from a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from vehicle.errors import DataError
+from vehicle.excitation.iso_road import Side
+from vehicle.records.formats import read_table
+from vehicle.records.table import Header, Wanted, name_and_unit
+
+NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
+UNITS = {"m": 1.0, "mm": 1e-3}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MeasuredRoad:
+    """A profile; the road before it is a plane at the height of its first points, so the car stands on it.
+
+    Attributes:
+        distance: places [m], (n,), increasing.
+        right, left: heights of the tracks [m], (n,).
+        source: name of the file.
+    """
+
+    distance: NDArray[np.float64]
+    right: NDArray[np.float64]
+    left: NDArray[np.float64]
+    source: str
+
+    @property
+    def length(self) -> float:
+        """From its first place to its last [m]."""
+        return float(self.distance[-1] - self.distance[0])
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages and headers."""
+        step = self.length / (self.distance.size - 1)
+        return f"measured road {self.source}, {self.length:.4g} m, a point every {step:.3g} m"
+
+    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
+        """Heights at equal distances, by a cubic spline; arguments as of `IsoRoad.height`.
+
+        Raises:
+            DataError: the road ends before.
+        """
+        place = self.distance[0] + start + step * np.arange(steps)
+        if place[-1] > self.distance[-1] + 1e-9 * self.length:
+            raise DataError(
+                f"{self.source}: the road ends after {self.length:.6g} m, {place[-1] - self.distance[0]:.6g} m are "
+                "driven; ask for a shorter --duration"
+            )
+        heights = self.right if side == "right" else self.left
+        found: NDArray[np.float64] = CubicSpline(self.distance, heights - heights[0])(np.maximum(place, place[0]))
+        return np.where(place < self.distance[0], 0.0, found)
+
+
+def read_road(path: Path) -> MeasuredRoad:
+    """Read a profile.
+
+    Args:
+        path: columns `distance [m]`, `left [m]`, `right [m]` in any order.
+
+    Raises:
+        ConfigurationError: there is no such file.
+        DataError: bad data; the message names the place.
+    """
+    table = read_table(path, Wanted(needed=NEEDED, key=lambda header: _columns(header)["distance"][0]))
+    found = {name: table.values[:, column] * scale for name, (column, scale) in _columns(table.header).items()}
+    steps = np.diff(found["distance"])
+    if steps.size < 3 or not (steps > 0.0).all():
+        row = int(np.argmin(steps)) + 1 if steps.size else 0
+        raise DataError(f"{table.place(row)}: the distance must increase from row to row, over four rows or more")
+    return MeasuredRoad(distance=found["distance"], right=found["right"], left=found["left"], source=path.name)
+
+
+def _columns(header: Header) -> dict[str, tuple[int, float]]:
+    """Index and scale of the three columns."""
+    found = {}
+    for index, cell in enumerate(header.cells):
+        name, unit = name_and_unit(cell)
+        if name in ("distance", "left", "right") and name not in found:
+            if unit not in UNITS or (name == "distance" and unit != "m"):
+                raise DataError(f"{header.where}: column {cell!r}; needed are {NEEDED}")
+            found[name] = index, UNITS[unit]
+    if len(found) < 3 or len(found) < len(header.cells):
+        raise DataError(f"{header.where}: found {header.found}; needed are {NEEDED}, each once")
+    return found
