@@ -253,5 +253,18 @@ def test_parts_of_one_role_on_one_corner_keep_apart_and_their_bolts_go_with_the_
     assert list(part_shapes(twin)) == ["main_rr", "spring_seat_lower_rr", "helper_rr", "helper_spring_seat_lower_rr"]
 
 
-def test_a_part_without_points_is_not_drawn() -> None:
-    assert part_shapes([Part(name="thing", role="link", points={})]) == {}
+def test_a_role_finds_its_points_around_the_part(points: dict[str, np.ndarray]) -> None:
+    corner = {name.removesuffix("_fl"): points[name] for name in points if name.endswith("_fl")}
+    own = {name: corner[name] for name in ("lower_ball", "damper_bottom", "wheel_center")}
+    drawn, rods = (
+        part_shapes([Part(name="knuckle", role="knuckle", points=own, around=around, suffix="_fl", left=True)])
+        for around in (corner, {})
+    )
+    whole = car_shapes(points)["knuckle_fl"].mesh
+    assert drawn["knuckle_fl"].mesh.vertices == pytest.approx(np.asarray(whole.vertices), abs=1e-15)
+    assert len(volumes(rods["knuckle_fl"].mesh)) == 6
+
+
+def test_a_part_without_points_or_with_the_role_none_is_not_drawn(points: dict[str, np.ndarray]) -> None:
+    parts = [Part(name="thing", role="link", points={}), Part(name="seat", role="none", points=points)]
+    assert part_shapes(parts) == {}

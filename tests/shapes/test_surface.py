@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.shapes.placement import axis_rotation, joined, mirrored, placed
-from vehicle.shapes.solids import drum
+from vehicle.shapes.solids import axis_rotation, drum, joined, mirrored, placed
 from vehicle.shapes.surface import bezier, coons, grid, rounded, spline
 
 

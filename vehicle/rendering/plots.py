@@ -27,23 +27,16 @@ LEGEND_ROOM = 0.22
 UNDRIVEN, SLIPPING, SLIP_LIMIT, MAGNIFIED = "#ececec", "#f2b8b5", "#8c2f39", "#fff3c4"
 
 
-def plot_frf(
-    path: Path,
-    run: RecordedRun,
-    response: FrequencyResponse,
-    caption: str,
-    channels: Sequence[str] | None = None,
-) -> None:
+def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption: str) -> None:
     """Write the FRF picture: magnitudes with the 95 % band of their random error, grey where the input tells nothing.
 
     Args:
         path: PNG file.
         run: the run; tells the excited wheel.
-        response: FRFs to the plate displacement [m/s2 per m].
+        response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
         caption: line under the picture: input, level, estimator.
-        channels: names of the rows of `response`; all acceleration channels by default.
     """
-    rows = {name: row for row, name in enumerate(acceleration_channels() if channels is None else channels)}
+    rows = {name: row for row, name in enumerate(acceleration_channels())}
     wheel, side = run.wheel, side_of(run.wheel)
     mount = {f"suspension_mount_{wheel}_acc_z": "body at suspension mount"}
     corner = {f"knuckle_{wheel}_acc_z": "knuckle at damper bottom", f"damper_top_{wheel}_acc_z": "damper top"}
@@ -54,14 +47,12 @@ def plot_frf(
     }
     frequency = response.frequency
     inside = np.asarray(np.isfinite(response.response).any(axis=0))
-    shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels if name in rows]])
+    shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels]])
     with saved_figure(path, (13.0, 8.6), f"FRFs to the plate under the {side} front wheel", caption) as figure:
         axes = figure.subplots(3, 2, sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9))
         for column, (title, labels) in enumerate(groups.items()):
             magnitude, phase, coherence = axes[:, column]
             for number, (name, label) in enumerate(labels.items()):
-                if name not in rows:
-                    continue
                 # The mount stands in both columns and looks the same in both.
                 style = {"color": COLOURS[4] if name in mount else COLOURS[number]}
                 row = rows[name]

@@ -15,8 +15,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.rendering.motion import Coil, Motion, Wireframe
 from vehicle.rendering.overlay import Layout, Overlay, Trace, colours, round_factor, round_up
 from vehicle.rendering.recorded_run import RecordedRun, excerpt_start, side_of, wheels_of
-from vehicle.rendering.stage import Canvas, Picture, close_up, stage_model, whole_car
-from vehicle.shapes import SHELL
+from vehicle.rendering.stage import OPACITY, Canvas, Picture, close_up, stage_model, whole_car
 
 Vector = npt.NDArray[np.float64]
 
@@ -35,9 +34,6 @@ VISIBLE_TIME = 2.0
 GHOSTS = ("tyre", "rim", "wheel_bolts")
 GHOST_OPACITY = 0.22
 """The wheel hides the strut in the close-up."""
-
-CLEARED = (*SHELL, "body_seats", "body_dashboard", "body_floor", "body_exhaust", "body_front_structure")
-"""Shapes left out of the close-up."""
 
 
 FPS = 30.0
@@ -164,9 +160,8 @@ class Shot:
         """Camera, viewport and opacity of all materials of each view."""
         layout, wheel = self.layout, self.run.wheel
         usual, cleared = self.model.mat_rgba[:, 3].copy(), self.model.mat_rgba[:, 3].copy()
-        for name in GHOSTS:
-            cleared[self.model.material(f"{name}_{wheel}").id] = GHOST_OPACITY
-        cleared[[self.model.material(name).id for name in CLEARED]] = 0.0
+        cleared[[self.model.material(f"{name}_{wheel}").id for name in GHOSTS]] = GHOST_OPACITY
+        cleared[[self.model.material(name).id for name in OPACITY]] = 0.0
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
         return [
             (whole_car(), (0, 0, layout.main_width, layout.view_height), usual),
@@ -176,7 +171,8 @@ class Shot:
     def _largest(self, times: Vector, exposure: float) -> tuple[float, float]:
         """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
         parts, nodes = [], []
-        moving = [self.model.body(f"{part}_{wheel}").id for part in ("knuckle", "plate") for wheel in self.wheels]
+        bodies = [self.model.body(number).name for number in range(self.model.nbody)]
+        moving = [number for number, name in enumerate(bodies) if name.startswith(("knuckle_", "plate_"))]
         for time in times:
             state = self.motion.at(time, exposure)
             parts.append(np.linalg.norm(state.translation[moving], axis=1))

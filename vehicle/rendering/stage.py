@@ -36,7 +36,7 @@ OPACITY = {
     "body_dashboard": 0.35,
     "body_exhaust": 0.6,
 }
-"""Opacity of the shapes that would hide suspension and wireframe."""
+"""Opacity of the shapes that would hide suspension and wireframe; the close-up leaves them out."""
 
 
 def stage_model(car: CarModel, size: tuple[int, int]) -> mujoco.MjModel:

@@ -9,8 +9,8 @@ import numpy as np
 import trimesh
 
 from vehicle.shapes.body_outline import CANT_RAIL, DRAWING, SILL, Outline, station_at, station_front, station_rear
-from vehicle.shapes.placement import both, inverted, joined
 from vehicle.shapes.shape import Array
+from vehicle.shapes.solids import both, inverted, joined
 from vehicle.shapes.surface import bezier, coons, grid, spline
 
 CORNER_Y = 0.58  # [m] reference Y of the bonnet's front corner

@@ -7,9 +7,8 @@ import trimesh
 
 from vehicle.shapes import palette
 from vehicle.shapes.body_outline import outline
-from vehicle.shapes.placement import both, joined, placed, shifted
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
-from vehicle.shapes.solids import block, box, drum, hull, lathe, plate, ring, rod, tube
+from vehicle.shapes.solids import block, both, box, drum, hull, joined, lathe, placed, plate, ring, rod, shifted, tube
 from vehicle.shapes.surface import spline
 from vehicle.shapes.suspension import SEAT_BELOW_TOP, stabilizer_clamp, strut_axis
 

@@ -8,9 +8,8 @@ import trimesh
 from vehicle.shapes import body_shell, palette
 from vehicle.shapes.body_outline import DRAWING, Outline, outline, station_at, station_front, station_rear
 from vehicle.shapes.body_shell import COWL_X, WINDOWS, arch_edge, bonnet, cant_rail, side_patch, waist_curve
-from vehicle.shapes.placement import both, shifted
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
-from vehicle.shapes.solids import block, hull, rod, tube
+from vehicle.shapes.solids import block, both, hull, rod, shifted, tube
 from vehicle.shapes.surface import grid, spline
 
 JOINT_RADIUS = 0.0035  # [m] half width of the dark line that stands for a gap between panels

@@ -8,9 +8,8 @@ import numpy as np
 import trimesh
 
 from vehicle.shapes import palette
-from vehicle.shapes.placement import joined, placed, shifted
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
-from vehicle.shapes.solids import block, box, drum, hull, lathe, ring, rod, tube
+from vehicle.shapes.solids import block, box, drum, hull, joined, lathe, placed, ring, rod, shifted, tube
 from vehicle.shapes.surface import bezier
 
 ACROSS = (0.0, 1.0, 0.0)

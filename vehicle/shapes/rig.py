@@ -9,9 +9,8 @@ import numpy as np
 import trimesh
 
 from vehicle.shapes import palette
-from vehicle.shapes.placement import joined, placed, shifted
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
-from vehicle.shapes.solids import block, box, drum, hull, lathe, plate, ring
+from vehicle.shapes.solids import block, box, drum, hull, joined, lathe, placed, plate, ring, shifted
 
 BED_TOP = 0.04  # [m] top of the bed plate above the ground
 TABLE = 0.030  # [m] thickness of both plates

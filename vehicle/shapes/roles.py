@@ -9,8 +9,8 @@ from typing import Final
 from vehicle.shapes import body_structure, engine, rig, suspension, wheel
 from vehicle.shapes.body_outline import OUTLINE
 from vehicle.shapes.body_trim import estate_body
-from vehicle.shapes.placement import mirrored
 from vehicle.shapes.shape import SIZES, Piece, Points, Shape, Sizes
+from vehicle.shapes.solids import mirrored
 from vehicle.shapes.suspension import STRUT
 
 ENGINE: Final = ("engine_cog", "hydromount", "linear_mount", "bottom_engine")
@@ -56,8 +56,9 @@ class Part:
 
     Attributes:
         name: of the part without its suffix; shapes are called after it.
-        role: what it is drawn as, a name of `ROLES` or any other.
-        points: its points at the design position [m] in the vehicle frame, by the names that the role gives them.
+        role: what it is drawn as: a name of `ROLES`, `none` for nothing, any other for rods between its points.
+        points: points that it hangs on, at the design position [m] in the vehicle frame, by their names.
+        around: further points that its role may ask for, by the names that the role gives them.
         suffix: `_fr` and the like, behind the names of part and shapes; empty for what exists once.
         carrier: the part that holds it: its bolts move with that.
         left: drawn mirrored, as the roles draw the right side.
@@ -67,37 +68,30 @@ class Part:
     name: str
     role: str
     points: Points
+    around: Points = field(default_factory=dict)
     suffix: str = ""
     carrier: str = "body"
     left: bool = False
     sizes: Sizes = field(default_factory=dict)
 
 
-def pieces(role: str, points: Points, sizes: Sizes) -> list[Piece]:
-    """Draw a part on the right side by its role; rods between its points where the role is unknown or lacks a point.
-
-    Args:
-        role: a name of `ROLES` or any other.
-        points: points [m] by the names that the role gives them; more are allowed.
-        sizes: drawn sizes that replace those of `SIZES`.
-
-    Returns:
-        Pieces, none for a part without points.
-    """
-    draw, needed = ROLES.get(role, (None, ()))
-    if not points:
+def pieces(part: Part) -> list[Piece]:
+    """Draw a part on the right side by its role; rods between its points where its role is unknown or lacks a point."""
+    turn = (1.0, -1.0 if part.left else 1.0, 1.0)
+    own, known = ({name: point * turn for name, point in given.items()} for given in (part.points, part.around))
+    draw, needed = ROLES.get(part.role, (None, ()))
+    if part.role == "none" or not own:
         return []
-    if draw is None or not set(needed) <= set(points):
-        return suspension.rods(list(points.values()))
-    return draw(points, {**SIZES, **sizes})
+    if draw is None or not set(needed) <= {*own, *known}:
+        return suspension.rods(list(own.values()))
+    return draw(known | own, {**SIZES, **part.sizes})
 
 
 def part_shapes(parts: Iterable[Part]) -> dict[str, Shape]:
     """Visible shapes of parts, by name, in the order of the parts; the name is fit for a file."""
     shapes: dict[str, Shape] = {}
     for part in parts:
-        points = {name: point * (1.0, -1.0, 1.0) if part.left else point for name, point in part.points.items()}
-        for piece in pieces(part.role, points, part.sizes):
+        for piece in pieces(part):
             name = part.name + piece.name if piece.name[:1] in ("", "_") else piece.name
             if name + part.suffix in shapes:  # a second part of the role on this corner
                 name = f"{part.name}_{piece.name}"

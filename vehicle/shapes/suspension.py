@@ -10,9 +10,8 @@ import trimesh
 from numpy.typing import ArrayLike
 
 from vehicle.shapes import palette
-from vehicle.shapes.placement import joined, placed, shifted
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
-from vehicle.shapes.solids import ball, drum, hull, lathe, ring, rod, swept, tube
+from vehicle.shapes.solids import ball, drum, hull, joined, lathe, placed, ring, rod, shifted, swept, tube
 from vehicle.shapes.surface import bezier, helix, rounded
 
 STRUT = ("damper_bottom", "spring_lower", "strut_top")

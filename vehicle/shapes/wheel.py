@@ -6,9 +6,8 @@ import numpy as np
 import trimesh
 
 from vehicle.shapes import palette
-from vehicle.shapes.placement import joined, placed
 from vehicle.shapes.shape import Array, Piece, Points, Sizes
-from vehicle.shapes.solids import box, drum, hull, lathe
+from vehicle.shapes.solids import box, drum, hull, joined, lathe, placed
 
 OUTWARD = np.array([0.0, 1.0, 0.0])  # spin axis of the right wheel, to the outside
 DISC_OFFSET = 0.018  # [m] middle of the disc, outside the wheel centre
