@@ -80,3 +80,10 @@ def test_the_shaker_reads_the_plates_of_a_run(run):
     assert signal.wheels == ("fr",)  # the other plate stood still
     assert signal.notices == ("time begins at 2 s in the file and was shifted to 0",)
     np.testing.assert_allclose(signal.displacement["fr"], plates["plate_fr_displacement"], rtol=1e-8, atol=1e-15)
+
+
+def test_arrays_beyond_the_memory_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
+    np.savez_compressed(tmp_path / "own.npz", time=TIME, x=0.0 * TIME)  # zeros pack a thousand times smaller
+    monkeypatch.setattr("vehicle.records.npz_format.MEMORY_LIMIT", 60_000)
+    with pytest.raises(DataError, match=r"own\.npz: its arrays need .* GiB of memory; allowed"):
+        read_record(tmp_path / "own.npz")
