@@ -55,18 +55,20 @@ def parser() -> Parser:
 
 def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     """Read, treat the offset as asked, and evaluate."""
+    import numpy as np
+
     from vehicle.analysis.evaluation import AXES, application, evaluate
     from vehicle.analysis.offset import LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line, without_offset
     from vehicle.records.acceleration import read_acceleration
 
     application(options.place)
     record = read_acceleration(options.input, options.channel)
-    mean = record.xyz.mean(axis=1)
-    line = offset_line(record.xyz)
+    xyz = np.array(list(record.channels.values()))
+    mean = xyz.mean(axis=1)
+    line = offset_line(xyz)
     drift = line[:, -1] - line[:, 0]
-    xyz = without_offset(record.xyz) if options.offset == "remove" else record.xyz
     if options.offset == "refuse":
-        effects = offset_effect(record.time_step, record.xyz, place=options.place)
+        effects = offset_effect(record.step, xyz, place=options.place)
         for axis, effect, offset, change in zip(AXES, effects, mean, drift, strict=True):
             if effect > OFFSET_EFFECT or abs(offset) > LARGEST_MEAN:
                 raise DataError(
@@ -76,8 +78,8 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
                     "sensor's offset or gravity, --offset keep if the record starts at rest and the mean is real"
                 )
     result = evaluate(
-        record.time_step,
-        xyz,
+        record.step,
+        without_offset(xyz) if options.offset == "remove" else xyz,
         place=options.place,
         average=options.mtvv,
         skip=options.skip,

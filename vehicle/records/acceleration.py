@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.names import AXES
 from vehicle.records.formats import read_record
+from vehicle.records.table import Record, Vector
 
 STANDARD_GRAVITY = 9.80665
 """[m/s2], ISO 80000-3, for records in g"""
@@ -22,22 +22,10 @@ ALIASED_SHARE = 0.05
 """share of the variance above 0.8 of Nyquist that is worth a notice (bad-inputs item 12) [-]"""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class AccelerationRecord:
-    """Acceleration of one point in three axes, uniformly sampled."""
-
-    time_step: float
-    """[s]"""
-    xyz: NDArray[np.float64]
-    """[m/s2], shape (3, n)"""
-    notices: tuple[str, ...]
-    """what a careful reader should know; empty when nothing is odd"""
-
-
-def _notices(xyz: NDArray[np.float64], rate: float) -> tuple[str, ...]:
+def _notices(xyz: Mapping[str, Vector], rate: float) -> tuple[str, ...]:
     """Return remarks on constant axes and on content near Nyquist."""
     found = []
-    for axis, record in zip(AXES, xyz, strict=True):
+    for axis, record in xyz.items():
         power = np.abs(np.fft.rfft(record - record.mean())) ** 2
         total = float(power.sum())
         if np.ptp(record) == 0.0:
@@ -52,7 +40,7 @@ def _notices(xyz: NDArray[np.float64], rate: float) -> tuple[str, ...]:
     return tuple(found)
 
 
-def read_acceleration(path: str | Path, place: str | None = None) -> AccelerationRecord:
+def read_acceleration(path: str | Path, place: str | None = None) -> Record:
     """Read an acceleration in three axes.
 
     Args:
@@ -60,7 +48,7 @@ def read_acceleration(path: str | Path, place: str | None = None) -> Acceleratio
         place: point of a run, as "seat_rail", for the channels `seat_rail_acc_x|y|z`; None for columns x, y, z.
 
     Returns:
-        The record in SI units.
+        Channels x, y, z [m/s2], with remarks on what is odd.
 
     Raises:
         ConfigurationError: no such file.
@@ -70,8 +58,8 @@ def read_acceleration(path: str | Path, place: str | None = None) -> Acceleratio
     axes = [axis if place is None else f"{place}_acc_{axis}" for axis in AXES]
     needed = f"time [s], {', '.join(f'{name} [m/s2]' for name in axes)} (or [g])"
     record = read_record(file, needed)
-    xyz = []
-    for name in axes:
+    xyz = {}
+    for axis, name in zip(AXES, axes, strict=True):
         if name not in record.channels:
             places = dict.fromkeys(one[:-6] for one in record.channels if one.endswith("_acc_x"))
             choice = f"; give --channel with one of {', '.join(places)}" if places else ""
@@ -89,8 +77,6 @@ def read_acceleration(path: str | Path, place: str | None = None) -> Acceleratio
                 f"{file}: column {name!r} swings by {swing:g} m/s2 about its mean, allowed are "
                 f"{LARGEST_ACCELERATION:g}; looks like mm/s2 or a spike? correct the unit in the header or the record"
             )
-        xyz.append(values)
-    found = np.stack(xyz)
-    return AccelerationRecord(
-        time_step=record.step, xyz=found, notices=(*record.notices, *_notices(found, 1.0 / record.step))
-    )
+        xyz[axis] = values
+    notices = (*record.notices, *_notices(xyz, 1.0 / record.step))
+    return Record(time=record.time, channels=xyz, units=dict.fromkeys(AXES, "m/s2"), notices=notices)

@@ -158,15 +158,9 @@ def _columns(table: Table, channels: Sequence[str], suffix: str) -> Vector:
 
 
 def _check_frequency(table: Table, frequency: Vector) -> None:
-    if frequency[0] <= 0.0:
-        raise DataError(f"{table.place(0)}: column {FREQUENCY!r} holds {frequency[0]:g}; allowed is above 0")
-    falling = np.flatnonzero(np.diff(frequency) <= 0.0)
-    if falling.size:
-        index = int(falling[0]) + 1
-        raise DataError(
-            f"{table.place(index)}: column {FREQUENCY!r} holds {frequency[index]:g} after {frequency[index - 1]:g}; "
-            "the frequencies must rise"
-        )
+    for index in np.flatnonzero(np.diff(frequency, prepend=0.0) <= 0.0)[:1].tolist():
+        after = f" after {frequency[index - 1]:g}; the frequencies must rise" if index else "; allowed is above 0"
+        raise DataError(f"{table.place(index)}: column {FREQUENCY!r} holds {frequency[index]:g}{after}")
 
 
 def write_frf(path: Path, response: FrequencyResponse, channels: Sequence[str], frame: str) -> None:
