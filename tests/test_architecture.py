@@ -27,7 +27,7 @@ ROOMS: dict[str, set[str]] = {
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},
     "linear": {"laws", "parameters", "simulation"},
-    "reduced": {"parameters", "excitation", "linear", "simulation", "compiler"},
+    "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation"},
     "analysis": set(),
     "lumped": {"parameters", "laws", "linear"},
     "rendering": {"simulation", "analysis", "assembly", "shapes"},

@@ -182,7 +182,7 @@ class Car:
             recording = simulate_reduced(
                 self.poles,
                 signal,
-                damper=self.vehicle.damper,
+                dampers=[damper.law for damper in self.vehicle.composition.dampers],
                 record_rate=self.vehicle.solver.record_rate,
                 tyre_load=self.model.static.tyre_load,
                 channels=channels,

@@ -77,7 +77,7 @@ def reduced(signal, **changes):
     return simulate_reduced(
         pole_model(matrices()),
         signal,
-        damper=damper(**changes),
+        dampers=[damper(**changes)] * 2,
         record_rate=1000.0,
         tyre_load={"fr": 1e6, "fl": 1e6},
         channels=[*matrices().system.outputs, "damper_fr_velocity", "damper_fl_velocity", "damper_fr_force"],

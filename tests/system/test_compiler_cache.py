@@ -16,11 +16,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 SECOND_PROCESS = """
 import numpy as np
+from vehicle.laws.damper import RECORD
 from vehicle.reduced.march import compiled_march
 march = compiled_march()
-state, force = np.zeros((2, 3)), np.zeros(2)
-march(np.zeros((14, 3)), np.zeros((7, 2)), np.zeros((2, 2)), np.eye(2), np.ones((7, 2)), np.zeros((3, 2)), state,
-      np.zeros(2), force, 1, 1, np.zeros((4, 8)), np.zeros((4, 2)), np.zeros((4, 2)), np.zeros((4, 2)))
+state, force, laws = np.zeros((2, 3)), np.zeros(2), np.zeros(2, dtype=RECORD)
+march(np.zeros((14, 3)), np.zeros((7, 2)), np.zeros((2, 2)), np.eye(2), laws, np.zeros((3, 2)), state, np.zeros(2),
+      force, 1, 1, np.zeros((4, 8)), np.zeros((4, 2)), np.zeros((4, 2)), np.zeros((4, 2)))
 print(sum(march.stats.cache_hits.values()), sum(march.stats.cache_misses.values()))
 """
 

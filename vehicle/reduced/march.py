@@ -1,12 +1,13 @@
 """Advancing the poles step by step, compiled: the damper forces of every step are implicit.
 
-v+ = w + G f with w the velocity without the forces of the step, f = -phi(v+) and
+v+ = a + G f with a the w velocities without the forces of the step, f = -phi(v+) and
 
     phi(v) = clamp(c v, L) + clamp(d v, M),   c = (2/pi) L eps: friction;  d = Ddeg - D, M = d Vdeg: degressive law.
 
-phi grows with v and is piecewise linear, so one damper alone is solved exactly. Two are solved by turns: the fixed
-point is the minimum of a convex function (G is symmetric, positive), which coordinate descent finds from anywhere; the
-dampers act on each other through the whole car, a hundred times less than on themselves, so few turns do.
+phi grows with v and is piecewise linear, so one damper alone is solved exactly. Several are solved by turns: the fixed
+point is the minimum of a convex function (G is symmetric, positive). Two find it from anywhere, by coordinate descent;
+more do where the dampers act on themselves more than all others on them. In a car it is a hundred times more, so few
+turns do.
 """
 
 from __future__ import annotations
@@ -18,58 +19,203 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.compiler import prepare_compiler_cache
+from vehicle.compiler import OPTIONS, jitable, numba_module, stamp
 from vehicle.errors import MissingPartError
+from vehicle.laws.damper import friction_limit
+from vehicle.laws.friction import clamp, slope_at_rest
 
 MISSING = "the reduced engine needs numba, which is missing (pip install numba)"
 
 March = Callable[..., None]
 
-LAW_ROWS = 7
-"""Rows of the law table: sliding limit [N], static limit [N], Stribeck velocity [m/s] and exponent, smoothing eps
-[s/m], extra slope [N s/m] and its limit [N] of the degressive law; a column for each damper."""
-
 TURNS = 60
-"""Most turns between the two dampers; each shrinks the error by the square of their coupling."""
+"""Most turns among the dampers; of two, each shrinks the error by the square of their coupling."""
 
 ACCURACY = 1e-9
 """Error [N] of a damper force at which the turns end, far below what friction is known to."""
 
 
-def solve_damper(
-    w: float, g: float, c: float, limit: float, d: float, limit2: float, both: float, alone: float, extra: float
-) -> float:
-    """Velocity v of w = v + g (clamp(c v, limit) + clamp(d v, limit2)); odd in w, g > 0.
+@jitable
+def solve_damper(a: float, g: float, c: float, limit: float, d: float, limit2: float, inverses: Any) -> float:
+    """Velocity v of a = v + g (clamp(c v, limit) + clamp(d v, limit2)); odd in a, g > 0.
 
-    `both`, `alone` and `extra` are 1 / (1 + g (c + d)), 1 / (1 + g c) and 1 / (1 + g d): divisions are slow, and these
-    do not wait for w.
+    `inverses` are 1 / (1 + g (c + d)), 1 / (1 + g c) and 1 / (1 + g d): divisions are slow, and these do not wait.
     """
-    size = abs(w)
-    v = size * both
+    size = abs(a)
+    v = size * inverses[0]
     if c * v > limit or d * v > limit2:
         # The corner that comes first on the way up: as a rule friction, at some micrometres a second.
         if limit * d <= limit2 * c:
-            v = (size - g * limit) * extra
+            v = (size - g * limit) * inverses[2]
             if d * v > limit2:
                 v = size - g * (limit + limit2)
         else:
-            v = (size - g * limit2) * alone
+            v = (size - g * limit2) * inverses[1]
             if c * v > limit:
                 v = size - g * (limit + limit2)
-    return v if w > 0.0 else -v
+    signed: float = v if a > 0.0 else -v
+    return signed
 
 
+@jitable
 def damper_force(v: float, c: float, limit: float, d: float, limit2: float) -> float:
     """-phi(v)."""
-    return -min(max(c * v, -limit), limit) - min(max(d * v, -limit2), limit2)
+    force: float = -clamp(c * v, limit) - clamp(d * v, limit2)
+    return force
 
 
-def friction_limit(v: float, sliding: float, static: float, velocity: float, exponent: float) -> float:
-    """Fd + (Fs - Fd) exp(-|v/vs|^delta)."""
-    if static == sliding:
-        return sliding
-    weight: float = np.exp(-((abs(v) / velocity) ** exponent))
-    return sliding + (static - sliding) * weight
+@jitable
+def solve_dampers(arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any) -> None:
+    """Velocities and forces of w dampers in a step.
+
+    Args:
+        arriving: velocities without the forces of the step [m/s]; (w,).
+        gain: G [m/(N s)]; (w, w).
+        laws: records of `vehicle.laws.damper`; (w,).
+        velocity: at the beginning of the step, which sets the friction limits, and at its end; changed in place, (w,).
+        force: of the last step and of this one [N], changed in place; (w,).
+    """
+    count = laws.shape[0]
+    limit, slope, inverses, last = np.empty(count), np.empty(count), np.empty((count, 3)), np.empty(count)
+    for i in range(count):
+        limit[i] = friction_limit(laws[i], velocity[i])
+        slope[i] = slope_at_rest(limit[i], laws[i]["smoothing"])
+        g, d = gain[i, i], laws[i]["degressive_slope"]
+        inverses[i, 0] = 1.0 / (1.0 + g * (slope[i] + d))
+        inverses[i, 1] = 1.0 / (1.0 + g * slope[i])
+        inverses[i, 2] = 1.0 / (1.0 + g * d)
+    for _ in range(TURNS):
+        # By turns with the others' last forces; all at once, so that none waits for another.
+        for i in range(count):
+            own = arriving[i]
+            for j in range(count):
+                if j != i:
+                    own += gain[i, j] * force[j]
+            d, m = laws[i]["degressive_slope"], laws[i]["degressive_limit"]
+            velocity[i] = solve_damper(own, gain[i, i], slope[i], limit[i], d, m, inverses[i])
+        for i in range(count):
+            d, m = laws[i]["degressive_slope"], laws[i]["degressive_limit"]
+            last[i] = force[i]
+            force[i] = damper_force(velocity[i], slope[i], limit[i], d, m)
+        settled = True
+        for i in range(count):
+            change = 0.0
+            for j in range(count):
+                if j != i:
+                    change += gain[i, j] * (force[j] - last[j])
+            settled = settled and abs(change) <= ACCURACY * gain[i, i]
+        if settled:
+            return
+
+
+@jitable
+def march(
+    pair_factors: Any,
+    real_factors: Any,
+    slip_plate: Any,
+    gain: Any,
+    laws: Any,
+    plates: Any,
+    pair: Any,
+    real: Any,
+    force: Any,
+    every: int,
+    first: int,
+    samples: Any,
+    velocities: Any,
+    before: Any,
+    after: Any,
+) -> None:
+    """March over the steps between the rows of `plates` and keep every `every`-th end.
+
+    Inputs and damper velocities are taken in pairs: an odd number of dampers has one more that does nothing (e).
+
+    Args:
+        pair_factors: real and imaginary rows for the pairs: decay, damper velocities (e), inputs in the order two
+            forces, first plate, further forces, further plates; (2 (1 + e + e + m), p). One table, so that the compiler
+            sees that no row overlaps the state.
+        real_factors: the same rows for the real poles, real parts; (1 + e + e + m, q).
+        slip_plate: what the plates add to the damper velocities, (e, m).
+        gain: G of the damper forces of a step, (e, e).
+        laws: records of `vehicle.laws.damper`; (e,).
+        plates: (z, z') of the driven plates at the ends of the steps; (steps + 1, m).
+        pair, real: eta without the forces of the step, changed in place; (2, p), (q,).
+        force: damper forces of the last step [N], changed in place; (e,).
+        every: steps between two samples.
+        first: index of the first sample.
+        samples: eta without the forces of the step at the samples; (block, 2 p + q).
+        velocities, before, after: damper velocities [m/s], and damper forces [N] of the steps that end and
+            begin at a sample; (all samples, e).
+    """
+    pairs, reals, count = pair.shape[1], real.shape[0], laws.shape[0]
+    inputs, at = count + plates.shape[1], 1 + count
+    x, y, c, r = pair[0], pair[1], pair_factors, real_factors
+    c0, c1, c2, c3, c4, c5 = c[0], c[1], c[2], c[3], c[4], c[5]
+    c6, c7, c8, c9 = c[2 * at], c[2 * at + 1], c[2 * at + 2], c[2 * at + 3]
+    c10, c11, c12, c13 = c[2 * at + 4], c[2 * at + 5], c[2 * at + 6], c[2 * at + 7]
+    r0, r1, r2, r3, r4, r5, r6 = r[0], r[1], r[2], r[at], r[at + 1], r[at + 2], r[at + 3]
+    sample, phase = first, 0  # phase: steps since the last sample
+    velocity, arriving, u = velocities[first - 1].copy(), np.empty(count), np.empty(inputs)
+    for step in range(plates.shape[0] - 1):
+        u[0], u[1], u[2], u[3] = force[0], force[1], plates[step, 0], plates[step, 1]
+        for k in range(2, count):
+            u[2 + k] = force[k]
+        for k in range(2, plates.shape[1]):
+            u[count + k] = plates[step, k]
+        f0, f1, z, d = u[0], u[1], u[2], u[3]
+        w0, w1 = 0.0, 0.0
+        for p in range(pairs):
+            a, b = x[p], y[p]
+            re = c0[p] * a - c1[p] * b + c6[p] * f0 + c8[p] * f1 + c10[p] * z + c12[p] * d
+            im = c0[p] * b + c1[p] * a + c7[p] * f0 + c9[p] * f1 + c11[p] * z + c13[p] * d
+            w0 += c2[p] * re - c3[p] * im
+            w1 += c4[p] * re - c5[p] * im
+            x[p] = re
+            y[p] = im
+        for q in range(reals):
+            value = r0[q] * real[q] + r3[q] * f0 + r4[q] * f1 + r5[q] * z + r6[q] * d
+            w0 += r1[q] * value
+            w1 += r2[q] * value
+            real[q] = value
+        for k in range(4, inputs, 2):
+            f0, f1, at = u[k], u[k + 1], 1 + count + k
+            b0, b1, b2, b3 = c[2 * at], c[2 * at + 1], c[2 * at + 2], c[2 * at + 3]
+            for p in range(pairs):
+                re = b0[p] * f0 + b2[p] * f1
+                im = b1[p] * f0 + b3[p] * f1
+                w0 += c2[p] * re - c3[p] * im
+                w1 += c4[p] * re - c5[p] * im
+                x[p] += re
+                y[p] += im
+            for q in range(reals):
+                value = r[at, q] * f0 + r[at + 1, q] * f1
+                w0 += r1[q] * value
+                w1 += r2[q] * value
+                real[q] += value
+        arriving[0], arriving[1] = w0, w1
+        for i in range(2, count):
+            along = 0.0
+            for p in range(pairs):
+                along += c[2 + 2 * i, p] * x[p] - c[3 + 2 * i, p] * y[p]
+            for q in range(reals):
+                along += r[1 + i, q] * real[q]
+            arriving[i] = along
+        for i in range(count):
+            for k in range(plates.shape[1]):
+                arriving[i] += slip_plate[i, k] * plates[step + 1, k]
+        solve_dampers(arriving, gain, laws, velocity, force)
+        phase += 1
+        if phase == 1:
+            after[sample - 1] = force
+        if phase == every:
+            phase = 0
+            row = sample - first
+            samples[row, :pairs] = x
+            samples[row, pairs : 2 * pairs] = y
+            samples[row, 2 * pairs :] = real
+            velocities[sample] = velocity
+            before[sample] = force
+            sample += 1
 
 
 def has_compiler() -> bool:
@@ -84,130 +230,16 @@ def compiled_march() -> March:
     Raises:
         MissingPartError: numba is not installed.
     """
-    prepare_compiler_cache()
     try:
-        import numba
+        numba = numba_module()
     except ImportError:
         raise MissingPartError(MISSING) from None
-    options: dict[str, Any] = {"cache": True, "boundscheck": False, "error_model": "numpy", "nogil": True}
-    # Sums over poles may be taken in any order, so that they fill the vector units; nothing else is loosened.
-    fast = {"reassoc", "contract", "nsz"}
-    # Known to the compiler by their names: what a function closes over is part of the key of the compiler's cache, and
-    # a compiled function is another object in every process.
-    for law in (solve_damper, damper_force, friction_limit):
-        numba.extending.register_jitable(fastmath=fast, boundscheck=False, error_model="numpy")(law)
+    mark = stamp()
 
-    def march(
-        pair_factors: Any,
-        real_factors: Any,
-        slip_plate: Any,
-        gain: Any,
-        laws: Any,
-        plates: Any,
-        pair: Any,
-        real: Any,
-        force: Any,
-        every: int,
-        first: int,
-        samples: Any,
-        velocities: Any,
-        before: Any,
-        after: Any,
-    ) -> None:
-        """March over the steps between the rows of `plates` and keep every `every`-th end.
+    # What it closes over is part of the key of the compiler's cache.
+    def entry(*arguments: Any) -> None:
+        if mark:
+            march(*arguments)
 
-        Args:
-            pair_factors: real and imaginary rows for the pairs: decay, damper velocities (2), forces (2), columns of
-                `plates` (m); (2 (5 + m), p). One table, so that the compiler sees that no row overlaps the state.
-            real_factors: the same rows for the real poles, real parts; (5 + m, q).
-            slip_plate: what the plates add to the damper velocities, (2, m).
-            gain: G of the damper forces of a step, (2, 2).
-            laws: table of the laws, (LAW_ROWS, 2).
-            plates: (z, z') of the driven plates at the ends of the steps; (steps + 1, m), m = 2 or 4.
-            pair, real: eta without the forces of the step, changed in place; (2, p), (q,).
-            force: damper forces of the last step [N], changed in place; (2,).
-            every: steps between two samples.
-            first: index of the first sample.
-            samples: eta without the forces of the step at the samples; (block, 2 p + q).
-            velocities, before, after: damper velocities [m/s], and damper forces [N] of the steps that end and
-                begin at a sample; (all samples, 2).
-        """
-        pairs, reals, inputs = pair.shape[1], real.shape[0], plates.shape[1]
-        c, r = pair_factors, real_factors
-        sample = first
-        phase = 0  # steps since the last sample
-        v0, v1 = velocities[first - 1, 0], velocities[first - 1, 1]
-        f0, f1 = force[0], force[1]
-        g00, g01, g10, g11 = gain[0, 0], gain[0, 1], gain[1, 0], gain[1, 1]
-        d0, d1, m0, m1 = laws[5, 0], laws[5, 1], laws[6, 0], laws[6, 1]
-        extra0, extra1 = 1.0 / (1.0 + g00 * d0), 1.0 / (1.0 + g11 * d1)
-        for step in range(plates.shape[0] - 1):
-            z, d = plates[step, 0], plates[step, 1]
-            l0 = friction_limit(v0, laws[0, 0], laws[1, 0], laws[2, 0], laws[3, 0])
-            l1 = friction_limit(v1, laws[0, 1], laws[1, 1], laws[2, 1], laws[3, 1])
-            s0, s1 = 2.0 / np.pi * l0 * laws[4, 0], 2.0 / np.pi * l1 * laws[4, 1]
-            both0, alone0 = 1.0 / (1.0 + g00 * (s0 + d0)), 1.0 / (1.0 + g00 * s0)
-            both1, alone1 = 1.0 / (1.0 + g11 * (s1 + d1)), 1.0 / (1.0 + g11 * s1)
-            w0 = 0.0
-            w1 = 0.0
-            for p in range(pairs):
-                a, b = pair[0, p], pair[1, p]
-                re = c[0, p] * a - c[1, p] * b + c[6, p] * f0 + c[8, p] * f1 + c[10, p] * z + c[12, p] * d
-                im = c[0, p] * b + c[1, p] * a + c[7, p] * f0 + c[9, p] * f1 + c[11, p] * z + c[13, p] * d
-                w0 += c[2, p] * re - c[3, p] * im
-                w1 += c[4, p] * re - c[5, p] * im
-                pair[0, p] = re
-                pair[1, p] = im
-            for q in range(reals):
-                value = r[0, q] * real[q] + r[3, q] * f0 + r[4, q] * f1 + r[5, q] * z + r[6, q] * d
-                w0 += r[1, q] * value
-                w1 += r[2, q] * value
-                real[q] = value
-            if inputs == 4:
-                z, d = plates[step, 2], plates[step, 3]
-                for p in range(pairs):
-                    re = c[14, p] * z + c[16, p] * d
-                    im = c[15, p] * z + c[17, p] * d
-                    w0 += c[2, p] * re - c[3, p] * im
-                    w1 += c[4, p] * re - c[5, p] * im
-                    pair[0, p] += re
-                    pair[1, p] += im
-                for q in range(reals):
-                    value = r[7, q] * z + r[8, q] * d
-                    w0 += r[1, q] * value
-                    w1 += r[2, q] * value
-                    real[q] += value
-            for column in range(inputs):
-                w0 += slip_plate[0, column] * plates[step + 1, column]
-                w1 += slip_plate[1, column] * plates[step + 1, column]
-            for _ in range(TURNS):
-                # By turns with the other's last force; both at once, so that neither waits for the other.
-                u0, u1 = w0 + g01 * f1, w1 + g10 * f0
-                v0 = solve_damper(u0, g00, s0, l0, d0, m0, both0, alone0, extra0)
-                v1 = solve_damper(u1, g11, s1, l1, d1, m1, both1, alone1, extra1)
-                last0, last1 = f0, f1
-                f0, f1 = damper_force(v0, s0, l0, d0, m0), damper_force(v1, s1, l1, d1, m1)
-                if abs(g01 * (f1 - last1)) <= ACCURACY * g00 and abs(g10 * (f0 - last0)) <= ACCURACY * g11:
-                    break
-            phase += 1
-            if phase == 1:
-                after[sample - 1, 0] = f0
-                after[sample - 1, 1] = f1
-            if phase == every:
-                phase = 0
-                row = sample - first
-                for p in range(pairs):
-                    samples[row, p] = pair[0, p]
-                    samples[row, pairs + p] = pair[1, p]
-                for q in range(reals):
-                    samples[row, 2 * pairs + q] = real[q]
-                velocities[sample, 0] = v0
-                velocities[sample, 1] = v1
-                before[sample, 0] = f0
-                before[sample, 1] = f1
-                sample += 1
-        force[0] = f0
-        force[1] = f1
-
-    compiled: March = numba.njit(fastmath=fast, **options)(march)
+    compiled: March = numba.njit(cache=True, nogil=True, **OPTIONS)(entry)
     return compiled

@@ -1,4 +1,4 @@
-"""The car as a sum over its poles: on the rig all that is nonlinear is the force of the two dampers.
+"""The car as a sum over its poles: on the rig all that is nonlinear is the force of the dampers.
 
 With the matrices of `vehicle.linear` (dampers sliding, ideal joints eliminated) the state x = (y, y', f_b) obeys
 
@@ -19,7 +19,6 @@ import numpy.typing as npt
 
 from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices
-from vehicle.names import WHEELS
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -31,7 +30,7 @@ class Outputs:
 
     Attributes:
         poles: (outputs, p), twice the row for a pole that stands for a pair.
-        height, velocity: (outputs, 2) each, in the order of WHEELS.
+        height, velocity: (outputs, w) each, in the order of the inputs.
     """
 
     poles: Complex
@@ -46,8 +45,8 @@ class PoleModel:
     Attributes:
         poles: s [rad/s] with imag(s) >= 0, complex ones first; (p,).
         pairs: number of complex ones.
-        height, velocity, force: b_z, b_c and e; (p, 2) each, in the order of WHEELS.
-        slip: rows of the damper velocities, real part taken; (2, p).
+        height, velocity, force: b_z, b_c and e; (p, w) each, in the order of the inputs and of the dampers.
+        slip: rows of the damper velocities, real part taken; (w, p).
         modal: displacements u = Re(modal xi) of the velocity coordinates of MuJoCo; (n, p).
         matrices: what the model was made from.
     """
@@ -68,23 +67,25 @@ class PoleModel:
             channels: names of `vehicle.names`.
         """
         found = [self._tyre(name) if name.startswith("tyre_") else self._position(name) for name in channels]
-        count = len(self.poles)
+        count, wheels = len(self.poles), len(self.matrices.system.inputs)
         return Outputs(
             poles=np.array([row[0] for row in found]).reshape(-1, count),
-            height=np.array([row[1] for row in found]).reshape(-1, 2),
-            velocity=np.array([row[2] for row in found]).reshape(-1, 2),
+            height=np.array([row[1] for row in found]).reshape(-1, wheels),
+            velocity=np.array([row[2] for row in found]).reshape(-1, wheels),
         )
 
     def _position(self, channel: str) -> tuple[Complex, Vector, Vector]:
         """Displacement of the place, of which `vehicle.simulation.acceleration` makes the channel."""
-        return self.matrices.system.output(channel)[0] @ self.modal, np.zeros(2), np.zeros(2)
+        still = np.zeros(len(self.matrices.system.inputs))
+        return self.matrices.system.output(channel)[0] @ self.modal, still, still
 
     def _tyre(self, channel: str) -> tuple[Complex, Vector, Vector]:
         """Tyre force on the wheel: k (z - J u) + c (z' - J u')."""
-        m, index = self.matrices, WHEELS.index(channel.split("_")[1])
+        m, wheels = self.matrices, self.matrices.system.inputs
+        index = wheels.index(channel.split("_")[1])
         spring = m.system.input_stiffness[:, index] @ self.modal
         drag = m.system.input_damping[:, index] @ (self.modal * self.poles)
-        here = np.zeros(2)
+        here = np.zeros(len(wheels))
         here[index] = 1.0
         return -(spring + drag), m.tyre_stiffness[index] * here, m.tyre_damping[index] * here
 

@@ -20,7 +20,7 @@ class Readout:
         outputs: rows of the channels.
         factors: of the step.
         pairs: number of complex poles.
-        columns: columns of (z_fr, z_fl, z'_fr, z'_fl) that the plate samples hold.
+        columns: columns of (z, z') of all plates that the plate samples hold.
     """
 
     def __init__(self, outputs: Outputs, factors: StepFactors, pairs: int, columns: Sequence[int]) -> None:
@@ -36,7 +36,7 @@ class Readout:
         Args:
             states: eta without the forces of the last step; (samples, 2 p + q).
             plates: (z, z') of the driven plates; (samples, m).
-            before: damper forces of the last step [N]; (samples, 2).
+            before: damper forces of the last step [N]; (samples, w).
 
         Returns:
             (outputs, samples).

@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.names import WHEELS, channel_units
+from vehicle.laws.damper import RECORD, pack
+from vehicle.names import channel_units
 from vehicle.parameters.elements import Damper
-from vehicle.reduced.march import LAW_ROWS, March, compiled_march
+from vehicle.reduced.march import March, compiled_march
 from vehicle.reduced.plate_samples import LongPlates, plate_samples
 from vehicle.reduced.pole_model import PoleModel
 from vehicle.reduced.readout import Readout
@@ -35,7 +36,7 @@ def simulate_reduced(
     model: PoleModel,
     signal: Signal,
     *,
-    damper: Damper,
+    dampers: Sequence[Damper],
     record_rate: float,
     tyre_load: Mapping[str, float],
     channels: Sequence[str] | None = None,
@@ -45,7 +46,7 @@ def simulate_reduced(
     Args:
         model: the car as a sum over its poles.
         signal: displacement of the plates.
-        damper: laws of its dampers; their viscous part is in the model already.
+        dampers: their laws, one for each; the viscous parts are in the model already.
         record_rate: rate of the samples [Hz].
         tyre_load: static tyre loads [N] by wheel.
         channels: names of the recorded channels; all by default.
@@ -64,15 +65,16 @@ def simulate_reduced(
     samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
     step = interval / every
     plates = plate_samples(signal, step, (samples - 1) * every, AHEAD * every)
-    run = _Run(model, step_factors(model, step), damper, signal.wheels)
+    run = _Run(model, step_factors(model, step), dampers, signal.wheels)
     # No step at all: compiling is no part of the time of the run.
     run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
     started = clock.perf_counter()
-    linear = [name for name in names if not name.startswith(("damper_fr_", "damper_fl_", "plate_"))]
+    wheeled = tuple(f"{part}_{wheel}_" for wheel in run.corners for part in ("damper", "plate"))
+    linear = [name for name in names if not name.startswith(wheeled)]
     readout = Readout(model.outputs(linear), run.factors, model.pairs, run.columns)
     watch = ValidityWatch(model, run.factors, run.columns, tyre_load)
     table = np.empty((len(linear), samples + AHEAD))
-    table[:, 0] = readout.at(run.state()[None], plates[:1], run.before[:1])[:, 0] if linear else 0.0
+    table[:, 0] = readout.at(run.state()[None], plates[:1], run.before[:1, : run.count])[:, 0] if linear else 0.0
     run.fill(march, plates, every, readout, table, watch)
     channel = dict(zip(linear, table, strict=True)) | run.wheel_channels(model, plates[: samples * every : every])
     for name in linear:
@@ -80,7 +82,7 @@ def simulate_reduced(
             channel[name] = acceleration(channel[name], interval)
         else:
             channel[name] = channel[name][:samples]
-    for wheel in WHEELS:
+    for wheel in run.corners:
         if f"tyre_{wheel}_force_z" in channel:
             channel[f"tyre_{wheel}_force_z"] = channel[f"tyre_{wheel}_force_z"] + tyre_load[wheel]
     wall = clock.perf_counter() - started
@@ -104,49 +106,41 @@ def simulate_reduced(
     )
 
 
-def law_table(damper: Damper) -> Vector:
-    """Constants of the damper laws as the march takes them; (LAW_ROWS, 2), both sides alike."""
-    static = damper.stribeck_friction if damper.friction_law == "stribeck" else damper.coulomb_friction
-    extra = damper.degressive_viscous - damper.viscous if damper.viscous_law == "degressive" else 0.0
-    column = np.array(
-        [
-            damper.coulomb_friction,
-            static,
-            damper.stribeck_velocity,
-            damper.stribeck_exponent,
-            damper.smoothing,
-            extra,
-            extra * damper.degressive_velocity,
-        ]
-    )
-    return np.repeat(column.reshape(LAW_ROWS, 1), 2, axis=1)
-
-
 class _Run:
     """Arrays of one run, as the compiled march takes them.
 
     Args:
         model: the car.
         factors: of its step.
-        damper: laws of the dampers.
+        dampers: their laws.
         wheels: driven wheels.
     """
 
-    def __init__(self, model: PoleModel, factors: StepFactors, damper: Damper, wheels: tuple[str, ...]) -> None:
-        self.factors, self.pairs = factors, model.pairs
-        self.laws = law_table(damper)
-        self.wheels = wheels
-        self.columns = [column for wheel in wheels for column in (WHEELS.index(wheel), 2 + WHEELS.index(wheel))]
-        decay = factors.decay[:, None]
-        rows = np.hstack([decay, model.slip.T, decay * factors.force, factors.plate[:, self.columns]])
+    def __init__(
+        self, model: PoleModel, factors: StepFactors, dampers: Sequence[Damper], wheels: tuple[str, ...]
+    ) -> None:
+        self.factors, self.pairs, self.wheels = factors, model.pairs, wheels
+        self.corners = model.matrices.system.inputs
+        corners = len(self.corners)
+        self.columns = [place for one in map(self.corners.index, wheels) for place in (one, corners + one)]
+        count = len(dampers)
+        even = count + count % 2
+        self.laws = np.zeros(even, dtype=RECORD)
+        self.laws[:count] = [pack(damper) for damper in dampers]
+        decay, idle = factors.decay[:, None], np.zeros((len(factors.decay), even - count))
+        slip, force = np.hstack([model.slip.T, idle]), np.hstack([decay * factors.force, idle])
+        plates = factors.plate[:, self.columns]
+        rows = np.hstack([decay, slip, force[:, :2], plates[:, :2], force[:, 2:], plates[:, 2:]])
         pairs, reals = rows[: model.pairs], rows[model.pairs :]
         self.pair_factors = np.ascontiguousarray(np.stack([pairs.real, pairs.imag], axis=2).reshape(model.pairs, -1).T)
         self.real_factors = np.ascontiguousarray(reals.real.T)
-        self.slip_plate = np.ascontiguousarray((model.slip @ factors.ahead[:, self.columns]).real)
-        self.gain = np.ascontiguousarray((model.slip @ factors.force).real)
+        self.slip_plate, self.gain = np.zeros((even, len(self.columns))), np.zeros((even, even))
+        self.slip_plate[:count] = (model.slip @ factors.ahead[:, self.columns]).real
+        self.gain[:count, :count] = (model.slip @ factors.force).real
+        self.count = count
         self.pair, self.real = np.zeros((2, len(pairs))), np.zeros(len(reals))
-        self.force = np.zeros(2)
-        self.velocities = self.before = self.after = np.zeros((1, 2))
+        self.force = np.zeros(even)
+        self.velocities = self.before = self.after = np.zeros((1, even))
 
     def state(self) -> Vector:
         """eta of the pairs, real and imaginary, and of the real poles; (2 p + q,)."""
@@ -183,7 +177,7 @@ class _Run:
     ) -> None:
         """Fill the table of outputs, (outputs, samples), and the arrays of the dampers."""
         samples = table.shape[1]
-        self.velocities, self.before, self.after = np.zeros((3, samples, 2))
+        self.velocities, self.before, self.after = np.zeros((3, samples, len(self.laws)))
         states = np.zeros((BLOCK, len(self.state())))
         done = 1
         while done < samples:
@@ -192,15 +186,15 @@ class _Run:
             piece = plates[first : first + size * every + 1]
             self.advance(march, piece, every, done, states)
             ends = piece[every::every]
-            table[:, here] = readout.at(states[:size], ends, self.before[here])
-            watch.look(states[:size], ends, self.before[here])
+            table[:, here] = readout.at(states[:size], ends, self.before[here, : self.count])
+            watch.look(states[:size], ends, self.before[here, : self.count])
             done += size
         self.after[-1] = self.before[-1]
 
     def wheel_channels(self, model: PoleModel, plates: Vector) -> dict[str, Vector]:
         """Plate displacements, damper velocities and damper forces at the samples."""
         found = {}
-        for column, wheel in enumerate(WHEELS):
+        for column, wheel in enumerate(self.corners):
             driven = wheel in self.wheels
             height = plates[:, 2 * self.wheels.index(wheel)] if driven else np.zeros(len(plates))
             velocity = self.velocities[: len(plates), column]

@@ -33,9 +33,9 @@ class StepFactors:
     Attributes:
         timestep: h [s].
         decay: E; (p,).
-        plate: factors of z (columns 0, 1) and z' (2, 3) at the beginning of a step, for eta; (p, 4).
-        ahead: c0 and c1: xi = eta + ahead (z, z'); (p, 4).
-        force: factors of the damper forces; (p, 2).
+        plate: factors of z and z' of all plates at the beginning of a step, for eta; (p, 2 w).
+        ahead: c0 and c1: xi = eta + ahead (z, z'); (p, 2 w).
+        force: factors of the damper forces; (p, w).
     """
 
     timestep: float

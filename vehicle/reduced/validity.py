@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.names import WHEELS
 from vehicle.reduced.pole_model import Outputs, PoleModel
 from vehicle.reduced.readout import Readout
 from vehicle.reduced.step_factors import StepFactors
@@ -42,15 +41,15 @@ class ValidityWatch:
         self, model: PoleModel, factors: StepFactors, columns: Sequence[int], tyre_load: Mapping[str, float]
     ) -> None:
         rows = model.matrices.body_rows
-        self.bodies = tuple(rows)
+        self.bodies, self.wheels = tuple(rows), model.matrices.system.inputs
         turns = np.vstack([rows[body][3:] for body in self.bodies]) @ model.modal
-        none = np.zeros((len(turns), 2))
+        none = np.zeros((len(turns), len(model.matrices.system.inputs)))
         rotations = Outputs(poles=turns, height=none, velocity=none)
         self.rotations = Readout(rotations, factors, model.pairs, columns)
         self.tyres = Readout(
-            model.outputs([f"tyre_{wheel}_force_z" for wheel in WHEELS]), factors, model.pairs, columns
+            model.outputs([f"tyre_{wheel}_force_z" for wheel in self.wheels]), factors, model.pairs, columns
         )
-        self.static = np.array([tyre_load[wheel] for wheel in WHEELS])
+        self.static = np.array([tyre_load[wheel] for wheel in self.wheels])
         self.angle = np.zeros(len(self.bodies))
         self.load = self.static.copy()
 
@@ -76,7 +75,7 @@ class ValidityWatch:
                 f"{self.bodies[worst]} turned by {self.angle[worst]:.3f} rad; the reduced engine, which takes the car "
                 f"as linear but for its dampers, holds up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine"
             )
-        for wheel, load in zip(WHEELS, self.load, strict=True):
+        for wheel, load in zip(self.wheels, self.load, strict=True):
             if load < 0.0:
                 found.append(
                     f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); the model pulls there, so the "
