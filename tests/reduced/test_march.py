@@ -21,7 +21,7 @@ LAWS = [
 def test_velocity_answers_its_own_force(c, limit, d, limit2, g):
     inverses = (1.0 / (1.0 + g * (c + d)), 1.0 / (1.0 + g * c), 1.0 / (1.0 + g * d))
     for w in [*np.geomspace(1e-9, 3.0, 60), -0.02, -1.5]:
-        found = solve_damper(w, g, c, limit, d, limit2, inverses)
+        found = solve_damper(w, g, c, limit, d, limit2, *inverses)
         size = abs(w)
         expected = brentq(
             lambda v, size=size: v - g * damper_force(v, c, limit, d, limit2) - size, 0.0, size, xtol=1e-18
@@ -43,7 +43,7 @@ def test_dampers_with_laws_of_their_own_answer_each_other(count):
     for size in (1e-6, 1e-3, 0.05, 1.0):
         arriving, start = size * generator.standard_normal((2, count))
         velocity, force = start.copy(), np.zeros(count)
-        solve_dampers(arriving, gain, laws, velocity, force)
+        solve_dampers(arriving, gain, laws, velocity, force, np.empty((6, count)))
         # v = a + G f, and f follows from v by each law, with the limit of the velocity that the step began with.
         np.testing.assert_allclose(velocity, arriving + gain @ force, rtol=1e-9, atol=1e-12)
         for v, before, f, (sliding, static, stribeck) in zip(velocity, start, force, numbers, strict=True):

@@ -36,21 +36,23 @@ ACCURACY = 1e-9
 
 
 @jitable
-def solve_damper(a: float, g: float, c: float, limit: float, d: float, limit2: float, inverses: Any) -> float:
+def solve_damper(
+    a: float, g: float, c: float, limit: float, d: float, limit2: float, both: float, alone: float, extra: float
+) -> float:
     """Velocity v of a = v + g (clamp(c v, limit) + clamp(d v, limit2)); odd in a, g > 0.
 
-    `inverses` are 1 / (1 + g (c + d)), 1 / (1 + g c) and 1 / (1 + g d): divisions are slow, and these do not wait.
+    `both`, `alone` and `extra` are 1 / (1 + g (c + d)), 1 / (1 + g c) and 1 / (1 + g d): divisions are slow, and these do not wait.
     """
     size = abs(a)
-    v = size * inverses[0]
+    v = size * both
     if c * v > limit or d * v > limit2:
         # The corner that comes first on the way up: as a rule friction, at some micrometres a second.
         if limit * d <= limit2 * c:
-            v = (size - g * limit) * inverses[2]
+            v = (size - g * limit) * extra
             if d * v > limit2:
                 v = size - g * (limit + limit2)
         else:
-            v = (size - g * limit2) * inverses[1]
+            v = (size - g * limit2) * alone
             if c * v > limit:
                 v = size - g * (limit + limit2)
     signed: float = v if a > 0.0 else -v
@@ -65,7 +67,7 @@ def damper_force(v: float, c: float, limit: float, d: float, limit2: float) -> f
 
 
 @jitable
-def solve_dampers(arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any) -> None:
+def solve_dampers(arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any, room: Any) -> None:
     """Velocities and forces of w dampers in a step.
 
     Args:
@@ -74,16 +76,17 @@ def solve_dampers(arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any
         laws: records of `vehicle.laws.damper`; (w,).
         velocity: at the beginning of the step, which sets the friction limits, and at its end; changed in place, (w,).
         force: of the last step and of this one [N], changed in place; (w,).
+        room: working memory; (6, w).
     """
     count = laws.shape[0]
-    limit, slope, inverses, last = np.empty(count), np.empty(count), np.empty((count, 3)), np.empty(count)
+    limit, slope, last, inverses = room[0], room[1], room[2], room[3:]
     for i in range(count):
         limit[i] = friction_limit(laws[i], velocity[i])
         slope[i] = slope_at_rest(limit[i], laws[i]["smoothing"])
         g, d = gain[i, i], laws[i]["degressive_slope"]
-        inverses[i, 0] = 1.0 / (1.0 + g * (slope[i] + d))
-        inverses[i, 1] = 1.0 / (1.0 + g * slope[i])
-        inverses[i, 2] = 1.0 / (1.0 + g * d)
+        inverses[0, i] = 1.0 / (1.0 + g * (slope[i] + d))
+        inverses[1, i] = 1.0 / (1.0 + g * slope[i])
+        inverses[2, i] = 1.0 / (1.0 + g * d)
     for _ in range(TURNS):
         # By turns with the others' last forces; all at once, so that none waits for another.
         for i in range(count):
@@ -92,7 +95,8 @@ def solve_dampers(arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any
                 if j != i:
                     own += gain[i, j] * force[j]
             d, m = laws[i]["degressive_slope"], laws[i]["degressive_limit"]
-            velocity[i] = solve_damper(own, gain[i, i], slope[i], limit[i], d, m, inverses[i])
+            both, alone, extra = inverses[0, i], inverses[1, i], inverses[2, i]
+            velocity[i] = solve_damper(own, gain[i, i], slope[i], limit[i], d, m, both, alone, extra)
         for i in range(count):
             d, m = laws[i]["degressive_slope"], laws[i]["degressive_limit"]
             last[i] = force[i]
@@ -156,6 +160,7 @@ def march(
     r0, r1, r2, r3, r4, r5, r6 = r[0], r[1], r[2], r[at], r[at + 1], r[at + 2], r[at + 3]
     sample, phase = first, 0  # phase: steps since the last sample
     velocity, arriving, u = velocities[first - 1].copy(), np.empty(count), np.empty(inputs)
+    room = np.empty((6, count))
     for step in range(plates.shape[0] - 1):
         u[0], u[1], u[2], u[3] = force[0], force[1], plates[step, 0], plates[step, 1]
         for k in range(2, count):
@@ -203,7 +208,7 @@ def march(
         for i in range(count):
             for k in range(plates.shape[1]):
                 arriving[i] += slip_plate[i, k] * plates[step + 1, k]
-        solve_dampers(arriving, gain, laws, velocity, force)
+        solve_dampers(arriving, gain, laws, velocity, force, room)
         phase += 1
         if phase == 1:
             after[sample - 1] = force
