@@ -41,7 +41,8 @@ def solve_damper(
 ) -> float:
     """Velocity v of a = v + g (clamp(c v, limit) + clamp(d v, limit2)); odd in a, g > 0.
 
-    `both`, `alone` and `extra` are 1 / (1 + g (c + d)), 1 / (1 + g c) and 1 / (1 + g d): divisions are slow, and these do not wait.
+    `both`, `alone` and `extra` are 1 / (1 + g (c + d)), 1 / (1 + g c) and 1 / (1 + g d): divisions are slow, and these
+    do not wait.
     """
     size = abs(a)
     v = size * both
