@@ -14,13 +14,13 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from scenarios.bump.claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
+from scenarios.bump.runs import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
 from scenarios.claims import LEGEND, claim_table, headline, markdown
 from scenarios.comfort_sensitivity.claims import PUBLISHED_SLIP as PUBLISHED_ROAD_SLIP
 from scenarios.levels import PUBLISHED_SLIP, SLIP_TOLERANCE
 from scenarios.study import main_of
 from vehicle.commands.command_line import Parser, parse_and_run
-from vehicle.commands.options import FORCE_HELP, jobs_option, message_options
+from vehicle.commands.options import jobs_option, message_options, output_options
 from vehicle.errors import DataError, SimulationError
 from vehicle.output.folder import prepare_folder, write_text
 
@@ -64,19 +64,14 @@ def parser() -> Parser:
     found = Parser(
         prog="python -m scenarios.published", description="Every published result of the complete car beside ours."
     )
-    found.add_argument(
-        "--output",
-        type=Path,
-        metavar="DIR",
-        help=f"folder of the table; {HOME} by default, where it is renewed, or {QUICK_HOME} with --quick",
-    )
+    where = f"that of the table; {HOME} by default, where it is renewed, or {QUICK_HOME} with --quick"
+    output_options(found, None, default=where)
     found.add_argument(
         "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the scenarios' own results"
     )
     found.add_argument("--reuse", action="store_true", help="read scenarios that are finished there, run the others")
     found.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
     jobs_option(found)
-    found.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(found)
     return found
 

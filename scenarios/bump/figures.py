@@ -8,8 +8,16 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.bump.claims import FIRST_SLIP, FIRST_SLIP_TOLERANCE, PUBLISHED_FRICTION
-from scenarios.bump.runs import RUNG_DOWN, SIZES, Bumps, relative_acceleration, ring_down_time
+from scenarios.bump.runs import (
+    FIRST_SLIP,
+    FIRST_SLIP_TOLERANCE,
+    PUBLISHED_FRICTION,
+    RUNG_DOWN,
+    SIZES,
+    Bumps,
+    relative_acceleration,
+    ring_down_time,
+)
 from scenarios.charts import figure_file, rows_of
 from scenarios.study import computed_by
 from vehicle.car import SATURATED_VELOCITY, Run

@@ -49,6 +49,13 @@ FRICTIONS = (75.0, 100.0, 125.0, 150.0, 175.0)
 """Friction limits Fd of figure 3.12 [N]."""
 
 
+FIRST_SLIP, FIRST_SLIP_TOLERANCE = 5.035, 0.010
+"""First slip after the 7.5 mm bump with Fd 125 N [s], read off figure 3.12."""
+
+PUBLISHED_FRICTION = 125.0
+"""Fd at which the model of the source slipped when the car did [N]."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Record:
     """When the bump begins, how long the records with and without noise are, and the film [s]."""

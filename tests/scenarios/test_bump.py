@@ -6,8 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from scenarios.bump.__main__ import main
-from scenarios.bump.claims import extreme_claims
+from scenarios.bump.__main__ import extreme_claims, main
 from scenarios.bump.figures import BANNER, HALF, side_by_side
 from scenarios.bump.runs import FIGURE_AXES, relative_acceleration, ring_down_time, slip_after
 from vehicle.excitation.bump import bump
