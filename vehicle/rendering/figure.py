@@ -68,6 +68,11 @@ def saved_figure(path: Path, size: tuple[float, float], title: str = "", caption
             figure.suptitle(title, fontsize=12)
         if caption:
             figure.supxlabel(caption, fontsize=8.5, color=INK)
+        # The layout is computed once; left to the writer of the file, it costs one more drawing of everything.
+        engine = figure.get_layout_engine()
+        assert engine is not None
+        engine.execute(figure)
+        figure.set_layout_engine(None)
         figure.savefig(path, format="png", metadata={"Software": None})
 
 
