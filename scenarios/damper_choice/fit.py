@@ -62,17 +62,8 @@ def root_stiffness_mass(ratios: dict[float, float]) -> float:
 
 
 def fit_quarter_car(start: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> tuple[Array, Array]:
-    """Fit the quarter car.
-
-    Args:
-        start: first guess in the order of `QUARTER_FREE` [kg, kg, N/m].
-        road: road of the printed optimum (highway).
-        bands: frequency bands of the printed measure.
-
-    Returns:
-        The fitted values and the residuals there, each over its scale.
-    """
-    return _fit(lambda values: quarter_car_residuals(values, road, bands), start, _QUARTER_SCALE, _QUARTER_BOUNDS)
+    """Fit the quarter car from a first guess in the order of `QUARTER_FREE`; otherwise as `fit_half_car`."""
+    return _fit(quarter_car_residuals, start, road, bands, _QUARTER_SCALE, _QUARTER_BOUNDS)
 
 
 def fit_half_car(
@@ -89,9 +80,8 @@ def fit_half_car(
     Returns:
         The fitted values and the residuals there, each over its scale.
     """
-    lower = _HALF_BOUNDS[0].copy()
-    lower[HALF_FREE.index("inertia_index")] = least_index
-    return _fit(lambda values: half_car_residuals(values, road, bands), start, _HALF_SCALE, (lower, _HALF_BOUNDS[1]))
+    lower = np.where(np.array(HALF_FREE) == "inertia_index", least_index, _HALF_BOUNDS[0])
+    return _fit(half_car_residuals, start, road, bands, _HALF_SCALE, (lower, _HALF_BOUNDS[1]))
 
 
 def quarter_car_of(values: npt.ArrayLike) -> RoadHoldingQuarterCar:
@@ -178,10 +168,15 @@ def half_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: Freq
 
 
 def _fit(
-    residuals: Callable[[Array], Array], start: npt.ArrayLike, scale: Array, bounds: tuple[Array, Array]
+    residuals: Callable[[npt.ArrayLike, ExponentialRoad, FrequencyBands], Array],
+    start: npt.ArrayLike,
+    road: ExponentialRoad,
+    bands: FrequencyBands,
+    scale: Array,
+    bounds: tuple[Array, Array],
 ) -> tuple[Array, Array]:
     found = least_squares(
-        lambda scaled: residuals(scaled * scale),
+        lambda scaled: residuals(scaled * scale, road, bands),
         np.asarray(start, dtype=float) / scale,
         bounds=(bounds[0] / scale, bounds[1] / scale),
         diff_step=2e-3,  # wider than the steps that frequency grids and magnitudes leave in the residuals

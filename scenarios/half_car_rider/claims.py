@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from scenarios.claims import COMPARED, PREDICTED, Claim
-from scenarios.half_car_rider.printed_matrices import growth_rate
+from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
 from scenarios.half_car_rider.runs import (
     KMH,
     SETTLING_BAND,
@@ -21,6 +21,7 @@ from scenarios.half_car_rider.runs import (
     settling_time,
     varied,
 )
+from vehicle.lumped.half_car_rider import half_car_rider
 from vehicle.lumped.history import Array, History
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
 
@@ -254,7 +255,7 @@ def speed_claims(
 
 def matrix_claim(car: HalfCarRiderParameters) -> Claim:
     """Row on the printed matrices."""
-    printed, ours = growth_rate(car, printed=True), growth_rate(car, printed=False)
+    printed, ours = growth_rate(printed_system(car)), growth_rate(half_car_rider(car))
     return COMPARED.statement(
         "matrices [C] and [K] below equation 16",
         "equations of motion of the passive car",

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,8 @@ from vehicle.lumped.stiff_solution import Tolerances, stiff_solution, switch_sol
 from vehicle.parameters.quarter_car import QuarterCar
 
 Array = npt.NDArray[np.float64]
+
+Found = TypeVar("Found")
 
 STEP = 1e-3
 """Sampling of road and results [s]."""
@@ -161,32 +163,28 @@ class Runs:
 
     def _march(self, name: str) -> dict[tuple[float, int], Array]:
         """Body acceleration [m/s2] by level and variant, each of shape (roads, samples)."""
-        key = f"march {name}"
-        if key not in self._done:
-            start = clock.perf_counter()
-            family = FAMILIES[name]
-            cases = [(level, index) for level in family.levels for index in range(len(family.variants))]
-            vary = {
-                path: np.repeat([family.variants[index][path] for _, index in cases], self.roads)
-                for path in family.variants[0]
-            }
-            profiles = {
-                level: [self.road_profile(level, seed=SEED + i, step=self.march_step) for i in range(self.roads)]
-                for level in family.levels
-            }
-            roads = np.concatenate([profiles[level] for level, _ in cases]).T
-            vary["body.mass"] = np.full(roads.shape[1], self.car.body.mass)  # one model for each road
-            history = marched_solution(
-                self.model(vary, damper="friction", **family.parts),
-                self.march_step,
-                roads,
-                every=round(STEP / self.march_step),
-            )
-            motions = history.acceleration("body").T.reshape(len(cases), self.roads, -1)
-            self._done[key] = dict(zip(cases, motions, strict=True))
-            self.seconds += clock.perf_counter() - start
-        found: dict[tuple[float, int], Array] = self._done[key]
-        return found
+        return self._once(f"march {name}", lambda: self._marched(FAMILIES[name]))
+
+    def _marched(self, family: Family) -> dict[tuple[float, int], Array]:
+        cases = [(level, index) for level in family.levels for index in range(len(family.variants))]
+        vary = {
+            path: np.repeat([family.variants[index][path] for _, index in cases], self.roads)
+            for path in family.variants[0]
+        }
+        profiles = {
+            level: [self.road_profile(level, seed=SEED + i, step=self.march_step) for i in range(self.roads)]
+            for level in family.levels
+        }
+        roads = np.concatenate([profiles[level] for level, _ in cases]).T
+        vary["body.mass"] = np.full(roads.shape[1], self.car.body.mass)  # one model for each road
+        history = marched_solution(
+            self.model(vary, damper="friction", **family.parts),
+            self.march_step,
+            roads,
+            every=round(STEP / self.march_step),
+        )
+        motions = history.acceleration("body").T.reshape(len(cases), self.roads, -1)
+        return dict(zip(cases, motions, strict=True))
 
     def sine(
         self, amplitude: float, vary: Mapping[str, Any] | None = None, *, phase: float = 0.0, **parts: Any
@@ -218,12 +216,12 @@ class Runs:
         """Run of table B.1: small mass on the body."""
         return self.road(rms, {"friction.steepness": steepness}, small_mass=True)
 
-    def _once(self, key: str, solve: Any) -> History:
+    def _once(self, key: str, solve: Callable[[], Found]) -> Found:
         if key not in self._done:
             start = clock.perf_counter()
             self._done[key] = solve()
             self.seconds += clock.perf_counter() - start
-        found: History = self._done[key]
+        found: Found = self._done[key]
         return found
 
 

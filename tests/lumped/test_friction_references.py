@@ -195,20 +195,20 @@ def test_switch_and_smooth_law_agree_above_the_published_velocity():
     assert np.mean(np.abs(vs) <= p.stick_band) == pytest.approx(2 / math.pi * math.asin(50 / 110), abs=8 / 5001)
 
 
-def test_the_switch_model_gives_up_after_its_steps():
+def test_the_switch_model_gives_up_after_its_evaluations():
     p = CAR.mass_on_damper
     model = oscillator(p.friction_limit, mass=p.mass, stiffness=0.0, damping=p.damping)
     law = Switch(limit=p.friction_limit, band=p.stick_band, return_time=p.return_time)
     drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)
     with pytest.raises(SimulationError) as caught:
-        switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, most_steps=100)
+        switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, most_evaluations=300)
     message = str(caught.value)
-    assert message.startswith("switch model: stopped at t = 0.0")  # 700 steps for the whole half second
+    assert message.startswith("switch model: stopped at t = 0.")  # 1500 for the whole half second
     assert message.endswith(
-        "s of 0.5 s after most_steps = 100 steps; widen the stick band, lengthen the return time, or allow more steps"
+        "s of 0.5 s after most_evaluations = 300; widen the stick band, lengthen the return time, or allow more"
     )
-    with pytest.raises(ConfigurationError, match=r"^most_steps: found 0, must be at least 1$"):
-        switch_solution(model, law, [0.0, 0.5], most_steps=0)
+    with pytest.raises(ConfigurationError, match=r"^most_evaluations: found 0, must be at least 1$"):
+        switch_solution(model, law, [0.0, 0.5], most_evaluations=0)
 
 
 def test_the_switch_model_refuses_a_belt():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy
 
-from scenarios.half_car_rider.printed_matrices import growth_rate, printed_damping, printed_stiffness
+from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
 from vehicle.errors import ConfigurationError
 from vehicle.linear.parts import Network, masses_of, spring_damper
 from vehicle.lumped.half_car_rider import half_car_rider, places, static_tyre_load
@@ -98,15 +98,16 @@ def test_places_follow_equations_8_to_10_of_the_source():
 
 
 def test_printed_matrices_are_not_symmetric_and_grow():
-    for printed in (printed_damping(CAR), printed_stiffness(CAR)):
+    system = printed_system(CAR)
+    for printed in (system.damping, system.stiffness):
         assert np.abs(printed - printed.T).max() > 0.0
-    assert growth_rate(CAR, printed=True) > 1.0
-    assert growth_rate(CAR, printed=False) < -1.0
+    assert growth_rate(system) > 1.0
+    assert growth_rate(MODEL) < -1.0
 
 
 def test_printed_diagonals_agree_but_for_the_pitch_damping():
-    assert np.diag(printed_stiffness(CAR)) == pytest.approx(np.diag(MODEL.stiffness), rel=1e-12)
-    ours, printed = np.diag(MODEL.damping), np.diag(printed_damping(CAR))
+    assert np.diag(printed_system(CAR).stiffness) == pytest.approx(np.diag(MODEL.stiffness), rel=1e-12)
+    ours, printed = np.diag(MODEL.damping), np.diag(printed_system(CAR).damping)
     assert printed[:6] == pytest.approx(ours[:6], rel=1e-12)
     assert printed[6] == pytest.approx(-ours[6], rel=1e-12)
 
