@@ -3,8 +3,7 @@ import json
 import numpy as np
 import pytest
 
-from vehicle.analysis.evaluation import APPLICATIONS, application, evaluate
-from vehicle.analysis.offset import offset_effect, offset_line, without_offset
+from vehicle.analysis.evaluation import APPLICATIONS, application, evaluate, offset_effect, offset_line, without_offset
 from vehicle.analysis.weighting import weighting
 from vehicle.errors import ConfigurationError, DataError
 

@@ -203,7 +203,7 @@ def test_the_switch_model_gives_up_after_its_evaluations():
     with pytest.raises(SimulationError) as caught:
         switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, most_evaluations=300)
     message = str(caught.value)
-    assert message.startswith("switch model: stopped at t = 0.")  # 1500 for the whole half second
+    assert message.startswith("switch model: stopped at t = 0.")  # 1200 for the whole half second
     assert message.endswith(
         "s of 0.5 s after most_evaluations = 300; widen the stick band, lengthen the return time, or allow more"
     )

@@ -57,8 +57,16 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     """Read, treat the offset as asked, and evaluate."""
     import numpy as np
 
-    from vehicle.analysis.evaluation import AXES, application, evaluate
-    from vehicle.analysis.offset import LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line, without_offset
+    from vehicle.analysis.evaluation import (
+        AXES,
+        LARGEST_MEAN,
+        OFFSET_EFFECT,
+        application,
+        evaluate,
+        offset_effect,
+        offset_line,
+        without_offset,
+    )
     from vehicle.records.acceleration import read_acceleration
 
     application(options.place)

@@ -20,8 +20,8 @@ from vehicle.linear.first_order import FirstOrder
 from vehicle.lumped.drive import AtRest, Drive
 from vehicle.lumped.history import Array, History
 
-MOST_EVALUATIONS = 400_000
-"""Of the switch model: half a minute of solving; the published half second of the mass on a damper takes 1500."""
+MOST_EVALUATIONS = 200_000
+"""Of the switch model: half a minute of solving; the published half second of the mass on a damper takes 1200."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
