@@ -82,8 +82,10 @@ class Driven:
         if self.initial.shape != (size,) or not np.isfinite(self.initial).all():
             raise ConfigurationError(f"initial: needed are {size} finite numbers")
         # Everything constant is taken out of the inner loop.
-        self._effects = list(zip(model.input.T, model.input_rate.T, model.slide_rate.T, strict=True))
+        matrices = (np.ascontiguousarray(one.T) for one in (model.input, model.input_rate, model.slide_rate))
+        self._effects = list(zip(*matrices, strict=True))
         self._by_rate, self._by_force = bool(model.input_rate.any()), bool(model.load.any())
+        self._by_slip = bool(model.slide_rate.any())
 
     def bare(self, t: float, x: Array) -> tuple[Array, Array]:
         """Rate of the state without sliding forces, and what the inputs add to the sliding velocities, d z'."""
@@ -93,7 +95,8 @@ class Driven:
             rate += by_height * z
             if self._by_rate:
                 rate += by_rate * dz
-            slip += slide_rate * dz
+            if self._by_slip:
+                slip += slide_rate * dz
         if self._by_force:
             rate += self.model.load * self.force.at(t)[0]
         return rate, slip
