@@ -43,7 +43,7 @@ def test_dampers_with_laws_of_their_own_answer_each_other(count):
     for size in (1e-6, 1e-3, 0.05, 1.0):
         arriving, start = size * generator.standard_normal((2, count))
         velocity, force = start.copy(), np.zeros(count)
-        solve_dampers(arriving, gain, laws, velocity, force, np.empty((6, count)))
+        solve_dampers(count, arriving, gain, laws, velocity, force, np.full((6, count), np.nan))
         # v = a + G f, and f follows from v by each law, with the limit of the velocity that the step began with.
         np.testing.assert_allclose(velocity, arriving + gain @ force, rtol=1e-9, atol=1e-12)
         for v, before, f, (sliding, static, stribeck) in zip(velocity, start, force, numbers, strict=True):

@@ -18,7 +18,7 @@ SECOND_PROCESS = """
 import numpy as np
 from vehicle.laws.damper import RECORD
 from vehicle.reduced.march import compiled_march
-march = compiled_march()
+march = compiled_march(2)
 state, force, laws = np.zeros((2, 3)), np.zeros(2), np.zeros(2, dtype=RECORD)
 march(np.zeros((14, 3)), np.zeros((7, 2)), np.zeros((2, 2)), np.eye(2), laws, np.zeros((3, 2)), state, np.zeros(2),
       force, 1, 1, np.zeros((4, 8)), np.zeros((4, 2)), np.zeros((4, 2)), np.zeros((4, 2)))

@@ -82,7 +82,7 @@ class Clamped:
     def force(self, velocity: Numbers) -> Array:
         """Force [N] at a velocity [m/s]."""
         limit = self.law.limit(velocity)
-        return np.asarray(clamp(slope_at_rest(limit, self.law.smoothing) * np.asarray(velocity), limit))
+        return np.asarray(np.clip(slope_at_rest(limit, self.law.smoothing) * np.asarray(velocity), -limit, limit))
 
     def slope(self, velocity: Numbers) -> Array:
         """Derivative d F / d v [N s/m]: that of c v where the force is below its limit, of the limit elsewhere."""
@@ -93,9 +93,9 @@ class Clamped:
 
 
 @jitable
-def clamp(force: Any, limit: Any) -> Any:
-    """min(L, max(-L, F))."""
-    return np.minimum(np.maximum(force, -limit), limit)
+def clamp(force: float, limit: float) -> float:
+    """min(L, max(-L, F)), the scalar form."""
+    return min(max(force, -limit), limit)
 
 
 @jitable

@@ -68,26 +68,27 @@ def damper_force(v: float, c: float, limit: float, d: float, limit2: float) -> f
 
 
 @jitable
-def solve_dampers(arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any, room: Any) -> None:
+def solve_dampers(count: int, arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any, room: Any) -> None:
     """Velocities and forces of w dampers in a step.
 
     Args:
+        count: w.
         arriving: velocities without the forces of the step [m/s]; (w,).
         gain: G [m/(N s)]; (w, w).
         laws: records of `vehicle.laws.damper`; (w,).
         velocity: at the beginning of the step, which sets the friction limits, and at its end; changed in place, (w,).
         force: of the last step and of this one [N], changed in place; (w,).
-        room: working memory; (6, w).
+        room: limits, slopes, forces and inverses as of the last step; not numbers before the first; (6, w).
     """
-    count = laws.shape[0]
     limit, slope, last, inverses = room[0], room[1], room[2], room[3:]
     for i in range(count):
-        limit[i] = friction_limit(laws[i], velocity[i])
-        slope[i] = slope_at_rest(limit[i], laws[i]["smoothing"])
-        g, d = gain[i, i], laws[i]["degressive_slope"]
-        inverses[0, i] = 1.0 / (1.0 + g * (slope[i] + d))
-        inverses[1, i] = 1.0 / (1.0 + g * slope[i])
-        inverses[2, i] = 1.0 / (1.0 + g * d)
+        now = friction_limit(laws[i], velocity[i])
+        if now != limit[i]:
+            limit[i], slope[i] = now, slope_at_rest(now, laws[i]["smoothing"])
+            g, d = gain[i, i], laws[i]["degressive_slope"]
+            inverses[0, i] = 1.0 / (1.0 + g * (slope[i] + d))
+            inverses[1, i] = 1.0 / (1.0 + g * slope[i])
+            inverses[2, i] = 1.0 / (1.0 + g * d)
     for _ in range(TURNS):
         # By turns with the others' last forces; all at once, so that none waits for another.
         for i in range(count):
@@ -115,6 +116,7 @@ def solve_dampers(arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any
 
 @jitable
 def march(
+    count: int,
     pair_factors: Any,
     real_factors: Any,
     slip_plate: Any,
@@ -136,6 +138,7 @@ def march(
     Inputs and damper velocities are taken in pairs: an odd number of dampers has one more that does nothing (e).
 
     Args:
+        count: e.
         pair_factors: real and imaginary rows for the pairs: decay, damper velocities (e), inputs in the order two
             forces, first plate, further forces, further plates; (2 (1 + e + e + m), p). One table, so that the compiler
             sees that no row overlaps the state.
@@ -152,7 +155,7 @@ def march(
         velocities, before, after: damper velocities [m/s], and damper forces [N] of the steps that end and
             begin at a sample; (all samples, e).
     """
-    pairs, reals, count = pair.shape[1], real.shape[0], laws.shape[0]
+    pairs, reals = pair.shape[1], real.shape[0]
     inputs, at = count + plates.shape[1], 1 + count
     x, y, c, r = pair[0], pair[1], pair_factors, real_factors
     c0, c1, c2, c3, c4, c5 = c[0], c[1], c[2], c[3], c[4], c[5]
@@ -161,7 +164,7 @@ def march(
     r0, r1, r2, r3, r4, r5, r6 = r[0], r[1], r[2], r[at], r[at + 1], r[at + 2], r[at + 3]
     sample, phase = first, 0  # phase: steps since the last sample
     velocity, arriving, u = velocities[first - 1].copy(), np.empty(count), np.empty(inputs)
-    room = np.empty((6, count))
+    room = np.full((6, count), np.nan)
     for step in range(plates.shape[0] - 1):
         u[0], u[1], u[2], u[3] = force[0], force[1], plates[step, 0], plates[step, 1]
         for k in range(2, count):
@@ -209,7 +212,7 @@ def march(
         for i in range(count):
             for k in range(plates.shape[1]):
                 arriving[i] += slip_plate[i, k] * plates[step + 1, k]
-        solve_dampers(arriving, gain, laws, velocity, force, room)
+        solve_dampers(count, arriving, gain, laws, velocity, force, room)
         phase += 1
         if phase == 1:
             after[sample - 1] = force
@@ -230,8 +233,8 @@ def has_compiler() -> bool:
 
 
 @cache
-def compiled_march() -> March:
-    """The compiled march.
+def compiled_march(count: int) -> March:
+    """The compiled march of an even number of dampers, which the compiler knows: loops over two are none.
 
     Raises:
         MissingPartError: numba is not installed.
@@ -245,7 +248,7 @@ def compiled_march() -> March:
     # What it closes over is part of the key of the compiler's cache.
     def entry(*arguments: Any) -> None:
         if mark:
-            march(*arguments)
+            march(count, *arguments)
 
     compiled: March = numba.njit(cache=True, nogil=True, **OPTIONS)(entry)
     return compiled

@@ -59,7 +59,7 @@ def simulate_reduced(
     """
     units = channel_units()
     names = tuple(units) if channels is None else tuple(channels)
-    march = compiled_march()
+    march = compiled_march(len(dampers) + len(dampers) % 2)
     interval = 1.0 / record_rate
     every = int(np.ceil(interval / LONGEST_STEP - 1e-9))
     samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
