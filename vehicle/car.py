@@ -33,7 +33,7 @@ from vehicle.linear.matrices import CarMatrices, car_matrices
 from vehicle.linear.modes import Mode, car_modes, require_stable
 from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.step_error import require_accurate_step
-from vehicle.names import AXES, ENGINES, WHEELS, acceleration_channels, channel_units
+from vehicle.names import AXES, ENGINES
 from vehicle.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
@@ -124,6 +124,19 @@ class Car:
             require_stable(self.model, self.matrices, self.poles.poles)
         self._checked.add(engine)
 
+    def require_wheels(self, wheels: Iterable[str]) -> None:
+        """Refuse wheels that the car does not have.
+
+        Args:
+            wheels: their names.
+
+        Raises:
+            ConfigurationError: naming the first of them.
+        """
+        for wheel in wheels:
+            if wheel not in self.vehicle.wheels:
+                raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(self.vehicle.wheels)}")
+
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest)
@@ -132,13 +145,13 @@ class Car:
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str = "fr"
     ) -> npt.NDArray[np.complex128]:
         """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies)."""
-        _check_wheel(wheel)
-        known = acceleration_channels()
+        self.require_wheels((wheel,))
+        known = self.vehicle.acceleration_channels
         for name in channels:
             if name not in known:
                 raise ConfigurationError(f"no acceleration channel {name!r}; there are {', '.join(known)}")
         form = first_order(self.matrices.system, stuck=_is_stuck(damper))
-        driven = [float(name == wheel) for name in WHEELS]
+        driven = [float(name == wheel) for name in self.vehicle.wheels]
         return exact_response(form, frequency, channels, "acceleration", driven=driven)
 
     def run(
@@ -170,9 +183,10 @@ class Car:
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
         for name in channels or ():
-            if name not in channel_units():
-                raise ConfigurationError(f"no channel {name!r}; there are {', '.join(channel_units())}")
-        names = channel_units() if channels is None else channels
+            if name not in self.vehicle.channels:
+                raise ConfigurationError(f"no channel {name!r}; there are {', '.join(self.vehicle.channels)}")
+        self.require_wheels(signal.wheels)
+        names = self.vehicle.channels if channels is None else channels
         require_memory(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
         if engine == "auto" and not has_compiler():
@@ -242,7 +256,7 @@ class Run:
             DataError: the record is too short, or no plate moves.
             DependentInputsError: one plate moves as the other some time before.
         """
-        names = acceleration_channels() if channels is None else tuple(channels)
+        names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
         responses = np.array([self.recording[name] for name in names])
         step = self.recording.timestep
         moving = self.recording.excited
@@ -289,14 +303,9 @@ class Run:
 
     def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
         """Velocity of a damper, and the one that counts as slip [m/s]."""
-        _check_wheel(wheel)
+        self.car.require_wheels((wheel,))
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
         return self.recording[f"damper_{wheel}_velocity"], limit
-
-
-def _check_wheel(wheel: str) -> None:
-    if wheel not in WHEELS:
-        raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(WHEELS)}")
 
 
 def _is_stuck(damper: str) -> bool:

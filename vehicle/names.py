@@ -1,85 +1,76 @@
-"""Names that more than one room uses, each written once: wheels, hardpoints, body nodes, channels with their units."""
+"""Names that more than one room uses, each written once: corners, sides, axes, engines, channels with their units."""
 
 from __future__ import annotations
 
-WHEELS = ("fr", "fl")
-"""Front right (y > 0, on the shaker) and front left."""
+import re
+from collections.abc import Iterable, Sequence
 
-WHEEL_SIGN = {"fr": 1.0, "fl": -1.0}
-"""Sign of y of each wheel: +y points to the driver's right side."""
+from vehicle.errors import ConfigurationError
+
+CORNERS = {"front_right": "fr", "front_left": "fl", "rear_right": "rr", "rear_left": "rl"}
+"""Words for the corners of a car with two axles to the names of its wheels; a car tells which of them it has."""
 
 SIDE_SIGN = {"right": 1.0, "left": -1.0}
 """Sign of y of each side: +y points to the driver's right."""
 
-SIDE_OF_WHEEL = {"fr": "right", "fl": "left"}
-WHEEL_OF_OPTION = {"front_right": "fr", "front_left": "fl"}
+SIDE_OF_WHEEL = {"fr": "right", "fl": "left", "rr": "rear right", "rl": "rear left"}
+"""Words for wheels in pictures."""
 
 ENGINES = ("mujoco", "reduced", "auto")
 """What computes a run: the complete car, its poles, or the poles where they are valid."""
 
-SIDE_POINTS = (
-    "wheel_center",
-    "tyre_patch",
-    "lower_ball",
-    "arm_front",
-    "arm_rear",
-    "strut_top",
-    "damper_bottom",
-    "spring_lower",
-    "tie_outer",
-    "tie_inner",
-    "stab_body",
-    "stab_end",
-    "stab_rod_top",
-)
-"""Hardpoints given for the right side and mirrored to the left."""
-
-CENTER_POINTS = (
-    "engine_cog",
-    "hydromount",
-    "linear_mount",
-    "bottom_engine",
-    "bottom_body",
-    "seat_rail",
-    "seat",
-    "roof_left_rear",
-    "body_front",
-)
-"""Hardpoints that exist once."""
-
-BODY_OUTPUTS = ("seat_rail", "seat", "roof_left_rear", "body_front")
-"""Output points on the flexible body."""
-
 AXES = ("x", "y", "z")
 
-SIDE_ATTACHMENTS = ("strut_top", "arm_front", "arm_rear", "tie_inner", "stab_body")
-"""Side hardpoints that must be nodes of the flexible body."""
+_UNITS = {r"\w+_acc_[xyz]": "m/s2", r"\w+_velocity": "m/s", r"\w+_force(_z)?": "N", r"plate_\w+_displacement": "m"}
 
 
-def body_nodes() -> tuple[str, ...]:
-    """Names of the nodes that the flexible body must have for the car to be attached and measured."""
-    sides = [f"{point}_{wheel}" for point in SIDE_ATTACHMENTS for wheel in WHEELS]
-    rear = [f"rear_support_{side}" for side in ("right", "left")]
-    return (*sides, *rear, "hydromount", "linear_mount", "bottom_body", *BODY_OUTPUTS)
+def is_wheel(name: str) -> bool:
+    """Whether a wheel may have this name: a corner, or the side of a further axle, as middle_r."""
+    return name in CORNERS.values() or re.fullmatch(r"[a-z]\w*_[rl]", name) is not None
 
 
-def acceleration_places() -> tuple[str, ...]:
-    """Places whose acceleration is recorded, in the order of the files."""
-    sides = [f"{place}_{wheel}" for wheel in WHEELS for place in ("knuckle", "damper_top", "suspension_mount")]
-    return (*sides, "seat_rail", "seat", "engine", "roof_left_rear", "body_front")
+def in_order(wheels: Iterable[str]) -> tuple[str, ...]:
+    """Wheels in the order of files: the corners, then those of further axles."""
+    known = list(CORNERS.values())
+    return tuple(sorted(wheels, key=lambda wheel: (known.index(wheel) if wheel in known else len(known), wheel)))
 
 
-def acceleration_channels() -> tuple[str, ...]:
-    """Channels `<place>_acc_<axis>` of all acceleration places."""
-    return tuple(f"{place}_acc_{axis}" for place in acceleration_places() for axis in AXES)
+def acceleration_channels(places: Iterable[str]) -> tuple[str, ...]:
+    """Channels `<place>_acc_<axis>` of places."""
+    return tuple(f"{place}_acc_{axis}" for place in places for axis in AXES)
 
 
-def wheel_channels() -> dict[str, str]:
-    """Channels of the wheels and their units."""
-    units = {"damper_{}_velocity": "m/s", "damper_{}_force": "N", "tyre_{}_force_z": "N", "plate_{}_displacement": "m"}
-    return {name.format(wheel): unit for wheel in WHEELS for name, unit in units.items()}
+def wheel_channels(wheels: Iterable[str], dampers: Sequence[str]) -> tuple[str, ...]:
+    """Channels of wheels and dampers: those of a corner together.
+
+    Args:
+        wheels: names of the wheels.
+        dampers: names of the dampers; that of a corner is "damper_" and its wheel.
+    """
+    found: list[str] = []
+    own = {wheel: f"damper_{wheel}" for wheel in wheels}
+    for wheel, damper in own.items():
+        found += [f"{damper}_velocity", f"{damper}_force"] if damper in dampers else []
+        found += [f"tyre_{wheel}_force_z", f"plate_{wheel}_displacement"]
+    return (*found, *(f"{one}_{kind}" for one in dampers if one not in own.values() for kind in ("velocity", "force")))
 
 
-def channel_units() -> dict[str, str]:
-    """Every channel of a recording and its unit."""
-    return {**dict.fromkeys(acceleration_channels(), "m/s2"), **wheel_channels()}
+def channel_units(channels: Iterable[str]) -> dict[str, str]:
+    """Channels to their units, which their names tell.
+
+    Args:
+        channels: names.
+
+    Raises:
+        ConfigurationError: there can be no such channel.
+    """
+    found = {}
+    for channel in channels:
+        unit = next((unit for form, unit in _UNITS.items() if re.fullmatch(form, channel)), None)
+        if unit is None:
+            raise ConfigurationError(
+                f"no channel {channel!r}; channels are called as seat_rail_acc_z, damper_fr_velocity, damper_fr_force, "
+                "tyre_fr_force_z, plate_fr_displacement"
+            )
+        found[channel] = unit
+    return found

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scenarios.claims import OWN_CHECK, Claim
 from scenarios.quarter_car.runs import STEP, Runs, rms
 from vehicle.analysis.slip import slip_share
-from vehicle.assembly.quarter_car import quarter_car_spec
+from vehicle.assembly.quarter_car import WHEEL, quarter_car_spec
 from vehicle.excitation.signal import Signal
 from vehicle.laws.coulomb import Coulomb
 from vehicle.laws.friction import Clamped
@@ -72,7 +72,7 @@ def in_mujoco(
     data = mujoco.MjData(model)
     rows = Rows(model)
     times: Array = timestep * np.arange(int(np.floor(signal.duration / timestep + 1e-6)) + 1, dtype=np.float64)
-    plate = PlateArrays.of(signal, times)
+    plate = PlateArrays.of(signal, times, (WHEEL,))
     position, velocity = np.zeros((times.size, model.nv)), np.zeros((times.size, model.nv))
     sensors = np.zeros((times.size, model.nsensordata))
     with installed(rows):

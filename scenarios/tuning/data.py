@@ -128,7 +128,7 @@ def _record(name: str, run: Run, noise: np.random.Generator) -> RecordTarget:
         values = run[channel]
         level = NOISE * float(np.sqrt(np.mean(values[inside] ** 2)))
         histories[channel] = values + level * noise.standard_normal(values.size)
-    record = Record(time=run.time, channels=histories, units={one: channel_units()[one] for one in RECORDED})
+    record = Record(time=run.time, channels=histories, units=channel_units(RECORDED))
     return RecordTarget(name=name, signal=run.signal, record=record, window=BUMP_WINDOW)
 
 

@@ -75,7 +75,7 @@ def record_figure(path: Path, targets: Sequence[RecordTarget], start: Car, fitte
                 axis.plot(time, measured[row], color=DATA, linewidth=2.0, label="data")
                 axis.plot(time, before[row], color=START, linestyle=":", linewidth=1.4, label="start")
                 axis.plot(time, after[row], color=FITTED, linestyle="--", label="fitted")
-                axis.set(xlim=SHOWN, ylabel=f"{channel}\n[{channel_units()[channel]}]")
+                axis.set(xlim=SHOWN, ylabel=f"{channel}\n[{channel_units([channel])[channel]}]")
             column[0].set_title(target.name)
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=3)
 

@@ -43,7 +43,7 @@ def test_another_car_builds_and_stands(other):
     np.testing.assert_allclose(data.site("place/damper_top_fr").xpos, points["strut_top_fr"], atol=1e-12)
     assert data.site("bushing/tyre_fl/moving").xpos[1] == pytest.approx(-0.777, abs=1e-12)
     # The tyres of the wider car still carry the front: their loads changed by the track alone.
-    loads = [*model.static.tyre_load.values(), *model.static.rear_support_load.values()]
+    loads = [*model.static.tyre_load.values(), *model.static.support_load.values()]
     assert sum(loads) == pytest.approx(vehicle.gravity * (model.model.body_mass.sum()), rel=1e-9)
 
 

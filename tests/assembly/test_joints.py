@@ -8,9 +8,9 @@ import pytest
 
 from vehicle.assembly.spec import assemble
 from vehicle.car import Car
-from vehicle.names import WHEELS
 from vehicle.simulation import layout
 
+WHEELS = ("fr", "fl")
 KIND = mujoco.mjtJoint
 
 

@@ -23,7 +23,7 @@ from vehicle.car import Car
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
-from vehicle.names import AXES, WHEELS, acceleration_channels
+from vehicle.names import AXES
 from vehicle.simulation.callbacks import compiled_rows, installed
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.rows import Rows, prepare_model
@@ -46,7 +46,7 @@ SHOWN = {
 
 FEW = [
     *(f"seat_rail_acc_{axis}" for axis in AXES),
-    *(f"damper_{wheel}_{quantity}" for wheel in WHEELS for quantity in ("velocity", "force")),
+    *(f"damper_{wheel}_{quantity}" for wheel in ("fr", "fl") for quantity in ("velocity", "force")),
 ]
 """Channels of a study of comfort and friction."""
 
@@ -110,8 +110,8 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     prepare_model(model)
     data = mujoco.MjData(model)
     rows = Rows(model, car.model.static.preload)
-    motion = PlateArrays.of(signal, model.opt.timestep * np.arange(steps))
-    plates = [model.body_mocapid[model.body(f"plate_{wheel}").id] for wheel in WHEELS]
+    motion = PlateArrays.of(signal, model.opt.timestep * np.arange(steps), car.vehicle.wheels)
+    plates = [model.body_mocapid[model.body(f"plate_{wheel}").id] for wheel in car.vehicle.wheels]
     heights = data.mocap_pos[plates, 2] + motion.displacement
 
     def go() -> float:
@@ -150,10 +150,10 @@ def accuracy(car: Car, seconds: float) -> Figures:
     for level in ("low", "high"):
         signal = piece(seconds, level)
         fine, run, other = fine_car.run(signal), car.run(signal), car.run(signal, engine="reduced")
-        for name in acceleration_channels():
+        for name in car.vehicle.acceleration_channels:
             errors[f"{level}: {name}"] = abs(_rms(run[name]) / _rms(fine[name]) - 1.0)
             reduced.append(abs(_rms(other[name]) / _rms(fine[name]) - 1.0))
-        slips += [abs(run.slip_share(wheel) - fine.slip_share(wheel)) for wheel in WHEELS]
+        slips += [abs(run.slip_share(wheel) - fine.slip_share(wheel)) for wheel in car.vehicle.wheels]
     worst = max(errors, key=lambda name: errors[name])
     return {
         "rms_error": errors[worst],

@@ -243,8 +243,8 @@ def test_roads_beyond_a_shaker_are_accepted_on_request(tmp_path):
 
 
 def test_unknown_wheel(tmp_path):
-    with pytest.raises(ConfigurationError, match="wheel 'rr' is unknown; allowed: fr, fl"):
-        read_signal(tmp_path / "signal.csv", wheel="rr")
+    with pytest.raises(ConfigurationError, match="wheel 'xx' is unknown; allowed: fr, fl, rr, rl"):
+        read_signal(tmp_path / "signal.csv", wheel="xx")
 
 
 def test_written_file_reads_back(tmp_path):

@@ -52,7 +52,7 @@ def test_survives_pickling_for_parallel_studies():
     ("time", "displacement", "message"),
     [
         (TIME, {}, "the signal drives no wheel; give a displacement for one of fr, fl"),
-        (TIME, {"rr": np.zeros(1001)}, "unknown wheel 'rr'; allowed are fr, fl"),
+        (TIME, {"xx": np.zeros(1001)}, "unknown wheel 'xx'; allowed are fr, fl, rr, rl"),
         (TIME, {"fr": np.zeros(1000)}, "displacement of fr has shape (1000,), time has (1001,)"),
         (TIME, {"fr": np.where(TIME == 0.5, np.nan, 0.0)}, "displacement of fr is nan at sample 500; allowed: finite"),
         (TIME[:31], {"fr": np.zeros(31)}, "time has shape (31,); needed is one axis with at least 32 samples"),
@@ -107,7 +107,7 @@ def test_spline_of_a_50_hz_sine_at_1_khz_keeps_the_stated_accuracy():
 
 
 def test_a_wheel_without_excitation_stands_still():
-    motion = hertz(10.0).plate_motion([0.0, 0.1, 0.25])
+    motion = hertz(10.0).plate_motion([0.0, 0.1, 0.25], ("fr", "fl"))
     for values in (motion.displacement, motion.velocity, motion.acceleration):
         assert set(values) == {"fr", "fl"}
         assert np.array_equal(values["fl"], np.zeros(3))

@@ -22,9 +22,9 @@ import scipy.linalg
 
 from vehicle.assembly.connections import element_law
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.names import WHEELS
 from vehicle.parameters.paths import value_of
 
+WHEELS = ("fr", "fl")
 COMPLEX_STEP, REAL_STEP = 1e-30, 1e-5
 X, Y, Z = np.eye(3)
 SLIDING = 1e-5

@@ -6,7 +6,6 @@ import numpy as np
 
 from vehicle.linear.matrices import CarMatrices
 from vehicle.linear.system import LinearSystem
-from vehicle.names import WHEELS
 
 
 def plain_matrices(
@@ -34,7 +33,7 @@ def plain_matrices(
     whole[dampers, dampers] += viscous
     system = LinearSystem(
         coordinates=(),
-        inputs=WHEELS,
+        inputs=("fr", "fl"),
         mass=mass,
         damping=whole,
         stiffness=stiffness,
@@ -58,5 +57,6 @@ def plain_matrices(
         tyre_damping=tyre_damping,
         body_rows=body_rows,
         body_masses=body_masses,
+        carried_by={},
         modal=slice(0, 0),
     )

@@ -11,7 +11,7 @@ from vehicle.excitation.input_files import find_input
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
-from vehicle.names import AXES, acceleration_channels
+from vehicle.names import AXES
 from vehicle.parameters.vehicle import load_vehicle
 
 PLACES = ("knuckle_fr", "seat_rail", "engine")
@@ -51,7 +51,7 @@ def test_default_step_against_an_eighth_of_it(car):
     high_run = car.run(piece)
     fine = Car.load(None, [f"solver.timestep={car.vehicle.solver.timestep / 8}"]).run(piece)
     ratios = {}
-    for name in acceleration_channels():
+    for name in car.vehicle.acceleration_channels:
         sizes = []
         for run in (high_run, fine):
             spectrum = np.fft.rfft(run[name])

@@ -13,10 +13,11 @@ from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.excitation.bump import bump_shape
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.names import WHEELS, channel_units
+from vehicle.parameters.vehicle import load_vehicle
 from vehicle.reduced import march
 from vehicle.reduced.validity import LARGEST_ANGLE
 
+CHANNELS = load_vehicle().channels
 FINE = "solver.timestep=0.000125"
 """The step of the reduced engine, so that MuJoCo's own error stays below 0.1 %."""
 
@@ -24,7 +25,7 @@ FINE = "solver.timestep=0.000125"
 def rms_ratios(found, expected):
     """RMS of every moving channel about its mean, found over expected, minus 1."""
     ratios = {}
-    for name in channel_units():
+    for name in CHANNELS:
         size = np.std(expected[name])
         if size > 0.0:
             ratios[name] = np.std(found[name]) / size - 1.0
@@ -43,12 +44,12 @@ def test_every_channel_against_mujoco(law, high_piece):
     car = Car.load(None, [FINE, *LAWS[law]])
     stepped, reduced = car.run(high_piece), car.run(high_piece, engine="reduced")
     ratios = rms_ratios(reduced, stepped)
-    assert len(ratios) == len(channel_units()) - 1  # all but the resting plate
+    assert len(ratios) == len(CHANNELS) - 1  # all but the resting plate
     # The demand of the project, RMS of every channel; four seconds hold few instants of breaking away for the damper
     # tops, whose single samples decide (0.1 % over the whole minute).
     bounds = {name: 1e-2 if name.startswith("damper_top") else 5e-3 for name in ratios}
     assert not {name: ratio for name, ratio in ratios.items() if abs(ratio) > bounds[name]}
-    for wheel in WHEELS:
+    for wheel in ("fr", "fl"):
         assert abs(reduced.slip_share(wheel) - stepped.slip_share(wheel)) < 3e-3
     assert reduced.slip_share("fr") > 0.03  # it does slip, even behind a damper that is stiff at low speed
     for name in ("knuckle_fr_acc_z", "seat_rail_acc_z", "engine_acc_z"):
@@ -101,14 +102,14 @@ def test_blocks_leave_no_seam(high_piece, monkeypatch):
     whole = Car.load().run(high_piece, engine="reduced")
     monkeypatch.setattr(run, "BLOCK", 77)
     pieces = Car.load().run(high_piece, engine="reduced")
-    for name in channel_units():
+    for name in CHANNELS:
         # Products of other shapes are rounded in another order.
         np.testing.assert_allclose(pieces[name], whole[name], atol=1e-10 * max(np.max(np.abs(whole[name])), 1e-3))
 
 
 def test_the_same_run_twice_is_the_same_bit_for_bit(high_piece):
     one, two = (Car.load().run(high_piece, engine="reduced") for _ in range(2))
-    for name in channel_units():
+    for name in CHANNELS:
         assert np.array_equal(one[name], two[name]), name
 
 

@@ -55,7 +55,8 @@ def fabricated(car: CarModel, duration: float, level: float = 1e-3) -> Recording
     """Every joint and channel swings at a frequency of its own; the right damper slips in the second half."""
     time = np.arange(round(duration * RATE) + 1) / RATE
     channels = {
-        name: level * np.sin(2.0 * np.pi * (3.0 + 0.7 * number) * time) for number, name in enumerate(channel_units())
+        name: level * np.sin(2.0 * np.pi * (3.0 + 0.7 * number) * time)
+        for number, name in enumerate(car.vehicle.channels)
     }
     channels["damper_fr_velocity"] = np.where(time >= 0.5 * duration, 0.02, 0.0)
     channels["tyre_fr_force_z"] = 3400.0 + 0.0 * time
@@ -69,7 +70,7 @@ def fabricated(car: CarModel, duration: float, level: float = 1e-3) -> Recording
     return Recording(
         time=time,
         channels=channels,
-        units=channel_units(),
+        units=channel_units(car.vehicle.channels),
         excited=("fr",),
         pose_time=pose_time,
         poses=poses,

@@ -12,10 +12,12 @@ from matplotlib.figure import Figure
 
 from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.names import acceleration_channels
+from vehicle.parameters.vehicle import load_vehicle
 from vehicle.rendering.figure import wrapped_phase
 from vehicle.rendering.plots import plot_frf, plot_time
 from vehicle.rendering.recorded_run import excerpt_start, liveliest
+
+CHANNELS = load_vehicle().acceleration_channels
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +32,7 @@ def long_run(car):
 @pytest.fixture(scope="module")
 def response():
     frequency = np.arange(1.0, 50.0, 0.1)
-    rows = len(acceleration_channels())
+    rows = len(CHANNELS)
     single = frequency**2 / (1.0 - (frequency / 28.0) ** 2 + 0.1j * frequency / 28.0)
     return FrequencyResponse(
         frequency=frequency,
@@ -91,7 +93,7 @@ def test_frf_plot_names_quantities_and_caption(long_run, response, tmp_path, fig
 def test_frf_plot_draws_the_asked_channel(long_run, response, tmp_path, figures):
     plot_frf(tmp_path / "frf.png", long_run, response, "")
     lines = {line.get_label(): line for line in every_axis(figures[0])[0].get_lines()}
-    row = acceleration_channels().index("damper_top_fr_acc_z")
+    row = CHANNELS.index("damper_top_fr_acc_z")
     drawn = lines["damper top"].get_ydata()
     there = np.isfinite(drawn)
     assert there.mean() > 0.9
@@ -154,7 +156,7 @@ def test_frf_plot_is_grey_where_the_input_tells_nothing_and_shows_the_random_err
     bands = [part for part in magnitude.collections if part is not grey]
     assert len(bands) == 4
     top = max(path.vertices[:, 1].max() for path in bands[0].get_paths())
-    row = acceleration_channels().index("knuckle_fr_acc_z")
+    row = CHANNELS.index("knuckle_fr_acc_z")
     shown = np.abs(response.response[row][(response.frequency < 20.0) | (response.frequency > 30.0)])
     assert top == pytest.approx((1.0 + 1.96 * 0.05) * shown.max(), rel=1e-6)
 

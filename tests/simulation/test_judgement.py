@@ -31,9 +31,7 @@ def test_limits_of_the_residual():
 
 
 def test_item_52_a_friction_line_too_steep_to_integrate(car, high_piece):
-    with pytest.raises(
-        ConfigurationError, match=r"^damper\.smoothing: found 1e\+10 s/m|^damper\.smoothing: found 10000"
-    ):
+    with pytest.raises(ConfigurationError, match=r"^front\.damper\.smoothing: found 10000"):
         load_vehicle(None, ["damper.smoothing=1e10"])
     # Past the range, as a library would come: the balance tells.
     for wheel in ("fr", "fl"):

@@ -14,7 +14,6 @@ from vehicle.errors import DataError
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import write_signal
-from vehicle.names import acceleration_channels, channel_units
 from vehicle.output.written_files import MARKER, written
 from vehicle.parameters.vehicle import load_vehicle
 
@@ -46,12 +45,12 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
     assert set(summary["static"]) == {"tyre_load_n", "rear_support_load_n", "residual_m"}
     assert summary["static"]["residual_m"] < 1e-6
     assert summary["solver"]["energy_residual"] < 5e-3  # six seconds end in motion; whole runs reach 1e-3
-    assert set(summary["peaks"]) == set(acceleration_channels())
+    assert set(summary["peaks"]) == set(load_vehicle().acceleration_channels)
     assert set(summary["files"].values()) == FILES
 
     record = np.load(folder / "time.npz", allow_pickle=False)
-    assert set(record.files) == {"time", "units", "frame", *channel_units()}
-    assert all(np.isfinite(record[name]).all() for name in channel_units())
+    assert set(record.files) == {"time", "units", "frame", *load_vehicle().channels}
+    assert all(np.isfinite(record[name]).all() for name in load_vehicle().channels)
     assert np.allclose(np.diff(record["time"]), 1e-3, rtol=1e-9)
 
     used = load_vehicle(folder / "vehicle.toml")
@@ -66,7 +65,7 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
         "knuckle_fr_acc_x_coherence",
         "knuckle_fr_acc_x_random_error",
     ]
-    assert len(header) == 1 + 4 * len(acceleration_channels())
+    assert len(header) == 1 + 4 * len(load_vehicle().acceleration_channels)
     for word in ("damper", "resonances", "comfort", "solver", "files"):
         assert word in outcome.out
 

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from vehicle.assembly.spec import assemble
-from vehicle.assembly.visuals import BORNE_BY, add_shapes
+from vehicle.assembly.visuals import add_shapes
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.vehicle import Vehicle
@@ -31,13 +31,15 @@ def mjcf_files(vehicle: Vehicle, trimmed_body: Superelement) -> dict[str, bytes]
     assembly = assemble(vehicle, trimmed_body)
     spec = assembly.spec
     shapes = car_shapes({name: np.array(point) for name, point in vehicle.points.items()})
-    add_shapes(spec, shapes, assembly.origins)
+    springs = vehicle.composition.springs
+    add_shapes(spec, shapes, assembly.origins, springs)
+    borne = {spring.name: spring.parts[0] for spring in springs}
     spec.meshdir = "meshes"
     files: dict[str, bytes] = {}
     assets: dict[str, bytes] = {}
     for name, shape in shapes.items():
         mesh = shape.mesh.copy()
-        mesh.apply_translation(-assembly.origins[BORNE_BY.get(shape.part, shape.part)])
+        mesh.apply_translation(-assembly.origins[borne.get(shape.part, shape.part)])
         content = io.BytesIO()
         mesh.export(content, file_type="stl")
         assets[f"{name}.stl"] = content.getvalue()

@@ -95,7 +95,8 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
     for part in car.parts:
         builder.add_part(part)
     for on_joint in car.joint_springs:
-        spec.joint(on_joint.joint).stiffness = [on_joint.stiffness, 0.0, 0.0]
+        joint = spec.joint(on_joint.joint)
+        joint.stiffness, joint.damping = [on_joint.stiffness, 0.0, 0.0], [on_joint.damping, 0.0, 0.0]
     for wheel in car.wheels:
         builder.add_plate(wheel)
     for connection in car.connections:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.parameters.composition import PlacedSpring
 from vehicle.shapes.shape import Shape
 
 SHELL_GROUP = 1
@@ -16,12 +17,12 @@ SHELL_GROUP = 1
 PART_GROUP = 2
 """Visual group of all other parts and of the rig."""
 
-BORNE_BY = {"main_spring_fr": "main_spring_lower_fr", "main_spring_fl": "main_spring_lower_fl"}
-"""Part of a shape to the body that carries it where the part is no body: a coil lies between two bodies."""
-
 
 def add_shapes(
-    spec: mujoco.MjSpec, shapes: Mapping[str, Shape], origins: Mapping[str, npt.NDArray[np.float64]]
+    spec: mujoco.MjSpec,
+    shapes: Mapping[str, Shape],
+    origins: Mapping[str, npt.NDArray[np.float64]],
+    springs: Iterable[PlacedSpring],
 ) -> None:
     """Give a specification a visible mesh for every shape; masses, inertias and joints stay what they are.
 
@@ -31,9 +32,11 @@ def add_shapes(
         spec: specification of the car on its rig; changed in place.
         shapes: shapes at the design position in the vehicle frame, by name.
         origins: where each body frame sits in the design position [m], by body name.
+        springs: of the car; a coil lies between two bodies and goes with the lower one.
     """
+    borne = {spring.name: spring.parts[0] for spring in springs}
     for name, shape in shapes.items():
-        body = BORNE_BY.get(shape.part, shape.part)
+        body = borne.get(shape.part, shape.part)
         vertices = np.asarray(shape.mesh.vertices) - origins[body]
         spec.add_mesh(
             name=name,

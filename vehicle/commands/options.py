@@ -7,7 +7,7 @@ from pathlib import Path
 
 from vehicle.commands.command_line import Parser
 from vehicle.errors import ConfigurationError
-from vehicle.names import ENGINES, WHEEL_OF_OPTION
+from vehicle.names import CORNERS, ENGINES
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
@@ -58,7 +58,7 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
     )
     parser.add_argument(
         "--wheel",
-        choices=sorted(WHEEL_OF_OPTION),
+        choices=sorted(CORNERS),
         help="wheel of a plain displacement column; front_right by default",
     )
     parser.add_argument("--road", action="store_true", help="accept levels beyond a shaker: a road, not a measurement")

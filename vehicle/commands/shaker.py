@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ from vehicle.commands.options import (
     vehicle_options,
 )
 from vehicle.errors import ConfigurationError
-from vehicle.names import WHEEL_OF_OPTION
+from vehicle.names import CORNERS, SIDE_OF_WHEEL
 
 if TYPE_CHECKING:
     from vehicle.excitation.signal import Signal
@@ -79,7 +80,7 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, overrides)
     signal = read_signal(
         source,
-        wheel=WHEEL_OF_OPTION[options.wheel or "front_right"],
+        wheel=CORNERS[options.wheel or "front_right"],
         interpolate=options.interpolate,
         resample_hz=options.resample,
         remove_mean=options.remove_mean,
@@ -174,21 +175,30 @@ def _film_path(options: argparse.Namespace, source: Path, output: Path) -> Path:
     return name
 
 
+def _each(wheels: Iterable[str], say: Callable[[str, str], str], last: str = ", ") -> str:
+    """What is said of each wheel by its name and its word, as a list."""
+    words = [say(wheel, SIDE_OF_WHEEL.get(wheel, wheel)) for wheel in wheels]
+    return last.join(word for word in (", ".join(words[:-1]), words[-1]) if word)
+
+
 def report(summary: dict[str, Any], output: Path) -> str:
     """The summary as a page of text."""
     share, first = summary["slip_share"], summary["first_slip_s"]
+    load = summary["static"]["tyre_load_n"]
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
     lines = [
         f"input       {summary['input']['file']}, RMS {1e3 * summary['input']['rms_m']:.4g} mm, "
         f"{summary['input']['duration_s']:g} s, wheel {summary['input']['wheel']}",
-        f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for {100 * share['fr']:.2f} % (right) and "
-        f"{100 * share['fl']:.2f} % (left) of the time; first {_time(first['fr'])} (right), "
-        f"{_time(first['fl'])} (left)",
+        f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
+        f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
+        f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
         f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
-        f"{100 * saturated['fr']:.2f} % and {100 * saturated['fl']:.2f} %; first {_time(ended['fr'])} (right), "
-        f"{_time(ended['fl'])} (left)",
+        f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
+        f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
     ]
     for channel in (f"knuckle_{summary['input']['wheel']}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
+        if channel not in summary["peaks"]:
+            continue
         strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
         text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
         lines.append(f"resonances  {channel}: {text or 'none'} Hz")
@@ -198,8 +208,7 @@ def report(summary: dict[str, Any], output: Path) -> str:
     lines += [
         f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz "
         f"(x {rms['x']:.4f}, y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {weighted:.4f} m/s2",
-        f"static      tyre loads {summary['static']['tyre_load_n']['fr']:.0f} N (right) and "
-        f"{summary['static']['tyre_load_n']['fl']:.0f} N (left)",
+        f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",
         f"solver      {summary['solver']['engine']}, step {1e3 * summary['solver']['timestep_s']:g} ms, "
         f"{summary['solver']['realtime_factor']:.1f} times real time{_balance(summary['solver'])}",
     ]

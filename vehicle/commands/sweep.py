@@ -18,7 +18,7 @@ from vehicle.commands.options import (
     signal_options,
     vehicle_options,
 )
-from vehicle.names import WHEEL_OF_OPTION
+from vehicle.names import CORNERS
 
 
 def parser() -> Parser:
@@ -74,7 +74,7 @@ def _job(options: argparse.Namespace) -> None:
     paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
     load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
-    wheel = WHEEL_OF_OPTION[options.wheel or "front_right"]
+    wheel = CORNERS[options.wheel or "front_right"]
     inputs = [
         SignalFile(path=find_input(name).resolve(), wheel=wheel, accept_implausible=options.road)
         for name in options.input

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from vehicle.errors import DataError
-from vehicle.names import WHEELS
+from vehicle.names import CORNERS, in_order, is_wheel
 
 STEP_TOLERANCE = 1e-6
 """Largest deviation of one time step from the mean step, as a share of it: rounding, since readers rebuild the grid."""
@@ -22,7 +22,7 @@ MINIMUM_SAMPLES = 32
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PlateMotion:
-    """Motion of both plates at chosen times; a wheel without excitation stands on a plate at rest (zeros)."""
+    """Motion of plates at chosen times; a wheel without excitation stands on a plate at rest (zeros)."""
 
     time: NDArray[np.float64]
     """Simulation times [s], shape (m,)."""
@@ -40,7 +40,7 @@ class Signal:
 
     Args:
         time: sample times [s], shape (n,), first value 0, uniform.
-        displacement: wheel ('fr', 'fl') -> plate displacement [m], shape (n,), positive upwards.
+        displacement: wheel, as 'fr' -> plate displacement [m], shape (n,), positive upwards.
         notices: one sentence for everything that was done to the data or noticed about them.
         source: name of the file or text of the generator.
         sha256: hexadecimal digest of the file, None for a generated signal.
@@ -64,7 +64,7 @@ class Signal:
         if not displacement:
             raise DataError(f"{self.source}: the signal drives no wheel; give a displacement for one of {_wheels()}")
         for wheel, values in displacement.items():
-            if wheel not in WHEELS:
+            if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; allowed are {_wheels()}")
             if values.shape != time.shape:
                 raise DataError(
@@ -95,8 +95,8 @@ class Signal:
 
     @property
     def wheels(self) -> tuple[str, ...]:
-        """Wheels whose plates move, in the order of `vehicle.names.WHEELS`."""
-        return tuple(wheel for wheel in WHEELS if wheel in self.displacement)
+        """Wheels whose plates move, in the order of files."""
+        return in_order(self.displacement)
 
     @property
     def timestep(self) -> float:
@@ -130,8 +130,8 @@ class Signal:
             return 0.0
         return float(np.std(self.displacement[wheel]))
 
-    def plate_motion(self, times: ArrayLike) -> PlateMotion:
-        """Displacement, velocity and acceleration of both plates at arbitrary times within the record.
+    def plate_motion(self, times: ArrayLike, wheels: Iterable[str] | None = None) -> PlateMotion:
+        """Displacement, velocity and acceleration of the plates at arbitrary times within the record.
 
         A cubic spline through the samples: z is twice continuously differentiable, and velocity and acceleration are
         its exact derivatives, so that the three agree at every step of the simulation. Both ends are not-a-knot (the
@@ -141,9 +141,10 @@ class Signal:
 
         Args:
             times: simulation times [s], shape (m,), within 0 and `duration`.
+            wheels: whose plates; by default those that the signal drives.
 
         Returns:
-            The motion of both plates; zeros for a wheel that the signal does not drive.
+            The motion of the plates; zeros for a wheel that the signal does not drive.
 
         Raises:
             DataError: a time lies outside the record (no extrapolation of a spline).
@@ -160,7 +161,7 @@ class Signal:
             )
         at = np.clip(at, 0.0, self.duration)
         motion: list[dict[str, NDArray[np.float64]]] = [{}, {}, {}]
-        for wheel in WHEELS:
+        for wheel in self.wheels if wheels is None else wheels:
             spline = None
             if wheel in self.displacement:
                 spline = CubicSpline(self.time, self.displacement[wheel], bc_type="not-a-knot")
@@ -181,4 +182,4 @@ def _read_only(values: ArrayLike) -> NDArray[np.float64]:
 
 
 def _wheels() -> str:
-    return ", ".join(WHEELS)
+    return ", ".join(CORNERS.values())

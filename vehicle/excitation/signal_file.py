@@ -13,7 +13,7 @@ from vehicle.excitation.plausibility import aliasing_notices, check_level, drift
 from vehicle.excitation.rest import start_from_rest
 from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
 from vehicle.excitation.time_grid import LOWEST_RATE, check_rate, decimate, fill_missing, refine
-from vehicle.names import WHEELS
+from vehicle.names import CORNERS, in_order, is_wheel
 from vehicle.records.clock import check_increasing, check_uniform, is_uniform, without_rounding
 from vehicle.records.formats import read_table
 from vehicle.records.table import TIME, Header, Table, Vector, Wanted, name_and_unit
@@ -23,6 +23,7 @@ NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displace
 
 _LENGTH_UNITS = {"m": 1.0, "mm": 1e-3}
 _OTHER_QUANTITY = re.compile(r"(^|_)(acc|vel)|^[av](_|$)", re.IGNORECASE)
+_WHEEL_COLUMN = re.compile(r"displacement_(\w+)|plate_(\w+)_displacement")
 _OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
 
 
@@ -43,7 +44,7 @@ def read_signal(
 
     Args:
         path: the file, of a format of `vehicle.records`.
-        wheel: wheel that a plain `displacement` column drives, 'fr' or 'fl'.
+        wheel: wheel that a plain `displacement` column drives, as 'fr'.
         interpolate: fill missing displacements by a cubic spline over gaps up to 10 ms.
         resample_hz: new sampling rate [Hz] with anti-alias filter, also for non-uniform times.
         remove_mean: subtract the mean of each column.
@@ -54,8 +55,8 @@ def read_signal(
         DataError: bad data; the message names file, line, column, the value found, what is allowed and the remedy.
     """
     path = Path(path)
-    if wheel not in WHEELS:
-        raise ConfigurationError(f"wheel {wheel!r} is unknown; allowed: {', '.join(WHEELS)}")
+    if not is_wheel(wheel):
+        raise ConfigurationError(f"wheel {wheel!r} is unknown; allowed: {', '.join(CORNERS.values())}")
     if resample_hz is not None and not LOWEST_RATE <= resample_hz < np.inf:
         raise ConfigurationError(
             f"--resample {resample_hz:g} Hz: allowed from {LOWEST_RATE:g} Hz on (samples a second)"
@@ -121,16 +122,18 @@ def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
         wheel: the one that a plain `displacement` column drives.
 
     Returns:
-        "time" and the wheels, in the order of `WHEELS`, to the index of their column and its unit.
+        "time" and the wheels, in the order of files, to the index of their column and its unit.
 
     Raises:
         DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity.
     """
     if any(_is_number(cell) for cell in header.cells):
         raise DataError(f"{header.where}:1: no header line: found {header.found}; needed are the columns {NEEDED}")
-    keys = {"time": "time", "displacement": wheel, **{f"displacement_{one}": one for one in WHEELS}}
-    channels = {"time": "time", **{f"plate_{one}_displacement": one for one in WHEELS}}
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
+    ends = [_WHEEL_COLUMN.fullmatch(name.lower()) for _, _, name, _ in named]
+    wheels = in_order({one for end in ends if end and is_wheel(one := end[1] or end[2])})
+    keys = {"time": "time", "displacement": wheel, **{f"displacement_{one}": one for one in wheels}}
+    channels = {"time": "time", **{f"plate_{one}_displacement": one for one in wheels}}
     if any(name.startswith("plate_") and name in channels for _, _, name, _ in named):
         keys, named = channels, [one for one in named if one[2] in channels]
     columns: dict[str, tuple[int, str]] = {}
@@ -162,7 +165,7 @@ def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"
         raise DataError(f"{header.where}: no {missing} column; found {header.found}; needed are {NEEDED}")
-    return {key: columns[key] for key in ("time", *WHEELS) if key in columns}
+    return {key: columns[key] for key in ("time", *in_order({wheel, *wheels})) if key in columns}
 
 
 def _checked_unit(place: str, key: str, unit: str | None) -> str:

@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.linear.system import LinearSystem
-from vehicle.names import AXES, WHEELS, acceleration_places
+from vehicle.names import AXES
 from vehicle.simulation.callbacks import compiled_rows, installed
-from vehicle.simulation.layout import numeric
+from vehicle.simulation.layout import numeric, places_of, wheels_of
 from vehicle.simulation.rows import Rows, joint_dampers
 from vehicle.simulation.static_trim import StaticTrim
 
@@ -31,14 +31,15 @@ class CarMatrices:
     """The linear car: a system with the plates as inputs and the dampers as sliding pairs, and what its parts are.
 
     Attributes:
-        system: matrices of `vehicle.linear.system`; C holds the viscous part of the dampers, inputs are WHEELS, outputs
-            turn u'' into the acceleration channels.
-        dampers: velocity coordinates of the damper joints, in the order of WHEELS; (2,).
-        viscous: damping constants of the dampers [N s/m]; (2,).
-        tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (2,).
+        system: matrices of `vehicle.linear.system`; C holds the viscous part of the dampers, inputs are the wheels,
+            outputs turn u'' into the acceleration channels.
+        dampers: velocity coordinates of the damper joints; (d,).
+        viscous: damping constants of the dampers [N s/m]; (d,).
+        tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (w,).
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
         body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
+        carried_by: body that each body is fixed to, itself where it can move on its parent.
         modal: velocity coordinates of the flexible modes.
     """
 
@@ -49,6 +50,7 @@ class CarMatrices:
     tyre_damping: Vector
     body_rows: dict[str, Vector]
     body_masses: dict[str, Vector]
+    carried_by: dict[str, str]
     modal: slice
 
 
@@ -85,7 +87,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     return CarMatrices(
         system=LinearSystem(
             coordinates=(),
-            inputs=WHEELS,
+            inputs=wheels_of(model),
             mass=mass,
             damping=damping,
             stiffness=stiffness,
@@ -109,6 +111,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         tyre_damping=bushings.damping[e.tyres, 2],
         body_rows=_body_rows(model, data),
         body_masses=_body_masses(model, data),
+        carried_by={
+            str(model.body(i).name): str(model.body(int(root)).name) for i, root in enumerate(model.body_weldid)
+        },
         modal=e.modes.velocities,
     )
 
@@ -147,7 +152,7 @@ def _rewriter(rows: Rows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujo
 def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:
     """Rows of all acceleration channels."""
     outputs = {}
-    for place in acceleration_places():
+    for place in places_of(model):
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, model.site(f"place/{place}").id)
         shape = numeric(model, f"shape/place/{place}")

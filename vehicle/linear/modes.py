@@ -12,6 +12,7 @@ from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices
 from vehicle.linear.natural_modes import grows, natural_modes
 from vehicle.linear.strained_part import holding_parameter
+from vehicle.names import SIDE_OF_WHEEL
 from vehicle.simulation.car_model import CarModel
 
 
@@ -69,16 +70,19 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> l
     return found
 
 
-def group_of(body: str) -> str:
-    """Group of parts that a rigid body belongs to in the energy shares."""
-    if body.startswith("main_spring_upper"):
+def group_of(matrices: CarMatrices, body: str) -> str:
+    """Group of parts that a rigid body belongs to in the energy shares.
+
+    Args:
+        matrices: of the car.
+        body: its name.
+    """
+    if matrices.carried_by.get(body) == "body":
         return "body"
     if body.startswith("stabilizer"):
         return "stabilizer"
-    for wheel in ("fr", "fl"):
-        if body.endswith(f"_{wheel}"):
-            return f"wheel_{wheel}"
-    return body
+    wheel = next((wheel for wheel in matrices.system.inputs if body.endswith(f"_{wheel}")), None)
+    return body if wheel is None else f"wheel_{wheel}"
 
 
 def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> dict[str, float]:
@@ -87,7 +91,8 @@ def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> dict[st
     for body, rows in matrices.body_rows.items():
         velocity = rows @ shape
         value = float(np.real(np.vdot(velocity, matrices.body_masses[body] @ velocity)))
-        energy[group_of(body)] = energy.get(group_of(body), 0.0) + value
+        group = group_of(matrices, body)
+        energy[group] = energy.get(group, 0.0) + value
     energy["flexible"] = float(np.sum(np.abs(shape[matrices.modal]) ** 2))
     total = sum(energy.values())
     return {name: value / total for name, value in energy.items()}
@@ -103,10 +108,12 @@ def _describe(matrices: CarMatrices, shape: npt.NDArray[np.complex128], energy: 
     elif leader in ("body", "engine"):
         words = f"{leader} {_rigid_direction(matrices, leader, shape)}"
     elif leader.startswith("wheel"):
-        wheel = leader[-2:]
-        velocity = np.abs(matrices.body_rows[f"tyre_{wheel}"][:3] @ shape)
+        wheel = leader.removeprefix("wheel_")
+        own = [body for body in matrices.body_rows if group_of(matrices, body) == leader]
+        heaviest = max(own, key=lambda body: float(matrices.body_masses[body][0, 0]))
+        velocity = np.abs(matrices.body_rows[heaviest][:3] @ shape)
         direction = ("longitudinal", "lateral", "vertical")[int(np.argmax(velocity))]
-        side = "right" if wheel == "fr" else "left"
+        side = SIDE_OF_WHEEL.get(wheel, wheel)
         words = f"{side} wheel {direction}"
     else:
         words = leader.replace("_", " ")

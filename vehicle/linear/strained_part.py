@@ -52,19 +52,24 @@ def holding_parameter(car: CarModel, matrices: CarMatrices, pole: complex, shape
     for name, own, k, c, k2 in zip(rows.names, b.rows, b.stiffness, b.damping, b.branch_stiffness, strict=True):
         for axis, r, stiffness, drag in zip(AXES, own, k + k2, speed * c, strict=True):
             kind = "stiffness" if stiffness >= drag else "damping"
-            work[element_parameter(name, kind, axis)] = float(max(stiffness, drag) * square[r])
+            work[element_parameter(car.vehicle, name, kind, axis)] = float(max(stiffness, drag) * square[r])
     turned = rows.rotation_jacobian(data) @ shape
     resisting = [name for name in rows.names if numeric(car.model, f"law/{name}")[12] > 0.0]  # type: ignore[index]
     for name, stiffness, turn in zip(resisting, e.rotations.stiffness, turned, strict=True):
-        work[element_parameter(name, "rotational_stiffness", "")] = float(stiffness * np.sum(np.abs(turn) ** 2))
-    work["main_spring.stiffness"] = float(np.max(e.springs.stiffness * square[e.springs.rows], initial=0.0))
-    work["damper.viscous"] = float(
-        np.max(speed * dampers.laws["viscous_damping"] * np.abs(shape[dampers.dofs]) ** 2, initial=0.0)
-    )
+        work[element_parameter(car.vehicle, name, "rotational_stiffness", "")] = float(
+            stiffness * np.sum(np.abs(turn) ** 2)
+        )
+    strained = e.springs.stiffness * square[e.springs.rows]
+    slid = speed * dampers.laws["viscous_damping"] * np.abs(shape[dampers.dofs]) ** 2
+    placed = car.vehicle.composition
+    listed = [(f"{one.path}.stiffness", value) for one, value in zip(placed.springs, strained, strict=True)]
+    listed += [(f"{one.path}.viscous", value) for one, value in zip(placed.dampers, slid, strict=True)]
+    for path, value in listed:
+        work[path] = max(work.get(path, 0.0), float(value))
     inside = joint_springs(car.model) * np.abs(shape) ** 2
     work["body.frequency_scale"] = float(np.sum(inside[e.modes.velocities]))
-    inside[e.modes.velocities] = 0.0
-    work["stabilizer.torsional_stiffness"] = float(np.sum(inside))
+    for spring in placed.joint_springs:
+        work[f"{spring.path}.{spring.parameter}"] = float(inside[car.model.joint(spring.joint).dofadr[0]])
     path = max(work, key=lambda name: work[name])
     try:
         return f"{path} ({value_of(car.vehicle, path):g})"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.errors import SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.names import AXES, WHEELS, acceleration_channels
+from vehicle.names import AXES
 from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
@@ -67,7 +67,7 @@ def write_run(
     Raises:
         VehicleError: a file cannot be made or written.
     """
-    response = run.frf()
+    response, channels = run.frf(), run.car.vehicle.acceleration_channels
     files = {
         "summary": "summary.json",
         "vehicle": "vehicle.toml",
@@ -80,7 +80,7 @@ def write_run(
     write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, FRAME))
-    write_whole(folder / "frf.csv", lambda path: write_frf(path, response, acceleration_channels(), FRAME))
+    write_whole(folder / "frf.csv", lambda path: write_frf(path, response, channels, FRAME))
     caption = _caption(run, response)
     write_whole(folder / "frf.png", lambda path: plot_frf(path, run, response, caption))
     write_whole(folder / "time.png", lambda path: plot_time(path, run))
@@ -132,7 +132,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
         Plain numbers, texts, lists and dictionaries; None where a value does not exist.
     """
     statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
-    energies = statistics.energies
+    energies, wheels = statistics.energies, run.car.vehicle.wheels
     body = rigid_body(run.car.vehicle.body)
     idle = idle_parameters(run.car.vehicle, run.car.overrides)
     notices = [
@@ -156,20 +156,22 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
             "file": Path(run.signal.source).name,
             "sha256": run.signal.sha256,
             "rms_m": run.signal.rms(run.wheel),
-            "plate_rms_m": {wheel: run.signal.rms(wheel) for wheel in WHEELS},
+            "plate_rms_m": {wheel: run.signal.rms(wheel) for wheel in wheels},
             "duration_s": run.signal.duration,
             "wheel": run.wheel,
         },
-        "slip_share": {wheel: run.slip_share(wheel) for wheel in WHEELS} | {"slip_velocity": damper.slip_velocity},
-        "first_slip_s": {wheel: run.first_slip(wheel) for wheel in WHEELS},
-        "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in WHEELS},
-        "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in WHEELS},
+        "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},
+        "first_slip_s": {wheel: run.first_slip(wheel) for wheel in wheels},
+        "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
+        "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "saturated_velocity": SATURATED_VELOCITY,
-        "peaks": _peaks(response),
+        "peaks": _peaks(response, run.car.vehicle.acceleration_channels),
         "comfort": {place: _comfort(run, place) for place in COMFORT_PLACES},
         "static": {
             "tyre_load_n": static.tyre_load,
-            "rear_support_load_n": static.rear_support_load,
+            "rear_support_load_n": {
+                name.removeprefix("rear_support_"): load for name, load in static.support_load.items()
+            },
             "residual_m": static.residual,
         },
         "solver": {
@@ -196,7 +198,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
     }
 
 
-def _peaks(response: FrequencyResponse) -> dict[str, list[dict[str, float | None]]]:
+def _peaks(response: FrequencyResponse, channels: Sequence[str]) -> dict[str, list[dict[str, float | None]]]:
     """Resonance peaks of every acceleration channel."""
     return {
         channel: [
@@ -208,7 +210,7 @@ def _peaks(response: FrequencyResponse) -> dict[str, list[dict[str, float | None
             }
             for peak in resonances(response, row)
         ]
-        for row, channel in enumerate(acceleration_channels())
+        for row, channel in enumerate(channels)
     }
 
 

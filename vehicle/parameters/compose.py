@@ -21,7 +21,7 @@ from vehicle.parameters.composition import (
     PlacedSpring,
     PlacedWheel,
 )
-from vehicle.parameters.elements import Damper, MainSpring, Stabilizer
+from vehicle.parameters.elements import Damper, MainSpring, SlideSpring, Stabilizer
 from vehicle.parameters.freedoms import freedoms
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
@@ -278,11 +278,32 @@ def _springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], list[Join
             on_joints.append(
                 JointSpring(
                     joint=i.label(e.joint, side),
-                    stiffness=i.get(Stabilizer, side, e.name).torsional_stiffness,
+                    **_on_joint(i, e, side),
                     path=path,
                 )
             )
     return springs, on_joints
+
+
+def _slides(i: Instance, name: str) -> bool:
+    return next(joint.kind for joint in i.template.joint if joint.name == name) == "slide"
+
+
+def _spring_kind(i: Instance, e: topology.Spring) -> type:
+    if e.joint is None:
+        return MainSpring
+    return SlideSpring if _slides(i, e.joint) else Stabilizer
+
+
+def _on_joint(i: Instance, e: topology.Spring, side: str | None) -> dict[str, Any]:
+    """Numbers of a spring on a joint: a slide has a stiffness and a damping, a hinge a torsional stiffness."""
+    if not _slides(i, e.joint or ""):
+        return {
+            "stiffness": i.get(Stabilizer, side, e.name).torsional_stiffness,
+            "parameter": "torsional_stiffness",
+        }
+    numbers = i.get(SlideSpring, side, e.name)
+    return {"stiffness": numbers.stiffness, "damping": numbers.damping, "parameter": "stiffness"}
 
 
 def _kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
@@ -292,5 +313,5 @@ def _kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, t
         found |= {f"{i.name}.parts.{name}": Part for name in i.template.parts}
         found |= {f"{i.name}.bushings.{name}": law_kind(one) for name, one in i.numbers.get("bushings", {}).items()}
         found |= {f"{i.name}.{one.name}": Damper for one in i.template.damper}
-        found |= {f"{i.name}.{one.name}": MainSpring if one.joint is None else Stabilizer for one in i.template.spring}
+        found |= {f"{i.name}.{one.name}": _spring_kind(i, one) for one in i.template.spring}
     return found

@@ -77,11 +77,13 @@ class PlacedSpring:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class JointSpring:
-    """A spring on a joint: [N/m] on a slide, [N m/rad] on a hinge."""
+    """A spring on a joint: [N/m] and [N s/m] on a slide, [N m/rad] on a hinge; `parameter`: name of its stiffness."""
 
     joint: str
     stiffness: float
     path: str
+    parameter: str
+    damping: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -50,20 +50,6 @@ class Hydromount:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Bushings:
-    """All bushings of the car."""
-
-    tyre: Bushing
-    suspension_mount: Bushing
-    arm_rear: Bushing
-    rear_support: Bushing
-    linear_mount: Bushing
-    torque_arm_body: Bushing
-    torque_arm_engine: Bushing
-    hydromount: Hydromount
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class MainSpring:
     """Linear spring between the lower spring seat and the strut top, along its own line."""
 
@@ -82,6 +68,17 @@ class Stabilizer:
     torsional_stiffness: float = quantity(
         "N m/rad", "torque over relative angle of the halves", at_least=0.0, **TWISTED
     )
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SlideSpring:
+    """Spring and damper along a slide: f = -k q - d q'."""
+
+    stiffness: float = quantity("N/m", "stiffness", at_least=0.0, **STIFFEST)
+    damping: float = quantity("N s/m", "damping", at_least=0.0, default=0.0, **STRONGEST)
 
     def __post_init__(self) -> None:
         validate(self)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES
+from vehicle.names import AXES, acceleration_channels, wheel_channels
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.compose import compose
 from vehicle.parameters.composition import Composition
@@ -72,6 +72,22 @@ class Vehicle:
     def points(self) -> Mapping[str, Point]:
         """Hardpoints by name, as "strut_top_fr" [m]."""
         return self.composition.points
+
+    @property
+    def wheels(self) -> tuple[str, ...]:
+        """Names of the wheels that stand on plates, as "fr"."""
+        return tuple(wheel.name for wheel in self.composition.wheels)
+
+    @property
+    def acceleration_channels(self) -> tuple[str, ...]:
+        """Names of the recorded accelerations, in the order of the files."""
+        return acceleration_channels(output.name for output in self.composition.outputs)
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of all channels of a recording, in the order of the files."""
+        dampers = [damper.name for damper in self.composition.dampers]
+        return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
 
     @property
     def damper(self) -> Damper:

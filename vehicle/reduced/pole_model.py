@@ -82,7 +82,7 @@ class PoleModel:
     def _tyre(self, channel: str) -> tuple[Complex, Vector, Vector]:
         """Tyre force on the wheel: k (z - J u) + c (z' - J u')."""
         m, wheels = self.matrices, self.matrices.system.inputs
-        index = wheels.index(channel.split("_")[1])
+        index = wheels.index(channel.removeprefix("tyre_").removesuffix("_force_z"))
         spring = m.system.input_stiffness[:, index] @ self.modal
         drag = m.system.input_damping[:, index] @ (self.modal * self.poles)
         here = np.zeros(len(wheels))

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.laws.damper import RECORD, pack
-from vehicle.names import channel_units
+from vehicle.names import channel_units, wheel_channels
 from vehicle.parameters.elements import Damper
 from vehicle.reduced.march import March, compiled_march
 from vehicle.reduced.plate_samples import LongPlates, plate_samples
@@ -57,8 +57,9 @@ def simulate_reduced(
     Raises:
         MissingPartError: numba is not installed.
     """
-    units = channel_units()
-    names = tuple(units) if channels is None else tuple(channels)
+    system = model.matrices.system
+    wheeled = wheel_channels(system.inputs, [f"damper_{wheel}" for wheel in system.inputs])
+    names = (*system.outputs, *wheeled) if channels is None else tuple(channels)
     march = compiled_march(len(dampers) + len(dampers) % 2)
     interval = 1.0 / record_rate
     every = int(np.ceil(interval / LONGEST_STEP - 1e-9))
@@ -69,8 +70,7 @@ def simulate_reduced(
     # No step at all: compiling is no part of the time of the run.
     run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
     started = clock.perf_counter()
-    wheeled = tuple(f"{part}_{wheel}_" for wheel in run.corners for part in ("damper", "plate"))
-    linear = [name for name in names if not name.startswith(wheeled)]
+    linear = [name for name in names if name in system.outputs or name.startswith("tyre_")]
     readout = Readout(model.outputs(linear), run.factors, model.pairs, run.columns)
     watch = ValidityWatch(model, run.factors, run.columns, tyre_load)
     table = np.empty((len(linear), samples + AHEAD))
@@ -89,7 +89,7 @@ def simulate_reduced(
     return Recording(
         time=uniform_time(samples=samples, timestep=interval),
         channels={name: channel[name] for name in names},
-        units={name: units[name] for name in names},
+        units=channel_units(names),
         excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),
         pose_time=np.zeros(0),
         poses=np.zeros((0, 0)),

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.names import acceleration_channels
 from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, shade, wrapped_phase
 from vehicle.rendering.recorded_run import RecordedRun, liveliest, side_of, wheels_of
 
@@ -36,7 +35,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
         response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
         caption: line under the picture: input, level, estimator.
     """
-    rows = {name: row for row, name in enumerate(acceleration_channels())}
+    rows = {name: row for row, name in enumerate(run.car.model.vehicle.acceleration_channels)}
     wheel, side = run.wheel, side_of(run.wheel)
     mount = {f"suspension_mount_{wheel}_acc_z": "body at suspension mount"}
     corner = {f"knuckle_{wheel}_acc_z": "knuckle at damper bottom", f"damper_top_{wheel}_acc_z": "damper top"}

@@ -52,7 +52,7 @@ def stage_model(car: CarModel, size: tuple[int, int]) -> mujoco.MjModel:
     spec = car.spec.copy()
     points = {name: np.array(point) for name, point in car.vehicle.points.items()}
     shapes = {name: shape for name, shape in car_shapes(points).items() if name not in HIDDEN}
-    add_shapes(spec, shapes, car.origins)
+    add_shapes(spec, shapes, car.origins, car.vehicle.composition.springs)
     for name, opacity in OPACITY.items():
         material = spec.material(name)
         material.rgba = [*material.rgba[:3], opacity * material.rgba[3]]

@@ -110,6 +110,17 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     )
 
 
+def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
+    """Names of the wheels of a car, in the order of their plates."""
+    plates = sorted((int(place), index) for index, place in enumerate(model.body_mocapid) if place >= 0)
+    return tuple(str(model.body(index).name).removeprefix("plate_") for _, index in plates)
+
+
+def places_of(model: mujoco.MjModel) -> tuple[str, ...]:
+    """Names of the recorded places of a car, in the order of their sensors."""
+    return tuple(str(model.sensor(index).name).removesuffix("_acc") for index in range(model.nsensor))
+
+
 def _required(model: mujoco.MjModel, name: str) -> Vector:
     found = numeric(model, name)
     assert found is not None, name

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal
-from vehicle.names import AXES, WHEELS, acceleration_channels, acceleration_places, channel_units
+from vehicle.names import AXES, channel_units
 from vehicle.simulation.acceleration import AHEAD, acceleration
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.layout import numeric
@@ -50,11 +50,13 @@ class Recorder:
         self.samples, self.every, self.pose_every = samples, every, pose_every
         e, modes = rows.layout, rows.layout.modes
         self.shapes = {}
-        for place in acceleration_places():
+        self.places = [output.name for output in car.vehicle.composition.outputs]
+        self.wheels, self.dampers = car.vehicle.wheels, [damper.name for damper in car.vehicle.composition.dampers]
+        for place in self.places:
             shape = numeric(model, f"shape/place/{place}")
             if shape is not None:
                 self.shapes[place] = shape.reshape(3, -1)
-        self.sites = np.array([model.site(f"place/{place}").id for place in acceleration_places()], dtype=np.int64)
+        self.sites = np.array([model.site(f"place/{place}").id for place in self.places], dtype=np.int64)
         self.buffers = Samples(
             places=np.zeros((CHUNK, 3 * len(self.sites))),
             turn=np.zeros((CHUNK, 9)),
@@ -94,9 +96,9 @@ class Recorder:
             modes=modes.size,
             half=-0.5 * self.step,
         )
-        self.channels = {name: np.zeros(samples) for name in channel_units()}
+        self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
         # Positions until the end of the run, which makes accelerations of them.
-        self.channels |= {name: np.zeros(samples + AHEAD) for name in acceleration_channels()}
+        self.channels |= {name: np.zeros(samples + AHEAD) for name in car.vehicle.acceleration_channels}
         self.poses: list[Vector] = []
         self.pose_index: list[int] = []
         self.filled = 0
@@ -105,7 +107,7 @@ class Recorder:
         self.lifting = 0.0
         self.dissipated = 0.0
         self.last_powers: tuple[float, float] | None = None
-        self.lowest_load = dict.fromkeys(WHEELS, (np.inf, 0.0))
+        self.lowest_load = dict.fromkeys(self.wheels, (np.inf, 0.0))
         self.energy_at_start: float | None = None
 
     def before_step(self) -> None:
@@ -194,9 +196,10 @@ class Recorder:
         damper_force[:, e.dampers.valves[:, 1]] -= total[:, e.dampers.valves[:, 0]]
         velocity = motion.velocity[steps]
         tyre = total[:, bushings.rows[e.tyres][:, 2]]
-        for column, wheel in enumerate(WHEELS):
-            self.channels[f"damper_{wheel}_velocity"][here] = b.damper_velocity[:, column]
-            self.channels[f"damper_{wheel}_force"][here] = damper_force[:, column]
+        for column, damper in enumerate(self.dampers):
+            self.channels[f"{damper}_velocity"][here] = b.damper_velocity[:, column]
+            self.channels[f"{damper}_force"][here] = damper_force[:, column]
+        for column, wheel in enumerate(self.wheels):
             self.channels[f"tyre_{wheel}_force_z"][here] = tyre[:, column]
             self.channels[f"plate_{wheel}_displacement"][here] = motion.displacement[steps, column]
             lowest = int(np.argmin(tyre[:, column]))
@@ -225,7 +228,7 @@ class Recorder:
 
     def _keep_positions(self, here: slice, places: Vector, turn: Vector, modal: Vector) -> None:
         """Positions of all places with their modal displacement; (chunk, 3 places), (chunk, 9), (chunk, modes)."""
-        for place, value in zip(acceleration_places(), np.split(places, len(self.sites), axis=1), strict=True):
+        for place, value in zip(self.places, np.split(places, len(self.sites), axis=1), strict=True):
             if place in self.shapes:
                 value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[place].T)
             for axis, name in enumerate(AXES):
@@ -275,13 +278,13 @@ class Recorder:
         """The finished recording."""
         interval = 1.0 / self.car.vehicle.solver.record_rate
         time: Vector = interval * np.arange(self.samples, dtype=np.float64)
-        for name in acceleration_channels():
+        for name in self.car.vehicle.acceleration_channels:
             self.channels[name] = acceleration(self.channels[name], interval)
         return Recording(
             time=time,
             channels=self.channels,
-            units=channel_units(),
-            excited=tuple(wheel for wheel in WHEELS if np.any(signal.displacement.get(wheel, np.zeros(1)) != 0.0)),
+            units=channel_units(self.channels),
+            excited=tuple(wheel for wheel in self.wheels if np.any(signal.displacement.get(wheel, np.zeros(1)) != 0.0)),
             pose_time=time[self.pose_index],
             poses=np.array(self.poses),
             statistics=statistics,

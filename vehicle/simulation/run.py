@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.excitation.signal import Signal
-from vehicle.names import WHEELS
 from vehicle.simulation.acceleration import AHEAD
 from vehicle.simulation.callbacks import compiled_rows, installed
 from vehicle.simulation.car_model import CarModel
@@ -70,8 +69,8 @@ def simulate(
     count = int(np.floor(signal.duration / step + 1e-6))
     count -= count % every
     times = step * np.arange(count + 1)
-    motion = PlateArrays.of(signal, times, AHEAD * every)
-    mocap = [int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in WHEELS]
+    motion = PlateArrays.of(signal, times, car.vehicle.wheels, AHEAD * every)
+    mocap = [int(model.body_mocapid[model.body(wheel.plate).id]) for wheel in car.vehicle.composition.wheels]
     plates = Plates(
         height=data.mocap_pos[mocap, 2] + motion.displacement,
         velocity=motion.row_velocity,

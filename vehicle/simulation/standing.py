@@ -9,7 +9,7 @@ from vehicle.flexbody.superelement import Superelement
 from vehicle.names import AXES
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.simulation.rows import Rows
-from vehicle.simulation.static_trim import GROUND_CONTACTS, StaticTrim
+from vehicle.simulation.static_trim import StaticTrim, ground_contacts
 
 LARGEST_SAG = 0.5
 """Static deflection [m] that no spring of a road vehicle has: a soft car spring sags by 0.2 m, an engine by 5 mm."""
@@ -18,14 +18,20 @@ LOWEST_BODY_MODE = 5.0
 """Frequency [Hz] below which no elastic mode of a road vehicle's body lies: convertibles have 12, vans and buses 8."""
 
 
-def element_parameter(name: str, kind: str, axis: str) -> str:
-    """Parameter path of an element of the model: "bushing/tyre_fr" is bushings.tyre, of both sides."""
+def element_parameter(vehicle: Vehicle, name: str, kind: str, axis: str) -> str:
+    """Parameter path of an element of the model: of "bushing/tyre_fr" front.bushings.tyre and what follows.
+
+    Args:
+        vehicle: the car.
+        name: of the element.
+        kind: its parameter.
+        axis: its component, or nothing.
+    """
     group, _, place = name.partition("/")
     if group != "bushing":
         return f"the attachment stiffness of {place} in body.superelement"
-    for side in ("_fr", "_fl", "_right", "_left"):
-        place = place.removesuffix(side)
-    return ".".join(word for word in ("bushings", place, kind, axis) if word)
+    path = next(one.path for one in vehicle.composition.connections if one.name == place)
+    return ".".join(word for word in (path, kind, axis) if word)
 
 
 def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
@@ -57,21 +63,25 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     if vehicle.gravity == 0.0:
         return
     loads = {f"tyre {wheel}": load for wheel, load in static.tyre_load.items()}
-    loads |= {f"rear support {side}": load for side, load in static.rear_support_load.items()}
+    loads |= {name.replace("_", " "): load for name, load in static.support_load.items()}
     for name, load in loads.items():
         if load <= 0.0:
             raise ConfigurationError(
                 f"body.cog: found {list(vehicle.body.cog)} m, with which {name} would carry {load:.0f} N and the car "
-                "would tip off it; it must lie between hardpoints.tyre_patch and hardpoints.rear_support (check "
-                "body.mass and parts.engine too)"
+                "would tip off it; it must lie between the points where the car stands on the ground (check body.mass "
+                "and the masses of the parts too)"
             )
     preload, springs, bushings = static.preload, rows.layout.springs, rows.layout.bushings
-    sags = {"main_spring.stiffness": float(np.max(np.abs(preload[springs.rows]) / springs.stiffness))}
-    for name, own, stiffness in zip(rows.names, bushings.rows, bushings.stiffness, strict=True):
+    placed = vehicle.composition.springs
+    sags: dict[str, float] = {}
+    for spring, force, k in zip(placed, np.abs(preload[springs.rows]), springs.stiffness, strict=True):
+        sags[f"{spring.path}.stiffness"] = max(sags.get(f"{spring.path}.stiffness", 0.0), float(force / k))
+    ground = ground_contacts(rows)
+    for index, (name, own, stiffness) in enumerate(zip(rows.names, bushings.rows, bushings.stiffness, strict=True)):
         for axis, row, k in zip(AXES, own, stiffness, strict=True):
             # On the ground the car is set down without horizontal force.
-            if k > 0.0 and (axis == "z" or not name.startswith(GROUND_CONTACTS)):
-                sags[element_parameter(name, "stiffness", axis)] = float(abs(preload[row]) / k)
+            if k > 0.0 and (axis == "z" or index not in ground):
+                sags[element_parameter(vehicle, name, "stiffness", axis)] = float(abs(preload[row]) / k)
     worst = max(sags, key=lambda name: sags[name])
     if sags[worst] > LARGEST_SAG:
         raise ConfigurationError(

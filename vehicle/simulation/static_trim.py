@@ -16,21 +16,18 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import SimulationError
-from vehicle.names import WHEELS
 from vehicle.simulation.callbacks import installed
+from vehicle.simulation.layout import wheels_of
 from vehicle.simulation.rows import Rows, joint_springs
 
 Vector = npt.NDArray[np.float64]
 
 
-GROUND_CONTACTS = ("bushing/tyre", "bushing/rear_support")
-"""Elements between car and ground: the front tyres on their plates and the rubber blocks under the rear.
-
-They hold in all three directions, and pull as well as push: there is no lift-off and no sliding in a run. A tyre that
-would pull is reported as a warning of the run."""
-
 SLIDING_SHARE = 1e-5
-"""Share of the horizontal stiffness of the ground contacts left while the car settles; zero would let it drift."""
+"""Share of the horizontal stiffness of the ground contacts left while the car settles; zero would let it drift.
+
+Ground contacts are the elements on the world or on a plate: tyres, and blocks. They hold in all three directions, and
+pull as well as push: there is no lift-off and no sliding in a run. A tyre that would pull is a warning of the run."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -41,13 +38,13 @@ class StaticTrim:
         preload: static force of every constraint row in the axes of its element [N], and behind them the static
             torques of the rotations [N m], (rows + 3 m,).
         tyre_load: vertical load of each tyre [N], by wheel.
-        rear_support_load: vertical load of each rubber block [N], by side.
+        support_load: vertical load of each other ground contact [N], by its name.
         residual: largest displacement by which the trimmed car would still move [m].
     """
 
     preload: Vector
     tyre_load: dict[str, float]
-    rear_support_load: dict[str, float]
+    support_load: dict[str, float]
     residual: float
 
 
@@ -74,8 +71,7 @@ def trim(rows: Rows) -> StaticTrim:
     gravity = data.qfrc_smooth.copy()
     row_stiffness = np.zeros(e.row_count)
     row_stiffness[e.bushings.rows] = e.bushings.stiffness
-    ground = [index for index, name in enumerate(rows.names) if name.startswith(GROUND_CONTACTS)]
-    row_stiffness[e.bushings.rows[ground, :2]] *= SLIDING_SHARE
+    row_stiffness[e.bushings.rows[ground_contacts(rows), :2]] *= SLIDING_SHARE
     row_stiffness[e.springs.rows] = e.springs.stiffness
     turned = rows.rotation_jacobian(data)
     stiffness = jacobian.T @ (row_stiffness[:, None] * jacobian)
@@ -94,6 +90,12 @@ def trim(rows: Rows) -> StaticTrim:
             position = model.jnt_qposadr[joint]
             model.qpos_spring[position] = model.qpos0[position] - displacement[dof]
     return _loads(rows.anew(preload), stiffness, hard)
+
+
+def ground_contacts(rows: Rows) -> npt.NDArray[np.intp]:
+    """Positions of the elements between car and ground among the bushings; (k,)."""
+    model, carriers = rows.model, rows.layout.bushings.carriers
+    return np.flatnonzero((carriers == 0) | (model.body_mocapid[carriers] >= 0))
 
 
 def _settle(stiffness: Vector, hard: Vector, force: Vector) -> tuple[Vector, Vector]:
@@ -119,10 +121,11 @@ def _loads(rows: Rows, stiffness: Vector, hard: Vector) -> StaticTrim:
         mujoco.mj_forward(rows.model, data)
     preload = rows.weights.preload
     remaining, _ = _settle(stiffness, hard, data.qfrc_smooth)
-    vertical = dict(zip(rows.names, preload[rows.layout.bushings.rows][:, 2], strict=True))
+    vertical, tyres = preload[rows.layout.bushings.rows][:, 2], rows.layout.tyres
+    others = [index for index in ground_contacts(rows) if index not in tyres]
     return StaticTrim(
         preload=preload,
-        tyre_load={wheel: float(vertical[f"bushing/tyre_{wheel}"]) for wheel in WHEELS},
-        rear_support_load={side: float(vertical[f"bushing/rear_support_{side}"]) for side in ("right", "left")},
+        tyre_load=dict(zip(wheels_of(rows.model), map(float, vertical[tyres]), strict=True)),
+        support_load={rows.names[index].partition("/")[2]: float(vertical[index]) for index in others},
         residual=float(np.max(np.abs(remaining))),
     )

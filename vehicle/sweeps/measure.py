@@ -13,7 +13,7 @@ from vehicle.analysis.comfort import comfort_value, rms_standard_error
 from vehicle.analysis.slip import slip_share
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES, WHEELS
+from vehicle.names import AXES, CORNERS
 
 
 class Measure(Protocol):
@@ -31,15 +31,21 @@ class Measure(Protocol):
         """The numbers of a run, NaN where one does not exist."""
 
 
+FRONT = tuple(CORNERS.values())[:2]
+"""Wheels that every car has."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ComfortMeasure:
     """Comfort values of the seat rail, slip shares, the first slip.
 
     Attributes:
         skip: seconds at the beginning that all but the first slip leave out: the car starts at rest.
+        wheels: whose dampers are looked at.
     """
 
     skip: float = 2.0
+    wheels: tuple[str, ...] = FRONT
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.skip < math.inf:
@@ -48,14 +54,14 @@ class ComfortMeasure:
     @property
     def channels(self) -> tuple[str, ...]:
         """Channels that are needed."""
-        return (*(f"seat_rail_acc_{axis}" for axis in AXES), *(f"damper_{wheel}_velocity" for wheel in WHEELS))
+        return (*(f"seat_rail_acc_{axis}" for axis in AXES), *(f"damper_{wheel}_velocity" for wheel in self.wheels))
 
     @property
     def units(self) -> Mapping[str, str]:
         """Name of each number to its unit."""
         comfort = {f"comfort_{axis}": "m/s2" for axis in (*AXES, "overall")} | {"comfort_error": "-"}
-        slip = {f"{kind}_{wheel}": "-" for kind in ("slip_share", "saturated_share") for wheel in WHEELS}
-        return comfort | slip | {f"first_slip_{wheel}": "s" for wheel in WHEELS}
+        slip = {f"{kind}_{wheel}": "-" for kind in ("slip_share", "saturated_share") for wheel in self.wheels}
+        return comfort | slip | {f"first_slip_{wheel}": "s" for wheel in self.wheels}
 
     def __call__(self, run: Run) -> dict[str, float]:
         """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, slip.
@@ -78,9 +84,9 @@ class ComfortMeasure:
             ("slip_share", run.car.vehicle.damper.slip_velocity),
             ("saturated_share", SATURATED_VELOCITY),
         ):
-            for wheel in WHEELS:
+            for wheel in self.wheels:
                 numbers[f"{kind}_{wheel}"] = slip_share(run[f"damper_{wheel}_velocity"][kept], velocity)
-        for wheel in WHEELS:
+        for wheel in self.wheels:
             first = run.first_slip(wheel)
             numbers[f"first_slip_{wheel}"] = math.nan if first is None else first
         return numbers

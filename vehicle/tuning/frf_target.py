@@ -12,7 +12,7 @@ from vehicle.analysis.local_rational import local_rational_response
 from vehicle.car import Car, Run
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
-from vehicle.names import WHEELS
+from vehicle.names import CORNERS, is_wheel
 from vehicle.records.frf import FrfData
 
 Vector = npt.NDArray[np.float64]
@@ -55,8 +55,10 @@ class FrfTarget:
     def __post_init__(self) -> None:
         if self.averages <= 0.0:
             raise ConfigurationError(f"{self.name}: found {self.averages:g} averages; needed are more than 0")
-        if self.wheel not in WHEELS:
-            raise ConfigurationError(f"{self.name}: found wheel {self.wheel!r}, allowed are {', '.join(WHEELS)}")
+        if not is_wheel(self.wheel):
+            raise ConfigurationError(
+                f"{self.name}: found wheel {self.wheel!r}, allowed are {', '.join(CORNERS.values())}"
+            )
         if self.signal is not None and self.signal.wheels != (self.wheel,):
             raise ConfigurationError(f"{self.name}: the signal must drive the plate {self.wheel} alone")
         if not np.isfinite(self.deviation).any():

@@ -54,8 +54,7 @@ class RecordTarget:
         if not self.record.channels:
             raise DataError(f"{self.name}: no time history; give at least one channel")
         for channel, values in self.record.channels.items():
-            if channel not in channel_units():
-                raise ConfigurationError(f"{self.name}: no channel {channel!r}; there are {', '.join(channel_units())}")
+            channel_units([channel])
             if not np.any(values[self.inside]):
                 raise DataError(f"{self.name}: {channel} is zero throughout {self.window[0]:g} to {self.window[1]:g} s")
 
