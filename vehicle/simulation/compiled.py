@@ -1,8 +1,7 @@
 """MuJoCo's callbacks and the stepping loop as compiled code: how they find their records, and only their own model.
 
-`mjData.userdata` of a simulation holds the address of its records and a stamp. The records lie there as the compiler
-holds them: all their arrays, one after the other. This module imports numba at its head: it is loaded only by a run
-that compiles.
+`mjData.userdata` of a simulation holds the address of its records, as the compiler holds them, and a stamp. This module
+imports numba at its head: it is loaded only by a run that compiles.
 """
 
 from __future__ import annotations
@@ -138,12 +137,6 @@ def vector(address, size):  # type: ignore[no-untyped-def]
 
 
 @numba.njit
-def table(address, rows, columns):  # type: ignore[no-untyped-def]
-    """A table of numbers at an address."""
-    return numba.carray(as_pointer(address), (rows, columns), numba.float64)
-
-
-@numba.njit
 def record_address(model, data, user_size, user_data, mark):  # type: ignore[no-untyped-def]
     """Address of the records of the simulation that a callback is called for; 0 where the model is another's."""
     if words(model + user_size, 1)[0] < USER_SIZE:
@@ -160,8 +153,8 @@ def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
     """The fields over the rows, where they lie now."""
     n, o = t.rows, t.efc
     return Efc(
-        table(words(data + o[0], 1)[0], n, velocities),
-        table(words(data + o[1], 1)[0], n, 4),
+        vector(words(data + o[0], 1)[0], n * velocities).reshape(n, velocities),
+        vector(words(data + o[1], 1)[0], 4 * n).reshape(n, 4),
         vector(words(data + o[2], 1)[0], n),
         vector(words(data + o[3], 1)[0], n),
         vector(words(data + o[4], 1)[0], n),
@@ -173,16 +166,10 @@ def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
 
 @functools.cache
 def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any, Any]:
-    """Compile the callbacks.
+    """`mjcb_control`, `mjcb_act_gain`, `mjcb_act_bias` as C functions, and what writes records to an address.
 
-    Args:
-        user_size: offset of `nuserdata` in mjModel [bytes].
-        user_data: offset of `userdata` in mjData [bytes].
-        mark: the stamp. What these functions close over is part of the key of the compiler's cache.
-
-    Returns:
-        `mjcb_control`, `mjcb_act_gain`, `mjcb_act_bias` as C functions of numba, which live as long as the process,
-        and what writes records to an address.
+    They close over the offsets of `nuserdata` in mjModel and `userdata` in mjData and over the stamp, for these are the
+    key of the compiler's cache.
     """
 
     def control(model: int, data: int) -> None:
@@ -255,7 +242,7 @@ class CompiledRows:
         probe: any state of that model after a forward evaluation.
 
     Raises:
-        LookupError: the structures of MuJoCo are not as its declarations say, or the model has no user data.
+        LookupError: MuJoCo's structures are not as declared, or the model has no user data.
     """
 
     def __init__(self, rows: Rows, probe: mujoco.MjData) -> None:
@@ -298,12 +285,7 @@ class CompiledRows:
         ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.step_address)(self.model._address, data._address)
 
     def loop(self, recorder: Recorder, plates: Plates) -> Callable[[int, int], int]:
-        """What takes the steps first..last of an attached state and returns how many poses it kept.
-
-        Args:
-            recorder: of the run, whose buffers are filled.
-            plates: their motion.
-        """
+        """What takes the steps first..last of an attached state into a recorder and returns the number of poses kept."""
         order = recorder.order._replace(step=self.step_address, force_offset=self.offsets["efc_force"])
         compiled = _loop(stamp())
 
