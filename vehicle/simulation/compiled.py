@@ -285,7 +285,7 @@ class CompiledRows:
         ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.step_address)(self.model._address, data._address)
 
     def loop(self, recorder: Recorder, plates: Plates) -> Callable[[int, int], int]:
-        """What takes the steps first..last of an attached state into a recorder and returns the number of poses kept."""
+        """What takes steps first..last of an attached state into a recorder and returns how many poses it kept."""
         order = recorder.order._replace(step=self.step_address, force_offset=self.offsets["efc_force"])
         compiled = _loop(stamp())
 
