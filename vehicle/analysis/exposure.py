@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import lfilter
 
 from vehicle.analysis.samples import checked_signals, checked_time_step
 from vehicle.errors import ConfigurationError, DataError
@@ -56,7 +56,7 @@ def mtvv(
         running = (np.cumsum(square) - total[: square.size]) / length
     elif average == "exponential":
         decay = float(np.exp(-step / integration_s))
-        running = lfilter([1.0 - decay], [1.0, -decay], square)
+        running = scipy.signal.lfilter([1.0 - decay], [1.0, -decay], square)
     else:
         raise ConfigurationError(f"running average: found {average!r}, allowed are 'linear' and 'exponential'")
     return float(np.sqrt(max(float(running.max()), 0.0)))

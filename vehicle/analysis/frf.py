@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import csd, welch
 
 from vehicle.analysis.samples import (
     checked_band,
@@ -152,11 +153,12 @@ def frequency_responses(
         )
 
     options = {"window": cut.window, "nperseg": cut.length, "noverlap": cut.overlap, "detrend": "constant"}
-    lines, syy = welch(y, 1.0 / step, **options)
+    lines, syy = scipy.signal.welch(y, 1.0 / step, **options)
     inside = lines_in_band(lines, edges)
-    whole = np.moveaxis(csd(x[:, None], x[None, :], 1.0 / step, **options)[1], -1, 0)  # conj(X) X, (lines, p, p)
+    csd = partial(scipy.signal.csd, fs=1.0 / step, **options)
+    whole = np.moveaxis(csd(x[:, None], x[None, :])[1], -1, 0)  # conj(X) X, (lines, p, p)
     gxx = whole[inside]  # (m, p, p)
-    gxy = np.moveaxis(csd(x[:, None], y[None, :], 1.0 / step, **options)[1][..., inside], -1, 0)  # (m, p, k)
+    gxy = np.moveaxis(csd(x[:, None], y[None, :])[1][..., inside], -1, 0)  # (m, p, k)
     syy = syy[:, inside]
     power = np.real(np.einsum("mii->mi", gxx))  # (m, p)
     reached = (power > EXCITED * np.real(np.einsum("mii->mi", whole)).max(axis=0)).all(axis=1)

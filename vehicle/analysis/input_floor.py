@@ -13,9 +13,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-from scipy.signal.windows import dpss
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -77,8 +76,8 @@ def tapered_power(samples: Real, rounding: float) -> tuple[Real, float]:
     count = samples.size
     fine, coarse = np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, TAPER_SAMPLES)
     power = np.zeros(count // 2 + 1)
-    for taper in dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS):
-        window = CubicSpline(coarse, taper)(fine)
+    for taper in scipy.signal.windows.dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS):
+        window = scipy.interpolate.CubicSpline(coarse, taper)(fine)
         power += np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 * count / np.sum(window**2) / TAPERS
     power = np.convolve(power, np.full(3, 1.0 / 3.0), mode="same")
     exact = count * (ROUNDING * float(np.max(np.abs(samples)))) ** 2

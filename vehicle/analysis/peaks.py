@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import find_peaks
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.errors import ConfigurationError, DataError
@@ -99,7 +99,7 @@ def resonance_peaks(
             continue
         decibel = 20.0 * np.log10(values[stretch])
         height, ripple = values[stretch], np.zeros(stretch.size) if error is None else error[stretch]
-        tops, found_at = find_peaks(decibel, prominence=prominence_db)
+        tops, found_at = scipy.signal.find_peaks(decibel, prominence=prominence_db)
         for top, rise, *bases in zip(
             tops, found_at["prominences"], found_at["left_bases"], found_at["right_bases"], strict=True
         ):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import get_window
 
 from vehicle.analysis.samples import checked_signals, checked_time_step
 from vehicle.errors import ConfigurationError, DataError
@@ -81,7 +81,7 @@ def cut_into_segments(
         raise ConfigurationError(f"overlap: found {overlap:g}, allowed is 0 <= overlap < 1")
     length = round(window_s / time_step)
     step = max(1, length - round(overlap * length))
-    window = np.asarray(get_window("hann", length), dtype=np.float64)
+    window = np.asarray(scipy.signal.get_window("hann", length), dtype=np.float64)
     count = 0 if samples < length else 1 + (samples - length) // step
     averages = effective_averages(window, step, count) if count else 0.0
     if averages < minimum_averages:

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import find_peaks
 
 from vehicle.analysis.samples import checked_same_length, checked_signals
 from vehicle.errors import ConfigurationError, DataError
@@ -151,7 +151,7 @@ def slip_phases(
         window = np.flatnonzero((time >= start - BREAK_AWAY) & (time <= min(end - BREAK_AWAY, start + SEARCHED)))
         found = []
         for sign in (1.0, -1.0):
-            tops, properties = find_peaks(sign * relative[window], prominence=0.0)
+            tops, properties = scipy.signal.find_peaks(sign * relative[window], prominence=0.0)
             for top, prominence in zip(window[tops], properties["prominences"], strict=True):
                 delay = float(time[top] - start)
                 if delay > BREAK_AWAY:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import welch
 
 from vehicle.analysis.samples import checked_band, checked_signals, checked_time_step, lines_in_band
 from vehicle.analysis.segments import cut_into_segments
@@ -52,7 +52,7 @@ def power_spectral_density(
     step = checked_time_step(time_step)
     array = checked_signals("signals", signals)
     cut = cut_into_segments(array.shape[1], step, window_s=window_s, overlap=overlap, minimum_averages=minimum_averages)
-    frequency, density = welch(
+    frequency, density = scipy.signal.welch(
         array, 1.0 / step, window=cut.window, nperseg=cut.length, noverlap=cut.overlap, detrend="constant"
     )
     return PowerSpectralDensity(

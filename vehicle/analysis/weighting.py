@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
 from vehicle.analysis.samples import checked_signals, checked_time_step
 from vehicle.errors import ConfigurationError, DataError
@@ -166,7 +166,7 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
         )
     samples = array.shape[1]
     # the slowest pole has the real part -w1/sqrt(2): after 4/f1 it has fallen by exp(-17.8) = 2e-8
-    length = next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
-    factor = curve.transfer_function(rfftfreq(length, step))
-    weighted = irfft(rfft(array, length, axis=1) * factor, length, axis=1)[:, :samples]
+    length = scipy.fft.next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
+    factor = curve.transfer_function(scipy.fft.rfftfreq(length, step))
+    weighted = scipy.fft.irfft(scipy.fft.rfft(array, length, axis=1) * factor, length, axis=1)[:, :samples]
     return np.asarray(weighted.reshape(np.shape(signals)), dtype=np.float64)

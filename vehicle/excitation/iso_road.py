@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import special
 
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.band import positive, samples_of
@@ -65,7 +65,7 @@ def isotropic_coherence(wavenumber: NDArray[np.float64], track: float) -> NDArra
     Source: Dodds and Robson, Journal of Sound and Vibration 31 (1973); Abramowitz and Stegun 9.6.25.
     """
     y = 2.0 * np.pi * np.asarray(wavenumber, dtype=np.float64) * track
-    return np.asarray(y * special.k1(y))
+    return np.asarray(y * scipy.special.k1(y))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

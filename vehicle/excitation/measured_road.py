@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from vehicle.errors import DataError
 from vehicle.excitation.iso_road import Side
@@ -57,7 +57,9 @@ class MeasuredRoad:
                 "driven; ask for a shorter --duration"
             )
         heights = self.right if side == "right" else self.left
-        found: NDArray[np.float64] = CubicSpline(self.distance, heights - heights[0])(np.maximum(place, place[0]))
+        found: NDArray[np.float64] = scipy.interpolate.CubicSpline(self.distance, heights - heights[0])(
+            np.maximum(place, place[0])
+        )
         return np.where(place < self.distance[0], 0.0, found)
 
 

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft
-from scipy.signal import butter, sosfiltfilt
 
 from vehicle.errors import DataError
 from vehicle.records.clock import PAUSE
@@ -89,7 +88,7 @@ def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArra
     nyquist = 0.5 / timestep
     smooth = z
     if nyquist > 1.25 * ACCELERATION_BAND:  # below, the sampling itself limits the band
-        smooth = sosfiltfilt(butter(4, ACCELERATION_BAND / nyquist, output="sos"), z)
+        smooth = scipy.signal.sosfiltfilt(scipy.signal.butter(4, ACCELERATION_BAND / nyquist, output="sos"), z)
     inner = np.diff(smooth, 2) / timestep**2
     return np.concatenate((inner[:1], inner, inner[-1:]))
 
@@ -103,7 +102,7 @@ def velocity_share_near_nyquist(z: NDArray[np.float64], timestep: float) -> floa
     there.
     """
     centred = z - z.mean()
-    spectrum = fft.rfft(centred * np.hanning(z.size), fft.next_fast_len(z.size, real=True))
+    spectrum = scipy.fft.rfft(centred * np.hanning(z.size), scipy.fft.next_fast_len(z.size, real=True))
     frequency = np.linspace(0.0, 1.0, spectrum.size)  # share of the Nyquist frequency
     power = (frequency * np.abs(spectrum)) ** 2
     total = float(power.sum())

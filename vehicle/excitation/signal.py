@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from vehicle.errors import DataError
 from vehicle.names import CORNERS, in_order, is_wheel
@@ -164,7 +164,7 @@ class Signal:
         for wheel in self.wheels if wheels is None else wheels:
             spline = None
             if wheel in self.displacement:
-                spline = CubicSpline(self.time, self.displacement[wheel], bc_type="not-a-knot")
+                spline = scipy.interpolate.CubicSpline(self.time, self.displacement[wheel], bc_type="not-a-knot")
             for order, values in enumerate(motion):
                 values[wheel] = np.zeros_like(at) if spline is None else spline(at, order)
         return PlateMotion(time=at, displacement=motion[0], velocity=motion[1], acceleration=motion[2])

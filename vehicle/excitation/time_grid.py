@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.signal import firwin, resample_poly
+import scipy
 
 from vehicle.errors import DataError
 from vehicle.excitation.signal import MINIMUM_SAMPLES
@@ -81,7 +80,7 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
             f"interpolation bridges at most {limit:.6g} s; use the part before or after it"
         )
     filled = values.copy()
-    filled[~valid] = CubicSpline(time[valid], values[valid])(time[~valid])
+    filled[~valid] = scipy.interpolate.CubicSpline(time[valid], values[valid])(time[~valid])
     count = int(np.count_nonzero(~valid))
     return filled, [f"{count} missing values of {name} interpolated by a cubic spline, the first in {table.row(first)}"]
 
@@ -120,7 +119,7 @@ def refine(table: Table, time: Vector, columns: Mapping[str, Vector], rate: floa
             "lower rate"
         )
     fine = np.minimum(time[0] + np.arange(samples) / (rate * factor), time[-1])
-    return factor, {wheel: CubicSpline(time, values)(fine) for wheel, values in columns.items()}
+    return factor, {wheel: scipy.interpolate.CubicSpline(time, values)(fine) for wheel, values in columns.items()}
 
 
 def decimate(values: Vector, factor: int) -> Vector:
@@ -132,8 +131,8 @@ def decimate(values: Vector, factor: int) -> Vector:
     if factor == 1:
         return values
     # Kaiser's formula: 80 dB over a transition of 0.2 / factor need (80 - 7.95) / (2.285 pi 0.2) = 50.2 factor taps.
-    taps = firwin(52 * factor + 1, 0.9 / factor, window=("kaiser", 7.857))
-    kept: Vector = resample_poly(values, 1, factor, window=taps, padtype="line")
+    taps = scipy.signal.firwin(52 * factor + 1, 0.9 / factor, window=("kaiser", 7.857))
+    kept: Vector = scipy.signal.resample_poly(values, 1, factor, window=taps, padtype="line")
     return kept
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-import scipy.linalg
+import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.modes import fix_signs, rigid_shapes

@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import FloatArray
@@ -133,7 +133,7 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
 
     point = np.log([start[group] for group in groups])
     for weight in weights:
-        stage = least_squares(
+        stage = scipy.optimize.least_squares(
             lambda x, w=weight: residuals(frame, factors(x), w),
             point,
             bounds=(-_FACTOR, _FACTOR),

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linear_sum_assignment
+import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.linear.first_order import FirstOrder, first_order
@@ -149,7 +149,7 @@ class _Judge:
         lasting = values[(values.imag >= 0.0) & (np.abs(values) > 1e-12)]
         exact, made = kept.astype(complex), np.log(lasting.astype(complex)) / step
         away = np.minimum(np.abs(exact[:, None] - made) / np.abs(exact)[:, None], 1e3)
-        row, column = linear_sum_assignment(away)
+        row, column = scipy.optimize.linear_sum_assignment(away)
         least = LEAST_DAMPING * np.abs(exact[row])
         error = np.abs(made[column] - exact[row]) / np.maximum(np.abs(exact[row].real), least)
         error[np.abs(exact[row]) > HIGHEST_POLE] = 0.0

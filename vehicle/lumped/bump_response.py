@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
+import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.linear.first_order import FirstOrder, first_order
@@ -107,16 +107,16 @@ def bump_response(model: LinearSystem, passage: BumpPassage, *, time_step: float
     system = _autonomous(form, passage.omega)
     time = np.asarray(time_step * np.arange(round(duration / time_step) + 1), dtype=np.float64)
     states = np.zeros((system.shape[0], time.size))
-    powers = [expm(system * time_step)]
+    powers = [scipy.linalg.expm(system * time_step)]
     state, since = np.zeros(system.shape[0]), 0.0
     for instant, wheel, rate in [*_events(passage), (math.inf, 0, 0.0)]:
         inside = np.flatnonzero((time >= since) & (time < instant))
         if inside.size:
-            first = expm(system * (time[inside[0]] - since)) @ state
+            first = scipy.linalg.expm(system * (time[inside[0]] - since)) @ state
             states[:, inside] = _steps(first, powers, inside.size)
         if math.isinf(instant):
             break
-        state, since = expm(system * (instant - since)) @ state, instant
+        state, since = scipy.linalg.expm(system * (instant - since)) @ state, instant
         state[size + wheel], state[size + w + wheel] = 0.0, rate
     state_of, inputs, input_rates = np.split(states.T, (size, size + w), axis=1)
     none = np.zeros((time.size, form.slide.shape[-2]))

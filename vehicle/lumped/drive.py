@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
+import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 
@@ -58,7 +58,7 @@ class Sampled:
             raise ConfigurationError(f"sampled drive: timestep {timestep!r} s must be finite and greater than 0.0")
         self.timestep = timestep
         self.values = samples
-        spline = CubicSpline(timestep * np.arange(samples.size), samples, bc_type="natural")
+        spline = scipy.interpolate.CubicSpline(timestep * np.arange(samples.size), samples, bc_type="natural")
         # Plain floats: the solver asks for one instant at a time, where an array access costs more than the polynomial.
         self._cubic: list[tuple[float, float, float, float]] = [tuple(c) for c in spline.c.T.tolist()]
 

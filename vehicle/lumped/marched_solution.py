@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
+import scipy
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.linear.first_order import FirstOrder
@@ -122,7 +122,7 @@ def _propagators(model: FirstOrder, step: float) -> tuple[Array, Array, Array, A
     whole[..., :size, size + 1] = model.input_rate[..., 0]
     whole[..., :size, size + 2] = -model.friction[..., 0]
     whole[..., size, size + 1] = 1.0
-    moved = expm(whole * step)
+    moved = scipy.linalg.expm(whole * step)
     return (
         moved[..., :size, :size],
         moved[..., :size, size],

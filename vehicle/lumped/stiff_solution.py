@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy.integrate import solve_ivp
+import scipy
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.laws.law import ForceLaw, Parallel
@@ -117,7 +117,9 @@ class Driven:
         with warnings.catch_warnings():
             # LSODA warns beside its status; the status is what is reported.
             warnings.simplefilter("ignore", UserWarning)
-            found: Any = solve_ivp(slope, (self.time[0], self.time[-1]), self.initial, t_eval=self.time, **options)
+            found: Any = scipy.integrate.solve_ivp(
+                slope, (self.time[0], self.time[-1]), self.initial, t_eval=self.time, **options
+            )
         if not found.success or not np.isfinite(found.y).all():
             raise SimulationError(
                 f"stopped at t = {found.t[-1] if found.t.size else self.time[0]:g} s of {self.time[-1]:g} s: "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from vehicle.errors import DataError
 from vehicle.records.table import Table, Vector
@@ -95,7 +95,7 @@ def clock_of_rounded(time: Vector) -> tuple[float, int] | None:
         return None
     # The spread about a clock is convex in its step; the step that is sought lies within q / T of the mean one.
     reach = quantum / (time.size - 1)
-    best = minimize_scalar(
+    best = scipy.optimize.minimize_scalar(
         lambda one: np.ptp(time - count * one), bounds=(step - reach, step + reach), options={"xatol": 1e-6 * reach}
     )
     for rate in (float(round(1.0 / step)), 1.0 / float(best.x)):

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
+import scipy
 
 from vehicle.excitation.signal import Signal
 from vehicle.simulation.acceleration import continued
@@ -24,7 +24,9 @@ class LongPlates:
 
     def __init__(self, signal: Signal, step: float, steps: int, beyond: int) -> None:
         self.step, self.steps, self.rows = step, steps, steps + 1 + beyond
-        self.splines = [CubicSpline(signal.time, signal.displacement[wheel]) for wheel in signal.wheels]
+        self.splines = [
+            scipy.interpolate.CubicSpline(signal.time, signal.displacement[wheel]) for wheel in signal.wheels
+        ]
         self.latest = signal.duration
 
     def __getitem__(self, part: slice) -> Vector:

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation
+import scipy
 
 from vehicle.rendering.recorded_run import wheels_of
 from vehicle.simulation.car_model import CarModel
@@ -79,7 +78,9 @@ class Motion:
         self.position = data.xpos.copy()
         self.orientation = data.xmat.reshape(-1, 3, 3).copy()
         self.geom_position = model.geom_pos.copy()
-        self.geom_orientation = Rotation.from_quat(model.geom_quat, scalar_first=True).as_matrix()
+        self.geom_orientation = scipy.spatial.transform.Rotation.from_quat(
+            model.geom_quat, scalar_first=True
+        ).as_matrix()
         plates = {wheel: int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in wheels_of(recording)}
         rest, rows = data.mocap_pos.copy(), []
         for index in range(first, last):
@@ -89,9 +90,9 @@ class Motion:
                 data.mocap_pos[plate] = rest[plate] + np.array([0.0, 0.0, lift])
             mujoco.mj_kinematics(model, data)
             turned = data.xmat.reshape(-1, 3, 3) @ self.orientation.transpose(0, 2, 1)
-            rotation = Rotation.from_matrix(turned).as_rotvec()
+            rotation = scipy.spatial.transform.Rotation.from_matrix(turned).as_rotvec()
             rows.append(np.concatenate([(data.xpos - self.position).ravel(), rotation.ravel(), data.qpos[columns]]))
-        self.curve = CubicSpline(self.time, np.array(rows), axis=0)
+        self.curve = scipy.interpolate.CubicSpline(self.time, np.array(rows), axis=0)
         self.integral = self.curve.antiderivative()
 
     def at(self, time: float, exposure: float = 0.0) -> State:
@@ -122,7 +123,7 @@ class Motion:
 
     def poses(self, state: State, factor: float) -> tuple[Vector, Vector]:
         """Exaggerated poses of all bodies: positions [m], (bodies, 3), and orientations, (bodies, 3, 3)."""
-        turned = Rotation.from_rotvec(factor * state.rotation).as_matrix()
+        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation).as_matrix()
         return self.position + factor * state.translation, turned @ self.orientation
 
     def geoms(self, state: State, factor: float) -> tuple[Vector, Vector]:
@@ -134,7 +135,7 @@ class Motion:
 
     def moved(self, state: State, factor: float, body: int, points: Vector) -> Vector:
         """Exaggerated places [m] of points that sit at `points` [m] in the design position, both (n, 3)."""
-        turned = Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
+        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
         arm = points - self.position[body]
         return np.asarray(self.position[body] + factor * state.translation[body] + arm @ turned.T)
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import qmc
+import scipy
 
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.parameters.ranges import Range
@@ -171,8 +171,8 @@ def latin_hypercube(ranges: Sequence[Range], count: int, *, seed: int = 0) -> Ve
 
     Source: scipy.stats.qmc.
     """
-    points = qmc.LatinHypercube(d=len(ranges), rng=np.random.default_rng(seed)).random(count)
-    return np.asarray(qmc.scale(points, [one.low for one in ranges], [one.high for one in ranges]))
+    points = scipy.stats.qmc.LatinHypercube(d=len(ranges), rng=np.random.default_rng(seed)).random(count)
+    return np.asarray(scipy.stats.qmc.scale(points, [one.low for one in ranges], [one.high for one in ranges]))
 
 
 def _checked(values: npt.ArrayLike, group: int) -> Vector:

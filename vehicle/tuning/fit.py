@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
+import scipy
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.parameters.ranges import Range, checked_ranges
@@ -242,7 +242,7 @@ class _Problem:
         leash = LEASH / widths
         low, high = np.array([self.bounds(index) for index in self.free]).T
         margin = 1e-9 * (high - low)
-        answer = least_squares(
+        answer = scipy.optimize.least_squares(
             function,
             np.clip(start[self.free], low + margin, high - margin),
             jac=lambda free: np.vstack([self.jacobian(whole(free), self.free), np.diag(leash)]),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import butter, sosfiltfilt
+import scipy
 
 from vehicle.car import Car, Run
 from vehicle.errors import ConfigurationError, DataError
@@ -101,5 +101,5 @@ class RecordTarget:
         )
 
     def _filtered(self, histories: Vector) -> Vector:
-        sections = butter(4, 2.0 * self.record.step * self.lowpass, output="sos")
-        return np.asarray(sosfiltfilt(sections, histories, axis=1)[:, self.kept])
+        sections = scipy.signal.butter(4, 2.0 * self.record.step * self.lowpass, output="sos")
+        return np.asarray(scipy.signal.sosfiltfilt(sections, histories, axis=1)[:, self.kept])
