@@ -199,8 +199,9 @@ class _Builder:
     def add_part(self, part: PlacedPart) -> None:
         """A rigid part with its joints."""
         numbers, products = part.numbers, np.array([part.side, 1.0, part.side]) * part.numbers.products
+        moments = numbers.inertia or (0.0, 0.0, 0.0)
         # MuJoCo's tensor has negative products, in the order xy, xz, yz.
-        full = [*numbers.inertia, *-products] if products.any() else numbers.inertia
+        full = [*moments, *-products] if products.any() else moments
         body = self._add(part.name, part.parent, np.array(part.cog), numbers.mass, full)
         for joint in part.joints:
             if joint.kind == "free":

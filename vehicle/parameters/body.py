@@ -22,8 +22,8 @@ class TrimmedBody:
         why="without engine and axles the body of a micro car has 200 kg, that of a loaded van 3000 kg",
     )
     cog: Point = quantity("m", "centre of gravity", length=3)
-    inertia_variant: str = quantity("-", "which Ixx is used", choices=("published", "improved"))
-    ixx_published: float = quantity("kg m2", "integral of y2 + z2, as published", above=0.0)
+    inertia_variant: str = quantity("-", "which Ixx is used", choices=("published", "improved"), default="improved")
+    ixx_published: float | None = quantity("kg m2", "integral of y2 + z2, as published", above=0.0, default=None)
     ixx_improved: float = quantity("kg m2", "integral of y2 + z2, improved", above=0.0)
     iyy: float = quantity("kg m2", "integral of x2 + z2", above=0.0)
     izz: float = quantity("kg m2", "integral of x2 + y2", above=0.0)
@@ -41,10 +41,13 @@ class TrimmedBody:
         above=0.0,
         at_most=20.0,
         why="a body 400 times as stiff is rigid: flexible = false",
+        default=1.0,
     )
 
     def __post_init__(self) -> None:
         validate(self)
+        if self.inertia_variant == "published" and self.ixx_published is None:
+            raise ConfigurationError("TrimmedBody.ixx_published: missing; inertia_variant = published needs it")
         if self.flexible and self.superelement is None:
             raise ConfigurationError(
                 "TrimmedBody.superelement: missing; a flexible body needs a body design or a modal superelement, as "
@@ -54,4 +57,5 @@ class TrimmedBody:
     @property
     def ixx(self) -> float:
         """Ixx of the chosen variant [kg m2]."""
-        return self.ixx_published if self.inertia_variant == "published" else self.ixx_improved
+        given = self.ixx_published if self.inertia_variant == "published" else None
+        return self.ixx_improved if given is None else given

@@ -208,7 +208,7 @@ def _part(
         name=label,
         parent=parent,
         cog=i.cog(name, side),
-        numbers=i.get(Part, side, "parts", name),
+        numbers=i.body(name, side),
         side=SIDE_SIGN.get(side or "", 1.0),
         shape=i.template.parts[name].shape,
         points={point: i.point(point, side) for point in i.template.parts[name].points},

@@ -155,6 +155,23 @@ class Instance:
             return (self.typed[path][0], 0.0, self.typed[path][2])
         return mirrored(self.typed[path], SIDE_SIGN.get(own, 1.0))
 
+    def body(self, name: str, side: str | None) -> Part:
+        """Mass and inertia of a part, of a rod where no inertia is given; its frame is that of the right side.
+
+        Raises:
+            ConfigurationError: there is no inertia, and no rod between two points either.
+        """
+        numbers, points = self.get(Part, side, "parts", name), self.template.parts[name].points
+        if numbers.inertia is None and len(points) < 2:
+            raise ConfigurationError(
+                f"{self.name}.parts.{name}.inertia: missing; only a rod between two points has its own"
+            )
+        if numbers.inertia is not None:
+            return numbers
+        sign = SIDE_SIGN.get(side or "", 1.0)
+        start, end = (mirrored(self.point(point, side), sign) for point in points[:2])
+        return numbers.as_rod(start, end)
+
     def cog(self, name: str, side: str | None) -> Point:
         """Centre of gravity of a part [m]: the mean of its points, and its offset.
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.quantity import quantity, validate
+
+ROD_RADIUS = 0.01
+"""Radius [m] of a rod whose inertia is not given, assumed: as that of a steering or stabilizer rod."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -14,7 +18,13 @@ class Part:
     """A rigid part; its axes are those of the vehicle frame in the design position."""
 
     mass: float = quantity("kg", "mass", above=0.0)
-    inertia: Point = quantity("kg m2", "Ixx, Iyy, Izz about the part's own centre of gravity", above=0.0, length=3)
+    inertia: Point | None = quantity(
+        "kg m2",
+        "Ixx, Iyy, Izz about the part's own centre of gravity; by default those of a rod between its first two points",
+        above=0.0,
+        length=3,
+        default=None,
+    )
     products: Point = quantity(
         "kg m2", "integrals of x y, z x, y z about it, right side", length=3, default=(0.0, 0.0, 0.0)
     )
@@ -23,8 +33,26 @@ class Part:
     )
     offset: Point = quantity("m", "added to that mean; right side", length=3, default=(0.0, 0.0, 0.0))
 
+    def as_rod(self, start: Point, end: Point) -> Part:
+        """The part with the inertia of a rod, where none is given: m L2/12 + m r2/4 across it, m r2/2 about its axis.
+
+        Args:
+            start, end: of the rod, right side [m].
+        """
+        if self.inertia is not None:
+            return self
+        way = [b - a for a, b in zip(start, end, strict=True)]
+        square = sum(x * x for x in way)
+        across, along = self.mass * (square / 12.0 + ROD_RADIUS**2 / 4.0), self.mass * ROD_RADIUS**2 / 2.0
+        x, y, z = (each / math.sqrt(square) for each in way)
+        less = across - along
+        moments = (across - less * x * x, across - less * y * y, across - less * z * z)
+        return replace(self, inertia=moments, products=(less * x * y, less * z * x, less * y * z))
+
     def __post_init__(self) -> None:
         validate(self)
+        if self.inertia is None:
+            return
         a, b, c = sorted(self.inertia)
         if a + b < c * (1.0 - 1e-9):
             raise ConfigurationError(

@@ -54,7 +54,7 @@ def _parts(vehicle: Vehicle) -> None:
     for placed in vehicle.composition.parts:
         part, path = placed.numbers, placed.path
         _within(f"{path}.mass", part.mass, "kg", ENGINE_MASS if placed.shape == "engine" else PART_MASS)
-        for axis, moment in zip(AXES, part.inertia, strict=True):
+        for axis, moment in zip(AXES, part.inertia or (), strict=True):
             low, high, why = GYRATION
             limits = (part.mass * low**2, part.mass * high**2, f"{why}, at {part.mass:g} kg")
             _within(f"{path}.inertia.{axis}", moment, "kg m2", limits)
@@ -101,8 +101,11 @@ def _body(vehicle: Vehicle) -> None:
         low, high = min(point[index] for point in every), max(point[index] for point in every)
         why = "between the outermost hardpoints; a centre of gravity in metres lies inside the car"
         _within(f"body.cog.{axis}", body.cog[index], "m", (low, high, why))
-    for name in ("ixx_published", "ixx_improved", "iyy", "izz"):
+    moments = {name: getattr(body, name) for name in ("ixx_published", "ixx_improved", "iyy", "izz")}
+    for name, moment in moments.items():
+        if moment is None:
+            continue
         low, high, why = BODY_GYRATION
         far = sum(value**2 for value in body.cog)
         limits = (body.mass * low**2, body.mass * (high**2 + far), f"about the origin; {why}")
-        _within(f"body.{name}", getattr(body, name), "kg m2", limits)
+        _within(f"body.{name}", moment, "kg m2", limits)
