@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
-from vehicle.analysis.dependence import common_motion
+from vehicle.analysis.dependence import common_motions, what_moves
 from vehicle.analysis.frf import FrequencyResponse, frequency_responses
 from vehicle.analysis.input_floor import rounding_step
 from vehicle.analysis.local_rational import local_rational_responses
@@ -238,16 +238,19 @@ class Run:
         """The excited wheel; the right one where both are, the first of the signal where its plates stand still."""
         return (*self.recording.excited, *self.signal.wheels)[0]
 
-    def frf(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> FrequencyResponse:
+    def frf(
+        self, channels: Sequence[str] | None = None, *, window: float | None = None, wheel: str | None = None
+    ) -> FrequencyResponse:
         """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
 
-        Where both plates move independently, the FRF is that to the plate of `wheel` alone, the coherence that with
-        both; where they are copies without a delay, it is that to their common motion.
+        Where several plates move independently, the FRF is that to the plate of one wheel alone, the coherence that
+        with all; plates that are copies without a delay count as one, and the FRF is that to their common motion.
 
         Args:
             channels: names; all acceleration channels by default.
             window: None for the estimate without leakage from the whole record; a length [s] for the H1 estimate
                 of averaged Hann windows.
+            wheel: whose plate; `self.wheel` by default.
 
         Returns:
             The estimate; rows in the order of `channels`; NaN where the plate drives nothing.
@@ -265,27 +268,27 @@ class Run:
                 f"{self.signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that "
                 "moves one"
             )
-        plates = tuple(f"plate_{wheel}_displacement" for wheel in moving)
+        plates = tuple(f"plate_{one}_displacement" for one in moving)
         inputs = np.array([self.recording[plate] for plate in plates])
-        notes = []
+        notes, chosen = [], 0
+        if wheel is not None and wheel not in moving:
+            raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
         if len(plates) > 1:
-            together = common_motion(step, inputs, plates, FRF_BAND)
-            if together is None:
-                note = f"both plates move: the FRFs are those to {plates[0]} alone, the coherence is that with both"
-            else:
-                whose = "their common motion" if together == "alike" else f"{plates[0]} while both do"
-                note = f"both plates move {together}: the FRFs are those to {whose}"
-                inputs, plates, moving = inputs[:1], plates[:1], moving[:1]
-            notes.append(note)
+            groups = common_motions(step, inputs, plates, FRF_BAND)
+            asked = moving.index(wheel or moving[0])
+            chosen = next(number for number, group in enumerate(groups) if asked in group)
+            notes.append(what_moves(plates, groups, chosen))
+            kept = [next(iter(group)) for group in groups]
+            inputs, plates, moving = inputs[kept], tuple(plates[i] for i in kept), tuple(moving[i] for i in kept)
         if window is not None:
             found = frequency_responses(
                 step, inputs, responses, window_s=window, band=FRF_BAND, input_names=plates, names=names
-            )[0]
+            )[chosen]
         else:
-            rounding = [rounding_step(self.signal.displacement[wheel]) for wheel in moving]
+            rounding = [rounding_step(self.signal.displacement[one]) for one in moving]
             found = local_rational_responses(
                 step, inputs, responses, band=FRF_BAND, names=names, input_names=plates, rounding=rounding
-            )[0]
+            )[chosen]
         return dataclasses.replace(found, reasons=(*notes, *found.reasons))
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from vehicle.analysis.dependence import DependentInputsError, common_motion, copy_of, refuse_copies
+from vehicle.analysis.dependence import DependentInputsError, common_motions, copy_of, motion_words, refuse_copies
 
 RATE, SECONDS = 500.0, 30.0
 BAND = (1.0, 50.0)
@@ -32,26 +32,41 @@ def test_delayed_copies_are_refused_with_delay_and_factor(delay, factor):
     way = f"delayed by {delay:g} s" if delay > 0.0 else f"ahead by {-delay:g} s"
     assert f"fl is {factor:g} times fr, {way}" in str(refusal.value)
     with pytest.raises(DependentInputsError, match="times fr, "):
-        common_motion(1.0 / RATE, inputs, NAMES, BAND)
+        common_motions(1.0 / RATE, inputs, NAMES, BAND)
 
 
-def test_copies_without_delay_have_a_common_motion():
+def test_copies_without_delay_have_a_common_motions():
     one = displacement(1)
-    assert common_motion(1.0 / RATE, np.array([one, one]), NAMES, BAND) == "alike"
-    assert common_motion(1.0 / RATE, np.array([one, -one + 0.3]), NAMES, BAND) == "together, one -1 times the other"
+    for other, words in ((one, "alike"), (-one + 0.3, "together, one -1 times the other")):
+        assert [motion_words(group) for group in common_motions(1.0 / RATE, np.array([one, other]), NAMES, BAND)] == [
+            words
+        ]
+
+
+def test_four_plates_fall_into_their_groups():
+    """Front plates in roll, the rear ones of their own: three inputs; all four in pitch: one."""
+    one, other, third = (displacement(seed) for seed in (1, 2, 3))
+    names = ("fr", "fl", "rr", "rl")
+    groups = common_motions(1.0 / RATE, np.array([one, -one, other, third]), names, BAND)
+    assert [list(group) for group in groups] == [[0, 1], [2], [3]] and groups[0][1] == pytest.approx(-1.0)
+    (pitch,) = common_motions(1.0 / RATE, np.array([one, one, -one, -one]), names, BAND)
+    assert motion_words(pitch) == "together, 1, -1, -1 times the first"
+    late = np.roll(other, 40)
+    with pytest.raises(DependentInputsError, match=r"rl is 1 times rr, delayed by 0\.08 s"):
+        common_motions(1.0 / RATE, np.array([one, -one, other, late]), names, BAND)
 
 
 def test_a_filtered_copy_is_refused_without_a_factor():
     one = displacement(1)
     with pytest.raises(DependentInputsError, match="fl is a filtered fr"):
-        common_motion(1.0 / RATE, np.array([one, np.gradient(one) * RATE]), NAMES, BAND)
+        common_motions(1.0 / RATE, np.array([one, np.gradient(one) * RATE]), NAMES, BAND)
 
 
 @pytest.mark.parametrize("related", [0.0, 0.7, 0.9])
 def test_related_inputs_are_no_copies(related):
     one, other = displacement(1), displacement(2)
     inputs = np.array([one, np.sqrt(related) * one + np.sqrt(1.0 - related) * other])
-    assert common_motion(1.0 / RATE, inputs, NAMES, BAND) is None
+    assert len(common_motions(1.0 / RATE, inputs, NAMES, BAND)) == 2
     found = copy_of(1.0 / RATE, inputs[0], inputs[1], BAND)
     # 17 windowed lines are 11 independent ones: the median estimate of 0 is ln 2 / 11, and smaller above.
     assert found.coherence == pytest.approx(related, abs=0.1)

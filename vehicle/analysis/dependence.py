@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,33 +101,83 @@ def refuse_copies(time_step: float, inputs: Real, names: Sequence[str], band: tu
     Raises:
         DependentInputsError: with delay and factor.
     """
-    for i in range(len(names)):
-        for j in range(i + 1, len(names)):
-            found = copy_of(time_step, inputs[i], inputs[j], band)
-            if found.coherence < DEPENDENT:
-                continue
-            late = f", delayed by {found.delay:.4g} s" if found.delay > 0.0 else ""
-            early = f", ahead by {-found.delay:.4g} s" if found.delay < 0.0 else ""
-            how = "a filtered" if np.isnan(found.factor) else f"{found.factor:.4g} times"
-            raise DependentInputsError(
-                f"excitations: fully correlated inputs: {names[j]} is {how} {names[i]}{late}{early} "
-                f"(coherence {found.coherence:.4f}, allowed is below {DEPENDENT:g}), so their responses cannot be "
-                "separated; drive them with independent signals, or one of them alone",
-                found.delay,
-                found.factor,
-            )
+    for i, j in combinations(range(len(names)), 2):
+        found = copy_of(time_step, inputs[i], inputs[j], band)
+        if found.coherence >= DEPENDENT:
+            raise _refusal(names[i], names[j], found)
 
 
-def common_motion(time_step: float, inputs: Real, names: Sequence[str], band: tuple[float, float]) -> str | None:
-    """How inputs without delay move together; None where they are independent.
+def common_motions(
+    time_step: float, inputs: Real, names: Sequence[str], band: tuple[float, float]
+) -> list[dict[int, float]]:
+    """Inputs that move together without a delay, in groups; the groups are independent of each other.
+
+    Args:
+        time_step: [s].
+        inputs: samples, shape (p, n).
+        names: of the inputs, for messages.
+        band: frequencies that count [Hz].
+
+    Returns:
+        Groups in the order of their first inputs: index of each input to its factor, 1 of the first.
 
     Raises:
         DependentInputsError: one is a delayed or filtered copy, so there is no common motion either.
     """
-    try:
-        refuse_copies(time_step, inputs, names, band)
-    except DependentInputsError as error:
-        if error.delay != 0.0 or np.isnan(error.factor):
-            raise
-        return "alike" if abs(error.factor - 1.0) < ALIKE else f"together, one {error.factor:.4g} times the other"
-    return None
+    groups: list[dict[int, float]] = []
+    for j in range(len(names)):
+        for group in groups:
+            first = next(iter(group))
+            found = copy_of(time_step, inputs[first], inputs[j], band)
+            if found.coherence < DEPENDENT:
+                continue
+            if found.delay != 0.0 or np.isnan(found.factor):
+                raise _refusal(names[first], names[j], found)
+            group[j] = found.factor
+            break
+        else:
+            groups.append({j: 1.0})
+    return groups
+
+
+def motion_words(group: Mapping[int, float]) -> str:
+    """How the inputs of a group move: alike, or together with their factors."""
+    factors = list(group.values())[1:]
+    if all(abs(factor - 1.0) < ALIKE for factor in factors):
+        return "alike"
+    if len(factors) == 1:
+        return f"together, one {factors[0]:.4g} times the other"
+    return f"together, {', '.join(f'{factor:.4g}' for factor in factors)} times the first"
+
+
+def what_moves(names: Sequence[str], groups: Sequence[Mapping[int, float]], chosen: int) -> str:
+    """A sentence on plates that move at once, and what FRFs are to.
+
+    Args:
+        names: of the plates.
+        groups: as of `common_motions`.
+        chosen: number of the group that the FRFs are to.
+    """
+    group, first = groups[chosen], names[next(iter(groups[chosen]))]
+    subject, every = ("both plates move", "both") if len(names) == 2 else (f"{len(names)} plates move", "all")
+    if len(group) == 1:
+        return f"{subject}: the FRFs are those to {first} alone, the coherence is that with {every}"
+    if len(groups) > 1:
+        subject, every = f"{subject}, of them {', '.join(names[i] for i in group)}", "these"
+    together = motion_words(group)
+    return f"{subject} {together}: the FRFs are those to " + (
+        "their common motion" if together == "alike" else f"{first} while {every} do"
+    )
+
+
+def _refusal(first: str, second: str, found: Copy) -> DependentInputsError:
+    late = f", delayed by {found.delay:.4g} s" if found.delay > 0.0 else ""
+    early = f", ahead by {-found.delay:.4g} s" if found.delay < 0.0 else ""
+    how = "a filtered" if np.isnan(found.factor) else f"{found.factor:.4g} times"
+    return DependentInputsError(
+        f"excitations: fully correlated inputs: {second} is {how} {first}{late}{early} "
+        f"(coherence {found.coherence:.4f}, allowed is below {DEPENDENT:g}), so their responses cannot be "
+        "separated; drive them with independent signals, or one of them alone",
+        found.delay,
+        found.factor,
+    )

@@ -43,7 +43,7 @@ def vehicle_options(parser: argparse.ArgumentParser) -> None:
 
 
 def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
-    """Add --input, --wheel and --road: which plate moves, and how.
+    """Add --input, --wheel, --road and its numbers: which plates move, and how.
 
     Args:
         parser: of the command.
@@ -52,7 +52,6 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
     parser.add_argument(
         "--input",
         action="append" if several else "store",
-        required=True,
         metavar="FILE",
         help="CSV file, or the name of a shipped one: low.csv" + ("; may be repeated" if several else ""),
     )
@@ -61,7 +60,69 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
         choices=sorted(CORNERS),
         help="wheel of a plain displacement column; front_right by default",
     )
-    parser.add_argument("--road", action="store_true", help="accept levels beyond a shaker: a road, not a measurement")
+    parser.add_argument(
+        "--road",
+        nargs="?",
+        const="",
+        metavar="C|FILE.csv",
+        help="instead of --input, all wheels drive over a road: its class of ISO 8608, A to H, or a measured profile "
+        "(columns distance, left, right [m]); beside --input, alone: accept levels beyond a shaker",
+    )
+    road_options(parser)
+
+
+def road_options(parser: argparse.ArgumentParser) -> None:
+    """Add the numbers of a drive over a road; each is None where it is not given."""
+    group = parser.add_argument_group("a road")
+    group.add_argument("--speed", type=float, metavar="KM/H", help="speed of the car [km/h]")
+    group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
+    group.add_argument("--rate", type=float, metavar="HZ", help="samples a second; 1000 by default")
+    group.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
+    group.add_argument(
+        "--coherence",
+        type=float,
+        metavar="G",
+        help="of the tracks: 1 equal, 0 unrelated; isotropic plane by default",
+    )
+    group.add_argument(
+        "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m]; 0 by default"
+    )
+
+
+ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
+"""Options of `road_options`."""
+
+INPUT_CHOICES = ("wheel", "interpolate", "resample", "remove_mean")
+"""Options of a file of signals."""
+
+
+def drives_on_road(options: argparse.Namespace) -> bool:
+    """Whether a road moves the plates and not a file.
+
+    Args:
+        options: as of `signal_options`.
+
+    Raises:
+        ConfigurationError: neither or both are given, or options that belong to the other.
+    """
+    words = f"--road {options.road}"
+    if options.road:
+        if options.input:
+            raise ConfigurationError(
+                f"{words} beside --input: give one of them; --road alone accepts levels beyond a shaker"
+            )
+        for name in INPUT_CHOICES:
+            if getattr(options, name, None):
+                raise ConfigurationError(
+                    f"--{name.replace('_', '-')}: belongs to --input; {words} drives all wheels of the car"
+                )
+        return True
+    if not options.input:
+        raise ConfigurationError("needed is either --input FILE, or a road: --road C --speed 80")
+    for name in ROAD_NUMBERS:
+        if getattr(options, name) is not None:
+            raise ConfigurationError(f"--{name}: belongs to a road, as --road C --speed 80, and not to --input")
+    return False
 
 
 def output_options(parser: argparse.ArgumentParser, folder: Path | None, *, default: str = "") -> None:

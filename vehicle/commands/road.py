@@ -3,54 +3,37 @@
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from vehicle.commands.command_line import Parser, parse_and_run
-from vehicle.commands.options import FORCE_HELP, command_parser, message_options, vehicle_options
+from vehicle.commands.command_line import Parser, command
+from vehicle.commands.options import (
+    FORCE_HELP,
+    ROAD_NUMBERS,
+    command_parser,
+    message_options,
+    road_options,
+    vehicle_options,
+)
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
     from vehicle.excitation.iso_road import Side
-    from vehicle.excitation.signal import Signal
+    from vehicle.excitation.road_drive import RoadDrive
+    from vehicle.parameters.vehicle import Vehicle
 
 
 def parser() -> Parser:
     """The options of the command."""
     found = command_parser("road", "Plate signals of a car on a road: class and speed, or a measured profile.")
     vehicle_options(found)
+    found.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
+    found.add_argument("--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]")
     road_options(found)
     found.add_argument("--output", type=Path, metavar="FILE.csv", help="file of the signals; road.csv by default")
     found.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(found, quiet=True)
     return found
-
-
-def road_options(parser: argparse.ArgumentParser) -> None:
-    """Add what a road is made of."""
-    parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
-    parser.add_argument(
-        "--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]"
-    )
-    parser.add_argument("--speed", type=float, required=True, metavar="KM/H", help="speed [km/h]")
-    parser.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
-    parser.add_argument("--rate", type=float, default=1000.0, metavar="HZ", help="samples a second; 1000 by default")
-    parser.add_argument("--seed", type=int, default=1, metavar="N", help="one seed is one road; 1 by default")
-    parser.add_argument(
-        "--coherence",
-        type=float,
-        metavar="G",
-        help="of the tracks: 1 equal, 0 unrelated; isotropic plane by default",
-    )
-    parser.add_argument(
-        "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m]; 0 by default"
-    )
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return parse_and_run(parser(), _job, arguments)
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -60,55 +43,53 @@ def _job(options: argparse.Namespace) -> None:
     path = options.output or Path("road.csv")
     if path.exists() and not options.force:
         raise ConfigurationError(f"--output {path}: exists; give --force to replace it, or another name")
+    if (options.road_class is None) == (options.profile is None):
+        raise ConfigurationError("road: needed is either --class or --profile, one of them")
     vehicle = load_vehicle(options.vehicle, options.overrides)
-    signal = road_signal(options, vehicle)
+    road = options.road_class.upper() if options.profile is None else options.profile
+    signal = road_drive(road, options, vehicle).signal()
     write_signal(path, signal, [signal.source, f"wheels of {vehicle.name}"])
     if not options.quiet:
         sizes = ", ".join(f"{wheel} {1e3 * float(z.std()):.3g}" for wheel, z in signal.displacement.items())
         print(f"{path}: {signal.source}; {signal.duration:g} s; RMS [mm] {sizes}")
 
 
-def road_signal(options: argparse.Namespace, vehicle: Any) -> Signal:
-    """The plate signals that the options ask for.
-
-    Args:
-        options: as of `road_options`.
-        vehicle: the car; tells where its wheels are.
+def class_or_profile(text: str) -> str | Path:
+    """What --road of other commands names: a class, or the file of a profile.
 
     Raises:
-        ConfigurationError: options that do not go together, or out of range.
-        DataError: as of `read_road`.
+        ConfigurationError: it is neither.
     """
-    from vehicle.excitation.iso_road import CLASSES as LEVELS
-    from vehicle.excitation.iso_road import IsoRoad, drive
-    from vehicle.excitation.measured_road import read_road
+    if len(text) > 1 and not Path(text).is_file():
+        raise ConfigurationError(f"--road {text}: no class of ISO 8608 (A to H), and no file of a measured profile")
+    return text.upper() if len(text) == 1 else Path(text)
 
-    if (options.road_class is None) == (options.profile is None):
-        raise ConfigurationError("road: needed is either --class or --profile, one of them")
-    if not (math.isfinite(options.speed) and 0.0 < options.speed <= 400.0):
-        raise ConfigurationError(f"--speed {options.speed:g} km/h: allowed above 0 to 400")
+
+def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) -> RoadDrive:
+    """The drive that the options ask for, with the wheels where the car has them.
+
+    Args:
+        road: class of ISO 8608, or the file of a profile.
+        options: as of `road_options`.
+        vehicle: the car.
+
+    Raises:
+        ConfigurationError: no speed, or as of `RoadDrive`.
+    """
+    from vehicle.excitation.road_drive import RoadDrive
+
+    if options.speed is None:
+        raise ConfigurationError("a road needs --speed KM/H, as --speed 80")
     wheels = vehicle.composition.wheels
     foremost = min(wheel.center[0] for wheel in wheels)
     side: dict[bool, Side] = {True: "right", False: "left"}
-    places = {wheel.name: (wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels}
-    speed, duration = options.speed / 3.6, options.duration
-    if options.profile is not None:
-        for name in ("coherence", "patch"):
-            if getattr(options, name) is not None:
-                raise ConfigurationError(f"--{name}: belongs to --class; a measured profile is taken as it is")
-        profile = read_road(options.profile)
-        if duration is None:
-            duration = math.floor(profile.length / speed * options.rate) / options.rate
-        return drive(profile, speed=speed, wheels=places, duration=duration, rate=options.rate)
-    letter = options.road_class.upper()
-    if letter not in LEVELS:
-        raise ConfigurationError(f"--class {options.road_class!r}: allowed are {', '.join(LEVELS)}, from good to poor")
-    track = 2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels)
-    road = IsoRoad(
-        level=LEVELS[letter],
-        seed=options.seed,
-        track=track,
-        coherence=options.coherence,
-        patch=options.patch or 0.0,
+    numbers = {name: value for name in ROAD_NUMBERS if (value := getattr(options, name)) is not None}
+    return RoadDrive(
+        road=road,
+        wheels=tuple((wheel.name, wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels),
+        track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
+        **numbers,
     )
-    return drive(road, speed=speed, wheels=places, duration=60.0 if duration is None else duration, rate=options.rate)
+
+
+main = command(parser, _job)

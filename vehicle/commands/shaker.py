@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
 from vehicle.commands.options import (
     command_parser,
+    drives_on_road,
     engine_option,
     message_options,
     output_options,
@@ -26,9 +28,9 @@ if TYPE_CHECKING:
 
 def parser() -> Parser:
     """The options of the command."""
-    found = command_parser("shaker", "Put a shaker signal under one wheel of the complete car.")
+    found = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
     signal_options(found)
-    output_options(found, None, default="runs/<input stem> by default")
+    output_options(found, None, default="runs/<input stem>, or runs/road_C_80, by default")
     vehicle_options(found)
     engine_option(found, "mujoco")
     found.add_argument("--timestep", type=float, metavar="S", help="step of the integration [s]")
@@ -57,9 +59,18 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.excitation.signal_file import read_signal
     from vehicle.output.folder import check_output, output_folder
 
-    source = find_input(options.input)
-    output = options.output or Path("runs") / source.stem
-    inputs = (source,) if options.vehicle is None else (source, options.vehicle)
+    drive = None
+    if drives_on_road(options):
+        from vehicle.commands.road import class_or_profile, road_drive
+        from vehicle.parameters.vehicle import load_vehicle
+
+        drive = road_drive(class_or_profile(options.road), options, load_vehicle(options.vehicle, options.overrides))
+        source, stem = drive.road, drive.name
+    else:
+        source = find_input(options.input)
+        stem = source.stem
+    output = options.output or Path("runs") / stem
+    inputs = tuple(path for path in (source, options.vehicle) if isinstance(path, Path))
     check_output(output, force=options.force, protect=inputs)
     _check_numbers(options)
     engine, reason = _engine(options)
@@ -67,7 +78,7 @@ def _job(options: argparse.Namespace) -> None:
     if options.video is not None:
         from vehicle.rendering.backend import require_film
 
-        video_name = _film_path(options, source, output)
+        video_name = _film_path(options, stem, output)
         require_film()
     overrides = list(options.overrides)
     if options.timestep is not None:
@@ -78,18 +89,24 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.output.run_files import require_plates, save_last_state, write_run
 
     car = Car.load(options.vehicle, overrides)
-    signal = read_signal(
-        source,
-        wheel=CORNERS[options.wheel or "front_right"],
-        interpolate=options.interpolate,
-        resample_hz=options.resample,
-        remove_mean=options.remove_mean,
-        accept_implausible=options.road,
-    )
-    _check_signal(options, source, signal)
+    if drive is None:
+        signal = read_signal(
+            source,
+            wheel=CORNERS[options.wheel or "front_right"],
+            interpolate=options.interpolate,
+            resample_hz=options.resample,
+            remove_mean=options.remove_mean,
+            accept_implausible=options.road is not None,
+        )
+    else:
+        signal = drive.signal()
+    _check_signal(options, signal)
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
     car.check(engine)
-    require_plates(signal)
+    if options.road is None:
+        require_plates(signal)
+    road = None if drive is None else drive.summary(signal)
+    signal = signal if drive is None else replace(signal, source=drive.name)
     with output_folder(output, force=options.force, protect=inputs) as folder:
         try:
             run = car.run(signal, ProgressLine("simulation", enabled=not options.quiet), engine=engine)
@@ -105,6 +122,7 @@ def _job(options: argparse.Namespace) -> None:
                 duration=options.video_duration,
                 slow=options.slow_motion,
                 exaggeration=options.exaggeration,
+                speed=None if drive is None else drive.speed / 3.6,
             )
             film(run, path, take, progress=ProgressLine("film      ", enabled=not options.quiet))
 
@@ -113,17 +131,18 @@ def _job(options: argparse.Namespace) -> None:
             run,
             time_format=options.time_format,
             engine_reason=reason,
+            road=road,
             video=None if video_name is None else (video_name, make_film),
         )
     if not options.quiet:
         print(report(summary, output))
 
 
-def _check_signal(options: argparse.Namespace, source: Path, signal: Signal) -> None:
+def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
     """Refuse a wheel that the file names itself, and an excerpt outside the record."""
     if options.wheel is not None and len(signal.wheels) > 1:
         raise ConfigurationError(
-            f"--wheel {options.wheel}: {source} names the wheels of its columns; leave --wheel out"
+            f"--wheel {options.wheel}: {options.input} names the wheels of its columns; leave --wheel out"
         )
     if options.video_start is not None:
         latest = signal.duration - options.video_duration / options.slow_motion
@@ -157,11 +176,11 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
     return "mujoco", why
 
 
-def _film_path(options: argparse.Namespace, source: Path, output: Path) -> Path:
+def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
     """Where the film goes: a plain name lies in the folder of the run."""
     from vehicle.output.folder import check_film
 
-    name = Path(options.video) if options.video else Path(f"{source.stem}.mp4")
+    name = Path(options.video) if options.video else Path(f"{stem}.mp4")
     if name.suffix != ".mp4":
         raise ConfigurationError(f"--video {name}: a film is written as .mp4; give FILE.mp4")
     if name.parent == Path():

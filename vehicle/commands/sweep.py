@@ -11,6 +11,7 @@ from pathlib import Path
 from vehicle.commands.command_line import Parser, ProgressLine, command
 from vehicle.commands.options import (
     command_parser,
+    drives_on_road,
     engine_option,
     jobs_option,
     message_options,
@@ -62,7 +63,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.excitation.input_files import find_input
     from vehicle.output.folder import prepare_folder
     from vehicle.parameters.vehicle import load_vehicle
-    from vehicle.sweeps.case import SignalFile, signal_of, table_cases
+    from vehicle.sweeps.case import Input, SignalFile, signal_of, table_cases
     from vehicle.sweeps.executors import executor_factory
     from vehicle.sweeps.measure import ComfortMeasure
     from vehicle.sweeps.store import ROWS
@@ -72,13 +73,17 @@ def _job(options: argparse.Namespace) -> None:
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
     paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
-    load_vehicle(options.vehicle, options.overrides)
+    vehicle = load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
-    wheel = CORNERS[options.wheel or "front_right"]
-    inputs = [
-        SignalFile(path=find_input(name).resolve(), wheel=wheel, accept_implausible=options.road)
-        for name in options.input
-    ]
+    inputs: list[Input] = []
+    if drives_on_road(options):
+        from vehicle.commands.road import class_or_profile, road_drive
+
+        inputs.append(road_drive(class_or_profile(options.road), options, vehicle))
+    else:
+        wheel, levels = CORNERS[options.wheel or "front_right"], options.road is not None
+        paths_of = [find_input(name).resolve() for name in options.input]
+        inputs += [SignalFile(path=path, wheel=wheel, accept_implausible=levels) for path in paths_of]
     for source in inputs:
         duration = signal_of(source).duration
         if not 0.0 <= options.skip < duration:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vehicle.analysis.comfort import settling
-from vehicle.analysis.dependence import common_motion
+from vehicle.analysis.dependence import DependentInputsError, common_motions
 from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonances
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
-from vehicle.errors import SimulationError
+from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.names import AXES
@@ -39,9 +39,14 @@ def require_plates(signal: Signal) -> None:
     Raises:
         DataError: naming the plates and the delay.
     """
-    if len(signal.wheels) > 1 and all(signal.rms(wheel) > 0.0 for wheel in signal.wheels):
-        plates = np.array([signal.displacement[wheel] for wheel in signal.wheels])
-        common_motion(signal.timestep, plates, [f"plate {wheel}" for wheel in signal.wheels], FRF_BAND)
+    moving = [wheel for wheel in signal.wheels if signal.rms(wheel) > 0.0]
+    if len(moving) < 2:
+        return
+    plates = np.array([signal.displacement[wheel] for wheel in moving])
+    try:
+        common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], FRF_BAND)
+    except DependentInputsError as error:
+        raise DataError(f"{error}; or give --road for a run without FRFs") from None
 
 
 def write_run(
@@ -50,6 +55,7 @@ def write_run(
     *,
     time_format: str = "npz",
     engine_reason: str = "",
+    road: Mapping[str, object] | None = None,
     video: tuple[Path, Callable[[Path], None]] | None = None,
 ) -> dict[str, Any]:
     """Write all files of a finished run.
@@ -59,6 +65,7 @@ def write_run(
         run: the run.
         time_format: "npz" or "csv".
         engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
+        road: what the summary says of the road; on one, FRFs that cannot be had are left out with a notice.
         video: name of the film, or a path of its own, and what writes it.
 
     Returns:
@@ -67,22 +74,21 @@ def write_run(
     Raises:
         VehicleError: a file cannot be made or written.
     """
-    response, channels = run.frf(), run.car.vehicle.acceleration_channels
-    files = {
-        "summary": "summary.json",
-        "vehicle": "vehicle.toml",
-        "time": f"time.{time_format}",
-        "frf": "frf.csv",
-        "frf_plot": "frf.png",
-        "time_plot": "time.png",
-    }
+    channels = run.car.vehicle.acceleration_channels
+    response, missing = _frf(run, DependentInputsError if road is None else DataError)
+    files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
+    if response is not None:
+        files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
+    files["time_plot"] = "time.png"
     header = f"parameters of this run, as used\nframe: {FRAME}"
     write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, FRAME))
-    write_whole(folder / "frf.csv", lambda path: write_frf(path, response, channels, FRAME))
-    caption = _caption(run, response)
-    write_whole(folder / "frf.png", lambda path: plot_frf(path, run, response, caption))
+    if response is not None:
+        found = response
+        write_whole(folder / "frf.csv", lambda path: write_frf(path, found, channels, FRAME))
+        caption = _caption(run, found)
+        write_whole(folder / "frf.png", lambda path: plot_frf(path, run, found, caption))
     write_whole(folder / "time.png", lambda path: plot_time(path, run))
     if video is not None:
         name, make = video
@@ -90,8 +96,18 @@ def write_run(
         files["video"] = str(name)
     summary = summarise(run, response, files)
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
+    summary["input"]["road"] = None if road is None else dict(road)
+    summary["notices"] += missing
     write_json(folder / "summary.json", summary)
     return summary
+
+
+def _frf(run: Run, accepted: type[DataError]) -> tuple[FrequencyResponse | None, list[str]]:
+    """FRFs of a run; none, and a notice, where they fail in a way that is accepted."""
+    try:
+        return run.frf(), []
+    except accepted as error:
+        return None, [f"no FRFs: {error}"]
 
 
 def save_last_state(error: SimulationError, output: Path) -> SimulationError:
@@ -120,12 +136,12 @@ def save_last_state(error: SimulationError, output: Path) -> SimulationError:
     return SimulationError(f"{error}; last good state (t = {float(state['time']):.3f} s): {path}")
 
 
-def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> dict[str, Any]:
+def summarise(run: Run, response: FrequencyResponse | None, files: dict[str, str]) -> dict[str, Any]:
     """Content of `summary.json`.
 
     Args:
         run: finished run.
-        response: its FRFs of all acceleration channels.
+        response: its FRFs of all acceleration channels; None where there are none.
         files: kind of file to its name.
 
     Returns:
@@ -139,7 +155,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
         *([body.report] if body.repaired else []),
         *idle,
         *run.signal.notices,
-        *response.reasons,
+        *(response.reasons if response else ()),
         *_unsettled(run),
         *statistics.notices,
     ]
@@ -187,7 +203,8 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
             "dissipated_j": energies.dissipated if energies else None,
             "stored_j": energies.stored if energies else None,
         },
-        "frf": {
+        "frf": response
+        and {
             "estimator": response.estimator,
             "window": response.window,
             "resolution_hz": response.resolution_hz,
@@ -198,7 +215,7 @@ def summarise(run: Run, response: FrequencyResponse, files: dict[str, str]) -> d
     }
 
 
-def _peaks(response: FrequencyResponse, channels: Sequence[str]) -> dict[str, list[dict[str, float | None]]]:
+def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> dict[str, list[dict[str, float | None]]]:
     """Resonance peaks of every acceleration channel."""
     return {
         channel: [
@@ -208,7 +225,7 @@ def _peaks(response: FrequencyResponse, channels: Sequence[str]) -> dict[str, li
                 "coherence": peak.coherence,
                 "random_error": peak.random_error,
             }
-            for peak in resonances(response, row)
+            for peak in (resonances(response, row) if response else ())
         ]
         for row, channel in enumerate(channels)
     }

@@ -56,6 +56,8 @@ class Take:
     """how many times slower than the record, at least 1"""
     exaggeration: float | None = None
     """factor of all motion; where it is not given, the largest displacement becomes 5 to 8 cm"""
+    speed: float | None = None
+    """speed on the road [m/s], which then passes under the wheels; None on a rig"""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.duration < np.inf:

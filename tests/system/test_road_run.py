@@ -1,0 +1,88 @@
+"""A car on a road by the main job: the same plates as the road command, what the summary says, what is refused."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from vehicle.commands.road import main as road
+from vehicle.commands.sweep import main as sweep
+from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal, write_signal
+from vehicle.output.written_files import MARKER
+
+
+def test_the_run_meets_the_road_of_the_road_command(shaker, tmp_path):
+    numbers = ["--speed", "80", "--duration", "6", "--seed", "3", "--coherence", "0.5", "--patch", "0.1"]
+    outcome = shaker("--road", "b", *numbers, "--engine", "reduced")
+    assert outcome.code == 0, outcome.err
+    folder = tmp_path / "runs" / "road_B_80"
+    summary = json.loads((folder / "summary.json").read_text())
+    said = summary["input"]["road"]
+    assert {key: said[key] for key in ("class", "profile", "speed_kmh", "seed", "coherence", "contact_patch_m")} == {
+        "class": "B",
+        "profile": None,
+        "speed_kmh": 80.0,
+        "seed": 3,
+        "coherence": 0.5,
+        "contact_patch_m": 0.1,
+    }
+    assert "G(0.1 cycles/m) = 6.4e-05 m3" in said["words"] and "80 km/h" in said["words"]
+    assert summary["input"]["file"] == "road_B_80" and summary["input"]["plate_rms_m"]["fl"] > 0.0
+    assert road(["--class", "B", *numbers, "--quiet"]) == 0
+    written = read_signal("road.csv", accept_implausible=True)
+    with np.load(folder / "time.npz") as arrays:
+        for wheel in ("fr", "fl"):
+            # Seven digits in the file; the integrator's steps are the samples of the road.
+            np.testing.assert_allclose(arrays[f"plate_{wheel}_displacement"], written.displacement[wheel], atol=2e-8)
+
+
+def test_plates_that_follow_later_run_on_a_road_without_frfs(shaker, tmp_path):
+    """One track, one behind the other: no FRF can be had, everything else can."""
+    time = np.arange(8001) / 1000.0
+    wave = np.random.default_rng(1).normal(size=(9001,)).cumsum() * 2e-5
+    wave *= np.minimum(np.arange(9001) / 1000.0, 1.0)
+    plates = {"fr": wave[1000:] - wave[1000], "fl": wave[:8001]}
+    write_signal(tmp_path / "late.csv", Signal(time=time, displacement=plates))
+    assert "or give --road for a run without FRFs" in shaker("--input", "late.csv").err
+    outcome = shaker("--input", "late.csv", "--road", "--engine", "reduced")
+    assert outcome.code == 0, outcome.err
+    folder = tmp_path / "runs" / "late"
+    files = {"summary.json", "vehicle.toml", "time.npz", "time.png"}
+    assert {path.name for path in folder.iterdir()} == files | {MARKER}
+    summary = json.loads((folder / "summary.json").read_text())
+    assert set(summary["files"].values()) == files and summary["frf"] is None and summary["input"]["road"] is None
+    assert "no FRFs: excitations: fully correlated inputs: plate_fl_displacement" in outcome.out
+    assert not any(summary["peaks"].values())
+    assert summary["comfort"]["seat_rail"]["rms_2_50_hz"]["z"] > 0.0
+
+
+def test_a_sweep_drives_over_a_road(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    arguments = ["--road", "A", "--speed", "100", "--duration", "4", "--vary", "damper.coulomb_friction=20,90"]
+    assert sweep([*arguments, "--engine", "reduced", "--output", "out", "--quiet"]) == 0
+    table = (tmp_path / "out" / "table.csv").read_text(encoding="utf-8")
+    assert table.count("road_A_100") == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "needed is either --input FILE, or a road: --road C --speed 80"),
+        (["--road"], "needed is either --input FILE, or a road"),
+        (["--road", "C"], "a road needs --speed KM/H"),
+        (["--road", "Z", "--speed", "80"], "road class 'Z': allowed are A, B"),
+        (["--road", "none.csv", "--speed", "80"], "--road none.csv: no class of ISO 8608 (A to H), and no file"),
+        (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C beside --input: give one of them"),
+        (["--road", "C", "--speed", "80", "--wheel", "front_left"], "--wheel: belongs to --input; --road C drives all"),
+        (["--road", "C", "--speed", "80", "--remove-mean"], "--remove-mean: belongs to --input"),
+        (["--input", "low.csv", "--speed", "80"], "--speed: belongs to a road, as --road C --speed 80"),
+        (["--input", "low.csv", "--road", "--seed", "2"], "--seed: belongs to a road"),
+    ],
+)
+def test_refusals(shaker, tmp_path, arguments, message):
+    outcome = shaker(*arguments)
+    assert outcome.code == 2 and message in outcome.err
+    assert not (tmp_path / "runs").exists()
