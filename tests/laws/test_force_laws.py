@@ -151,9 +151,9 @@ BAD = [
     (
         Coulomb,
         {"friction_limit": "much", "smoothing": 1e5},
-        "Coulomb.friction_limit: found 'much', needed are numbers [N]",
+        "Coulomb.friction_limit: found 'much', needed is a number [N]",
     ),
-    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "Coulomb.friction_limit: found True, needed are numbers [N]"),
+    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "Coulomb.friction_limit: found True, needed is a number [N]"),
     (
         Degressive,
         {"low_damping": 1.0, "high_damping": 1.0, "knee_velocity": -0.1},

@@ -209,6 +209,7 @@ BAD = [
         "no parameter mount.stifness; the nearest is mount.stiffness",
     ),
     ({"damper": "stuck"}, "damper: found 'stuck', allowed are slip, stick, friction"),
+    ({"damper": "friction", "friction": "stick"}, "friction: found 'stick', allowed are coulomb, stribeck"),
     ({"damper": "slip", "engine": "diesel"}, "engine: found 'diesel', allowed are none, linear, elastomer"),
     ({"damper": "slip", "degressive": True}, "degressive: needs damper='friction', found damper='slip'"),
 ]
@@ -219,6 +220,22 @@ def test_bad_compositions_are_refused_by_name(parts, message):
     with pytest.raises(ConfigurationError) as caught:
         quarter_car(CAR, **parts)
     assert str(caught.value) == message
+
+
+def test_the_friction_law_is_chosen_by_its_word():
+    numbers = {
+        "limit": 60.0,
+        "steepness": 1e6,
+        "static_limit": 90.0,
+        "stribeck_velocity": 0.02,
+        "stribeck_exponent": 1.5,
+    }
+    vary = {f"friction.{name}": value for name, value in numbers.items()}
+    (pair,) = quarter_car(CAR, damper="friction", friction="stribeck", vary=vary).slides
+    speed = np.array([0.002, 0.02, 0.2])
+    # Equation 3.2 with the arc tangent of equation 2.4.
+    expected = (60.0 + 30.0 * np.exp(-((speed / 0.02) ** 1.5))) * (2.0 / np.pi) * np.arctan(1e6 * speed)
+    np.testing.assert_allclose(pair.friction.force(speed), expected, rtol=1e-14)
 
 
 def test_stacks_of_different_length_are_refused():

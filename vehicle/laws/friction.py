@@ -14,9 +14,7 @@ Source: Bommer 2006, equations 2.4 and 3.2.
 
 from __future__ import annotations
 
-import dataclasses
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,8 +22,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.compiler import jitable
-from vehicle.laws.law import Numbers, validate
-from vehicle.parameters.quantity import quantity
+from vehicle.laws.law import Numbers
+from vehicle.parameters.quantity import quantity, validate
 
 Array = npt.NDArray[np.float64]
 
@@ -50,13 +48,14 @@ class Friction(ABC):
     def fall_at(velocity: Any, numbers: Any) -> Any:
         """v dL/dv [N] at a velocity [m/s]."""
 
-    def numbers(self) -> Mapping[str, Numbers]:
-        """Numbers of the law by their names."""
-        return {entry.name: getattr(self, entry.name) for entry in dataclasses.fields(self)}
+    def __getitem__(self, name: str) -> Numbers:
+        """A number of the law by its name, as of a record."""
+        found: Numbers = getattr(self, name)
+        return found
 
     def limit(self, velocity: Numbers) -> Array:
         """Friction limit L [N] at a velocity [m/s]."""
-        return np.asarray(self.limit_at(velocity, self.numbers()), dtype=float)
+        return np.asarray(self.limit_at(velocity, self), dtype=float)
 
     def force(self, velocity: Numbers) -> Array:
         """Force [N] at a velocity [m/s]."""
@@ -70,7 +69,7 @@ class Friction(ABC):
         moving = v != 0.0
         ratio = np.where(moving, np.arctan(scaled) / np.where(moving, v, 1.0), self.smoothing)
         rising = self.limit(v) * self.smoothing / (1.0 + scaled * scaled)
-        return np.asarray((2.0 / np.pi) * (self.fall_at(v, self.numbers()) * ratio + rising))
+        return np.asarray((2.0 / np.pi) * (self.fall_at(v, self) * ratio + rising))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,7 +86,7 @@ class Clamped:
     def slope(self, velocity: Numbers) -> Array:
         """Derivative d F / d v [N s/m]: that of c v where the force is below its limit, of the limit elsewhere."""
         v, limit = np.asarray(velocity, dtype=float), self.law.limit(velocity)
-        fall, steep = self.law.fall_at(v, self.law.numbers()), slope_at_rest(1.0, self.law.smoothing)
+        fall, steep = self.law.fall_at(v, self.law), slope_at_rest(1.0, self.law.smoothing)
         inside = steep * np.abs(v) < 1.0
         return np.asarray(np.where(inside, steep * (limit + fall), fall / np.where(inside, 1.0, np.abs(v))))
 

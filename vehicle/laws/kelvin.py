@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.laws.law import Numbers, validate
-from vehicle.parameters.quantity import quantity
+from vehicle.laws.law import Numbers
+from vehicle.parameters.quantity import quantity, validate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

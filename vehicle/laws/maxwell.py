@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.laws.law import Numbers, validate
-from vehicle.parameters.quantity import quantity
+from vehicle.laws.law import Numbers
+from vehicle.parameters.quantity import quantity, validate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.laws.kelvin import Kelvin
-from vehicle.laws.law import Numbers, check
+from vehicle.laws.law import Numbers
 from vehicle.laws.maxwell import Maxwell
+from vehicle.parameters.quantity import check, quantity
 
 
 def in_series(local_stiffness: Numbers, element: Kelvin | Maxwell) -> Maxwell:
@@ -27,8 +28,7 @@ def in_series(local_stiffness: Numbers, element: Kelvin | Maxwell) -> Maxwell:
     Raises:
         ConfigurationError: a local stiffness that is not a finite number above zero.
     """
-    limits = {"unit": "N/m", "meaning": "stiffness of the attachment", "above": 0.0, "at_least": None, "at_most": None}
-    check("local_stiffness", local_stiffness, limits)
+    check("local_stiffness", local_stiffness, quantity("N/m", "stiffness of the attachment", above=0.0).metadata)
     local = np.asarray(local_stiffness, dtype=float)
     static = np.asarray(element.stiffness)
     share = local / (local + static)

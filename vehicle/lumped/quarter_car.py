@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Literal
 
 import numpy as np
 
 from vehicle.errors import ConfigurationError
-from vehicle.laws.coulomb import Coulomb
+from vehicle.laws.damper import FRICTION
 from vehicle.laws.degressive import Degressive
 from vehicle.laws.kelvin import Kelvin
-from vehicle.laws.law import ForceLaw, Numbers, check
+from vehicle.laws.law import ForceLaw, Numbers
 from vehicle.laws.maxwell import Maxwell
 from vehicle.laws.series import in_series
 from vehicle.linear.parts import ROAD, Link, Mass, Network
 from vehicle.linear.system import Row, Slide
 from vehicle.parameters.paths import full_path, quantity_of
+from vehicle.parameters.quantity import check
 from vehicle.parameters.quarter_car import QuarterCar
 from vehicle.parameters.toml_file import as_table
+
+PUBLISHED = {"friction_limit": "limit", "smoothing": "steepness"}
+"""Names of the source for numbers of a friction law."""
 
 
 def quarter_car(
     car: QuarterCar,
     *,
     damper: Literal["slip", "stick", "friction"],
+    friction: str = "coulomb",
     engine: Literal["none", "linear", "elastomer"] = "none",
     degressive: bool = False,
     strut: bool = False,
@@ -55,6 +60,7 @@ def quarter_car(
     Args:
         car: the parameters.
         damper: how the shock absorber is modelled.
+        friction: word of its law in `vehicle.laws.damper.FRICTION`, with damper="friction".
         engine: engine mass on a linear mount or on the elastomer.
         degressive: degressive damper in place of the viscous one; needs damper="friction".
         strut: put the suspension at the angle of the strut.
@@ -71,6 +77,8 @@ def quarter_car(
     """
     if damper not in ("slip", "stick", "friction"):
         raise ConfigurationError(f"damper: found {damper!r}, allowed are slip, stick, friction")
+    if friction not in FRICTION:
+        raise ConfigurationError(f"friction: found {friction!r}, allowed are {', '.join(FRICTION)}")
     if engine not in ("none", "linear", "elastomer"):
         raise ConfigurationError(f"engine: found {engine!r}, allowed are none, linear, elastomer")
     if degressive and damper != "friction":
@@ -112,20 +120,21 @@ def quarter_car(
         sliding = {**axis, "mount": 1.0}
         if not degressive:
             links.append(Link(row=sliding, law=Kelvin(stiffness=0.0, damping=value("damper.damping"))))
-        friction = Coulomb(friction_limit=value("friction.limit"), smoothing=value("friction.steepness"))
+        names = [(one.name, PUBLISHED.get(one.name, one.name)) for one in fields(FRICTION[friction])]
+        law = FRICTION[friction](**{name: value(f"friction.{own}") for name, own in names})
         bent = Degressive(
             low_damping=value("degressive.low_damping"),
             high_damping=value("damper.damping"),
             knee_velocity=value("degressive.knee_velocity"),
         )
-        slides = (Slide(row=sliding, friction=friction, viscous=bent if degressive else None),)
+        slides = (Slide(row=sliding, friction=law, viscous=bent if degressive else None),)
     if engine != "none":
         coordinates.append("engine")
         outputs["engine"] = {"engine": 1.0}
         masses.append(Mass(mass=value("engine.mass"), axes=({"engine": 1.0},)))
         linear = Kelvin(stiffness=value("engine_mount.stiffness"), damping=value("engine_mount.damping"))
-        law = linear if engine == "linear" else elastomer(car, vary)
-        links.append(Link(row={"engine": 1.0, "body": -1.0}, law=law))
+        mounted = linear if engine == "linear" else elastomer(car, vary)
+        links.append(Link(row={"engine": 1.0, "body": -1.0}, law=mounted))
     if small_mass:
         coordinates.append("small_mass")
         outputs["small_mass"] = {"small_mass": 1.0}

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import re
 import typing
 from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
@@ -73,7 +74,7 @@ def validate(instance: Any, where: str = "") -> None:
         if "unit" not in entry.metadata:
             continue
         value = getattr(instance, entry.name)
-        _check(f"{place}.{entry.name}", value, entry.metadata)
+        check(f"{place}.{entry.name}", value, entry.metadata)
 
 
 class Validated:
@@ -85,14 +86,24 @@ class Validated:
         validate(self)
 
 
-def _check(path: str, value: Any, metadata: Any) -> None:
-    """Check one value against the metadata of its field."""
+def check(path: str, value: Any, metadata: Any) -> None:
+    """Check one value against the metadata of its field.
+
+    Args:
+        path: name shown in the message.
+        value: number, array of numbers, vector, word or words.
+        metadata: as made by `quantity`.
+
+    Raises:
+        ConfigurationError: naming the path, the value found (the first bad one of an array) and what is allowed.
+    """
     if metadata["choices"] is not None:
         if value not in metadata["choices"]:
             raise ConfigurationError(f"{path}: found {value!r}, allowed are {', '.join(metadata['choices'])}")
         return
     names = (value,) if isinstance(value, str) else value
-    if isinstance(names, tuple) and names and all(isinstance(name, str) for name in names):
+    texts = isinstance(names, tuple) and names and all(isinstance(name, str) for name in names)
+    if texts and metadata["unit"] == "-":
         for name in names:
             if not NAME_PATTERN.fullmatch(name):
                 raise ConfigurationError(f"{path}: found {name!r}, allowed are names of letters, digits, '_', '.', '-'")
@@ -112,19 +123,24 @@ def _check(path: str, value: Any, metadata: Any) -> None:
 
 
 def _check_number(path: str, number: Any, metadata: Any) -> None:
-    """Check one number against the range of its field."""
-    unit = metadata["unit"]
-    why = f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""  # a negative mass needs no reason
-    if isinstance(number, bool) or not isinstance(number, int | float):
+    """Check a number, or all numbers of an array, against the range of its field."""
+    unit, values = metadata["unit"], np.asarray(number)
+    if values.dtype.kind not in "iuf":
         raise ConfigurationError(f"{path}: found {number!r}, needed is a number [{unit}]")
-    if not math.isfinite(number):
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, needed is a finite number ({metadata['meaning']})")
-    if metadata["above"] is not None and not number > metadata["above"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be greater than {metadata['above']!r}")
-    if metadata["at_least"] is not None and number < metadata["at_least"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {metadata['at_least']!r}{why}")
-    if metadata["at_most"] is not None and number > metadata["at_most"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {metadata['at_most']!r}{why}")
+    above, least, most = metadata["above"], metadata["at_least"], metadata["at_most"]
+    ranges = (
+        (np.isfinite(values), f", needed is a finite number ({metadata['meaning']})"),
+        (above is None or values > above, f", must be greater than {above!r}"),
+        (least is None or values >= least, f", must be at least {least!r}"),
+        (most is None or values <= most, f", must be at most {most!r}"),
+    )
+    for allowed, words in ranges:
+        if np.all(allowed):
+            continue
+        bad = number if values.ndim == 0 else float(values[~allowed].flat[0])
+        # A negative mass needs no reason.
+        why = f" ({metadata['why']})" if metadata["why"] and bad >= 0.0 and "at " in words else ""
+        raise ConfigurationError(f"{path}: found {bad!r} {unit}{words}{why}")
 
 
 def field_quantity(kind: type[Any], path: str) -> Mapping[str, Any]:

@@ -50,10 +50,16 @@ class Damper(Validated):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Friction(Validated):
-    """Coulomb friction of the shock absorber, smoothed by an arc tangent."""
+    """Friction of the shock absorber, smoothed by an arc tangent; numbers of the laws of `vehicle.laws` by their names.
+
+    What the Coulomb law does not need is that of the complete car where a file leaves it out (Bommer 2006, section 3.4).
+    """
 
     limit: float = quantity("N", "Coulomb friction force Fd", at_least=0.0)
     steepness: float = quantity("s/m", "smoothing parameter eps", above=0.0)
+    static_limit: float = quantity("N", "friction force Fs at rest", at_least=0.0, default=125.0)
+    stribeck_velocity: float = quantity("m/s", "velocity vs of the transition", above=0.0, default=0.03)
+    stribeck_exponent: float = quantity("-", "exponent delta of the transition", above=0.0, at_most=20.0, default=3.5)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
