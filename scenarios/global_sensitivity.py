@@ -19,13 +19,13 @@ from scenarios.claims import markdown
 from scenarios.comfort_runs import chosen_engine
 from scenarios.study import study_parser
 from vehicle.commands.command_line import ProgressLine, parse_and_run
-from vehicle.commands.options import engine_option
+from vehicle.commands.options import VEHICLE_HELP, engine_option
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.output.folder import prepare_folder, write_json, write_text
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.parameters.vehicle import load_vehicle, vehicle_file
 from vehicle.rendering.figure import COLOURS
 from vehicle.sweeps.case import table_cases
 from vehicle.sweeps.executors import executor_factory
@@ -86,7 +86,7 @@ def parser() -> argparse.ArgumentParser:
         "--runs", type=int, metavar="N", help=f"about this many runs; {SOBOL_RUNS} (sobol), {MORRIS_RUNS} (others)"
     )
     found.add_argument("--road", choices=sorted(ROAD_RMS), default="smooth", help="smooth by default")
-    found.add_argument("--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default")
+    found.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
     found.add_argument("--seed", type=int, default=2006, help="seed of the sample; 2006 by default")
     engine_option(found, "auto")
     found.add_argument("--executor", metavar="WHERE", help="dask://host:port, or module:factory")

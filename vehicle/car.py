@@ -34,7 +34,7 @@ from vehicle.linear.modes import Mode, car_modes, require_stable
 from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.step_error import require_accurate_step
 from vehicle.names import AXES, ENGINES
-from vehicle.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.parameters.vehicle import Vehicle, load_vehicle, vehicle_file
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced
@@ -71,7 +71,7 @@ class Car:
         """Read a car from a vehicle file.
 
         Args:
-            path: TOML file; the car of source 1 by default.
+            path: TOML file, or the name of a shipped car; that of source 1 by default.
             overrides: texts like "damper.coulomb_friction=93.75".
 
         Returns:
@@ -80,7 +80,7 @@ class Car:
         Raises:
             ConfigurationError: the file, a name or a value is wrong.
         """
-        file = None if path is None else Path(path)
+        file = None if path is None else vehicle_file(Path(path))
         changes = list(overrides)
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
@@ -124,19 +124,6 @@ class Car:
             require_stable(self.model, self.matrices, self.poles.poles)
         self._checked.add(engine)
 
-    def require_wheels(self, wheels: Iterable[str]) -> None:
-        """Refuse wheels that the car does not have.
-
-        Args:
-            wheels: their names.
-
-        Raises:
-            ConfigurationError: naming the first of them.
-        """
-        for wheel in wheels:
-            if wheel not in self.vehicle.wheels:
-                raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(self.vehicle.wheels)}")
-
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest)
@@ -145,11 +132,8 @@ class Car:
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str = "fr"
     ) -> npt.NDArray[np.complex128]:
         """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies)."""
-        self.require_wheels((wheel,))
-        known = self.vehicle.acceleration_channels
-        for name in channels:
-            if name not in known:
-                raise ConfigurationError(f"no acceleration channel {name!r}; there are {', '.join(known)}")
+        self.vehicle.require_wheels((wheel,))
+        self.vehicle.require_channels(channels, self.vehicle.acceleration_channels)
         form = first_order(self.matrices.system, stuck=_is_stuck(damper))
         driven = [float(name == wheel) for name in self.vehicle.wheels]
         return exact_response(form, frequency, channels, "acceleration", driven=driven)
@@ -182,10 +166,8 @@ class Car:
         """
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        for name in channels or ():
-            if name not in self.vehicle.channels:
-                raise ConfigurationError(f"no channel {name!r}; there are {', '.join(self.vehicle.channels)}")
-        self.require_wheels(signal.wheels)
+        self.vehicle.require_channels(channels or (), self.vehicle.channels)
+        self.vehicle.require_wheels(signal.wheels)
         names = self.vehicle.channels if channels is None else channels
         require_memory(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
@@ -306,7 +288,7 @@ class Run:
 
     def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
         """Velocity of a damper, and the one that counts as slip [m/s]."""
-        self.car.require_wheels((wheel,))
+        self.car.vehicle.require_wheels((wheel,))
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
         return self.recording[f"damper_{wheel}_velocity"], limit
 

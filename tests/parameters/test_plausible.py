@@ -127,7 +127,7 @@ IMPOSSIBLE = {
             "body.flexible=false",
         ],
         r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m, with which rear support right would carry -\d+ N and the car "
-        r"would tip off it; it must lie between hardpoints\.tyre_patch and hardpoints\.rear_support",
+        r"would tip off it; it must lie between the points where the car stands on the ground",
     ),
     "inertia with a turned sign": (
         ["body.izx=-1800"],

@@ -8,6 +8,7 @@ from pathlib import Path
 from vehicle.commands.command_line import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS, ENGINES
+from vehicle.parameters.vehicle import vehicle_file
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
@@ -26,10 +27,16 @@ def command_parser(name: str, description: str) -> Parser:
     return Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
 
 
+VEHICLE_HELP = "vehicle file, or the name of a shipped car: focus_road; the car of source 1 by default"
+
+
 def vehicle_options(parser: argparse.ArgumentParser) -> None:
     """Add --vehicle and --set: which car."""
     parser.add_argument(
-        "--vehicle", type=Path, metavar="FILE.toml", help="vehicle file; the car of source 1 by default"
+        "--vehicle",
+        type=vehicle_file,
+        metavar="FILE.toml",
+        help=VEHICLE_HELP,
     )
     parser.add_argument(
         "--set",

@@ -21,11 +21,12 @@ from vehicle.parameters.composition import (
     PlacedSpring,
     PlacedWheel,
 )
-from vehicle.parameters.elements import Damper, MainSpring, SlideSpring, Stabilizer
+from vehicle.parameters.elements import Damper
 from vehicle.parameters.freedoms import freedoms
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
 from vehicle.parameters.parts import Part
+from vehicle.parameters.springs import placed_spring, spring_kind
 from vehicle.parameters.template import read_template
 from vehicle.parameters.toml_file import convert, nearest
 
@@ -61,10 +62,10 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     connections = [_connection(*one) for one in sorted(_elements(car, "connection"), key=lambda one: _rank(one[2]))]
     connections.sort(key=lambda one: one.law is None)
     connections += [further_connection(name, one, names, points) for name, one in table.get("connection", {}).items()]
-    springs, on_joints = _springs(car)
+    springs = [placed_spring(*one) for one in _elements(car, "spring")]
     outputs = [
         PlacedOutput(
-            name=i.label(e.name, side), on=i.part(e.on, side), at=i.point(e.at, side), point=_point_name(i, e.at, side)
+            name=i.label(e.name, side), on=i.part(e.on, side), at=i.point(e.at, side), point=i.point_name(e.at, side)
         )
         for i in car.values()
         for _, e, side in sorted(_elements({i.name: i}, "output"), key=lambda one: _rank(one[2]))
@@ -73,8 +74,8 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     composed = Composition(
         parts=tuple(parts),
         connections=tuple(connections),
-        springs=tuple(springs),
-        joint_springs=tuple(on_joints),
+        springs=tuple(one for one in springs if isinstance(one, PlacedSpring)),
+        joint_springs=tuple(one for one in springs if isinstance(one, JointSpring)),
         dampers=tuple(
             PlacedDamper(
                 name=i.label(e.name, side),
@@ -124,11 +125,6 @@ def _points(instance: Instance) -> Iterator[tuple[str, Point]]:
     for name, side in itertools.product(instance.template.hardpoints, instance.sides()):
         if side is not None or not instance.template.mirrored:
             yield instance.label(name, side), instance.point(name, side)
-
-
-def _point_name(instance: Instance, ref: str, side: str | None) -> str:
-    name, _, own = ref.partition(":")
-    return instance.label(name, own or side)
 
 
 def _rank(side: str | None) -> int:
@@ -251,59 +247,11 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
         moving=i.part(e.moving, side),
         carrier=i.part(e.carrier, side),
         at=i.point(e.at, side),
-        point=_point_name(i, e.at, side),
+        point=i.point_name(e.at, side),
         law=law,
         ground=e.ground or e.carrier == "plate",
         path=f"{i.name}.bushings.{e.name}",
     )
-
-
-def _springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], list[JointSpring]]:
-    springs, on_joints = [], []
-    for i, e, side in _elements(car, "spring"):
-        path = f"{i.name}.{e.name}"
-        if e.joint is None:
-            ends = (e.lower, e.upper)
-            springs.append(
-                PlacedSpring(
-                    name=i.label(e.name, side),
-                    parts=(i.part(e.lower.part, side), i.part(e.upper.part, side)),
-                    at=(i.point(e.lower.at, side), i.point(e.upper.at, side)),
-                    point=next((_point_name(i, end.at, side) for end in ends if end.part == "body"), ""),
-                    stiffness=i.get(MainSpring, side, e.name).stiffness,
-                    path=path,
-                )
-            )
-        else:
-            on_joints.append(
-                JointSpring(
-                    joint=i.label(e.joint, side),
-                    **_on_joint(i, e, side),
-                    path=path,
-                )
-            )
-    return springs, on_joints
-
-
-def _slides(i: Instance, name: str) -> bool:
-    return next(joint.kind for joint in i.template.joint if joint.name == name) == "slide"
-
-
-def _spring_kind(i: Instance, e: topology.Spring) -> type:
-    if e.joint is None:
-        return MainSpring
-    return SlideSpring if _slides(i, e.joint) else Stabilizer
-
-
-def _on_joint(i: Instance, e: topology.Spring, side: str | None) -> dict[str, Any]:
-    """Numbers of a spring on a joint: a slide has a stiffness and a damping, a hinge a torsional stiffness."""
-    if not _slides(i, e.joint or ""):
-        return {
-            "stiffness": i.get(Stabilizer, side, e.name).torsional_stiffness,
-            "parameter": "torsional_stiffness",
-        }
-    numbers = i.get(SlideSpring, side, e.name)
-    return {"stiffness": numbers.stiffness, "damping": numbers.damping, "parameter": "stiffness"}
 
 
 def _kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
@@ -313,5 +261,5 @@ def _kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, t
         found |= {f"{i.name}.parts.{name}": Part for name in i.template.parts}
         found |= {f"{i.name}.bushings.{name}": law_kind(one) for name, one in i.numbers.get("bushings", {}).items()}
         found |= {f"{i.name}.{one.name}": Damper for one in i.template.damper}
-        found |= {f"{i.name}.{one.name}": _spring_kind(i, one) for one in i.template.spring}
+        found |= {f"{i.name}.{one.name}": spring_kind(i, one) for one in i.template.spring}
     return found

@@ -73,6 +73,7 @@ class PlacedSpring:
     point: str
     stiffness: float
     path: str
+    shape: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

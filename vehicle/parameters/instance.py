@@ -155,6 +155,11 @@ class Instance:
             return (self.typed[path][0], 0.0, self.typed[path][2])
         return mirrored(self.typed[path], SIDE_SIGN.get(own, 1.0))
 
+    def point_name(self, ref: str, side: str | None) -> str:
+        """Name of a point in the model."""
+        name, _, own = ref.partition(":")
+        return self.label(name, own or side)
+
     def body(self, name: str, side: str | None) -> Part:
         """Mass and inertia of a part, of a rod where no inertia is given; its frame is that of the right side.
 

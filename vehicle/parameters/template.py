@@ -41,7 +41,7 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
         ConfigurationError: no such template, an unknown key, or a name that leads nowhere; with file and table.
     """
     places = (*folders, SHIPPED)
-    files = [file for place in places for file in sorted(place.glob("*.toml")) if file.is_file()]
+    files = [file for place in places[:-1] for file in sorted(place.glob("*.toml")) if file.is_file()]
     return _read_once(name, frozenset(options), places, tuple((file, file.stat().st_mtime_ns) for file in files))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
@@ -89,6 +89,34 @@ class Vehicle:
         dampers = [damper.name for damper in self.composition.dampers]
         return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
 
+    def require_wheels(self, wheels: Iterable[str]) -> None:
+        """Refuse wheels that the car does not have.
+
+        Args:
+            wheels: their names.
+
+        Raises:
+            ConfigurationError: naming the first of them.
+        """
+        for wheel in wheels:
+            if wheel not in self.wheels:
+                raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(self.wheels)}")
+
+    def require_channels(self, channels: Iterable[str], known: Sequence[str]) -> None:
+        """Refuse channels that are none of the car.
+
+        Args:
+            channels: their names.
+            known: those of the car that are asked for.
+
+        Raises:
+            ConfigurationError: naming the first of them.
+        """
+        for name in channels:
+            if name not in known:
+                what = "channel" if len(known) == len(self.channels) else "acceleration channel"
+                raise ConfigurationError(f"no {what} {name!r}; there are {', '.join(known)}")
+
     @property
     def damper(self) -> Damper:
         """Numbers of the first damper, which are those of all where the file gives one table.
@@ -151,11 +179,18 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     return vehicle
 
 
+def vehicle_file(path: Path | str) -> Path:
+    """The file of a car: the path as given, or that of the shipped car of this name."""
+    path = Path(path)
+    shipped = VEHICLES / path / "vehicle.toml"
+    return shipped if not path.suffix and not path.exists() and shipped.is_file() else path
+
+
 def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Vehicle:
     """Read and validate a vehicle file.
 
     Args:
-        path: TOML file; the Ford-Focus-like car of source 1 by default.
+        path: TOML file, or the name of a shipped car; the Ford-Focus-like car of source 1 by default.
         overrides: texts "path.to.parameter=value".
 
     Returns:
@@ -164,7 +199,7 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
     Raises:
         ConfigurationError: the file, a name or a value is wrong; the message names it.
     """
-    file = path or FOCUS_FILE
+    file = FOCUS_FILE if path is None else vehicle_file(path)
     try:
         return vehicle_of(override(read_table(file), overrides), file.parent)
     except ConfigurationError as error:
