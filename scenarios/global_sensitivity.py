@@ -25,7 +25,8 @@ from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.output.folder import prepare_folder, write_json, write_text
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
-from vehicle.parameters.vehicle import load_vehicle, vehicle_file
+from vehicle.parameters.shipped import vehicle_file
+from vehicle.parameters.vehicle import load_vehicle
 from vehicle.rendering.figure import COLOURS
 from vehicle.sweeps.case import table_cases
 from vehicle.sweeps.executors import executor_factory

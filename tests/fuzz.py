@@ -27,7 +27,7 @@ import numpy as np
 from vehicle.commands import comfort, modes, shaker, sweep
 from vehicle.commands.command_line import FAULT
 from vehicle.excitation.random_road import random_road
-from vehicle.parameters.vehicle import FOCUS_FILE
+from vehicle.parameters.shipped import FOCUS_FILE
 
 CODES = {0, 2, 3, 4, 5, 6}
 """Exit codes of the contract; 130 needs an interruption."""

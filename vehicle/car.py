@@ -34,7 +34,8 @@ from vehicle.linear.modes import Mode, car_modes, require_stable
 from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.step_error import require_accurate_step
 from vehicle.names import AXES, ENGINES
-from vehicle.parameters.vehicle import Vehicle, load_vehicle, vehicle_file
+from vehicle.parameters.shipped import vehicle_file
+from vehicle.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced

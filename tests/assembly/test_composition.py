@@ -17,8 +17,9 @@ from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.carried_nodes import carried_by, with_carried_nodes
 from vehicle.flexbody.modes import rigid_shapes
 from vehicle.parameters.paths import value_of
+from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.template import SHIPPED
-from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
+from vehicle.parameters.vehicle import load_vehicle
 
 TEXT = FOCUS_FILE.read_text(encoding="utf-8")
 BRACE = (0.7, 0.1, 1.2)

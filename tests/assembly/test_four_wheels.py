@@ -13,8 +13,9 @@ import scipy.linalg
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.signal import Signal
+from vehicle.parameters.shipped import VEHICLES
 from vehicle.parameters.toml_file import read_table
-from vehicle.parameters.vehicle import VEHICLES, load_vehicle, vehicle_of
+from vehicle.parameters.vehicle import load_vehicle, vehicle_of
 
 ROAD_CAR = VEHICLES / "focus_road" / "vehicle.toml"
 WHEELS = ("fr", "fl", "rr", "rl")

@@ -11,7 +11,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
 from vehicle.flexbody.build import BODY_DESIGN
-from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.vehicle import load_vehicle
 
 LINE = re.compile(r"(?P<name>\w+) = .*  # \[(?P<unit>[^\]]+)\] (?P<source>.+)$|between = \[  # \[-\] assumed: .+$")
 UNITS = {"place": "m", "mass": "kg", "freedom": "-", "attachment": "N/m", "width": "m", "wall": "m", "area": "m2"}

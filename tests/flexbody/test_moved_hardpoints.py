@@ -14,7 +14,8 @@ from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
 from vehicle.flexbody.build import BODY_DESIGN, TRIMMED_BODY
 from vehicle.flexbody.symmetry import parity
-from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.vehicle import load_vehicle
 
 ROAD = random_road(rms=1e-3, seed=1, duration=1.0)
 

@@ -7,7 +7,8 @@ import re
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.vehicle import load_vehicle
 
 INSTANCE = re.compile(r"(?<![\w.])(front|engine|rear)\.(?!toml)")
 """Where the templates of the car are in its file."""

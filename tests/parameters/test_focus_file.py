@@ -11,8 +11,9 @@ import pytest
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.paths import override, paths
+from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.toml_file import as_table, read_table, write_text
-from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle, vehicle_of
+from vehicle.parameters.vehicle import load_vehicle, vehicle_of
 
 LINE = re.compile(r"^(?P<name>[a-z_0-9]+) = (?P<value>.+?)\s+# \[(?P<unit>[^]]+)\] (?P<source>.+)$")
 SOURCE = re.compile(r"\b(section|appendix|equation|table|figure)\b|^(assumed|fitted)\b|\bassumed\b|measured car", re.I)

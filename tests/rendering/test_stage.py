@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from vehicle.shapes import car_shapes
+from vehicle.assembly.visuals import visible_shapes
 
 SAME = (
     "body_mass",
@@ -67,8 +67,7 @@ def test_shapes_stand_in_their_design_place(car, stage, name):
     mesh = stage.geom_dataid[geom]
     first, count = stage.mesh_vertadr[mesh], stage.mesh_vertnum[mesh]
     vertices = stage.mesh_vert[first : first + count] @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
-    points = {name: np.array(point) for name, point in car.vehicle.points.items()}
-    expected = np.asarray(car_shapes(points)[name].mesh.vertices)
+    expected = np.asarray(visible_shapes(car.vehicle)[name].mesh.vertices)
     # MuJoCo keeps vertices in single precision: 1e-6 of 4.5 m.
     np.testing.assert_allclose(vertices.min(axis=0), expected.min(axis=0), atol=5e-6)
     np.testing.assert_allclose(vertices.max(axis=0), expected.max(axis=0), atol=5e-6)

@@ -8,7 +8,8 @@ import trimesh
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from vehicle.shapes import SHELL, Part, Shape, car_shapes, part_shapes
+from tests.shapes.focus_scene import car_shapes
+from vehicle.shapes import SHELL, Part, Shape, part_shapes
 
 OPEN = {"body_shell", "body_lining", "body_trim", "body_lamps_front", "body_lamps_rear", "body_plates", "body_glass"}
 """sheets by nature: panels, panes and fields of colour on the paint"""

@@ -2,20 +2,64 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.parameters.composition import PlacedSpring
+from vehicle.parameters.vehicle import Vehicle
+from vehicle.shapes.roles import ROLES, Part
+from vehicle.shapes.scene import car_shapes
 from vehicle.shapes.shape import Shape
+
+Vector = npt.NDArray[np.float64]
 
 SHELL_GROUP = 1
 """Visual group of everything on the trimmed body."""
 
 PART_GROUP = 2
 """Visual group of all other parts and of the rig."""
+
+
+def visible_shapes(vehicle: Vehicle) -> dict[str, Shape]:
+    """Shapes of a car and its rig at the design position, by name: of each part by its role, else a rod.
+
+    Args:
+        vehicle: the car.
+    """
+    car = vehicle.composition
+    points = {name: np.array(point) for name, point in car.points.items()}
+    corners = {
+        wheel.name: _around(points, f"_{wheel.name}")
+        | {"wheel_center": np.array(wheel.center), "tyre_patch": np.array(wheel.patch)}
+        for wheel in car.wheels
+    }
+    blocks = [one for one in car.connections if one.carrier == "world" and one.ground]
+    supports = {one.name.rpartition("_")[2]: np.array(one.at) for one in blocks}
+    return car_shapes(points, corners, supports, _drawn(vehicle, points))
+
+
+def _around(points: Mapping[str, Vector], suffix: str) -> dict[str, Vector]:
+    """Points of one corner or side, without its ending; all of a car for what has none."""
+    return {name.removesuffix(suffix): point for name, point in points.items() if name.endswith(suffix)}
+
+
+def _drawn(vehicle: Vehicle, points: Mapping[str, Vector]) -> Iterator[Part]:
+    """Parts and springs of a car with the points that their roles need, or with their own."""
+    car = vehicle.composition
+    listed = [(one.path, one.name, one.shape, one.points, one.side) for one in car.parts]
+    for spring in car.springs:
+        ends = dict(zip(("lower", "upper"), spring.at, strict=True))
+        listed.append((spring.path, spring.name, spring.shape, ends, float(np.sign(spring.at[0][1]))))
+    for path, name, role, own, side in listed:
+        base = path.rpartition(".")[2]
+        around = _around(points, name.removeprefix(base))
+        needed = set(ROLES[role][1]) if role in ROLES else {""}
+        chosen = around if needed <= set(around) else {key: np.array(place) for key, place in own.items()}
+        if role != "none":
+            yield Part(name=base, role=role, points=chosen, suffix=name.removeprefix(base), left=side < 0.0)
 
 
 def add_shapes(

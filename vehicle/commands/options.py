@@ -8,7 +8,7 @@ from pathlib import Path
 from vehicle.commands.command_line import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS, ENGINES
-from vehicle.parameters.vehicle import vehicle_file
+from vehicle.parameters.shipped import vehicle_file
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."

@@ -62,6 +62,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.excitation.input_files import find_input
     from vehicle.output.folder import prepare_folder
+    from vehicle.parameters.shipped import 
     from vehicle.parameters.vehicle import load_vehicle
     from vehicle.sweeps.case import Input, SignalFile, signal_of, table_cases
     from vehicle.sweeps.executors import executor_factory

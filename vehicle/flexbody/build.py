@@ -14,7 +14,8 @@ from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
 from vehicle.flexbody.fit import STAGES, fit_factors
 from vehicle.flexbody.superelement_file import write_superelement
-from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.vehicle import load_vehicle
 
 BODY_DESIGN = FOCUS_FILE.with_name("body_design.toml")
 TRIMMED_BODY = FOCUS_FILE.with_name("trimmed_body.toml")

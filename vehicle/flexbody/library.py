@@ -14,7 +14,8 @@ from vehicle.flexbody.body_frame import design_superelement, skeleton
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement
 from vehicle.flexbody.superelement_file import read_superelement
-from vehicle.parameters.vehicle import FOCUS_FILE, Vehicle
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.vehicle import Vehicle
 
 PACKAGE_FOLDER = FOCUS_FILE.parent
 _DESIGN = re.compile(r"""^format *= *["']body design""", re.MULTILINE)

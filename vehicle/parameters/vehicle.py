@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +17,8 @@ from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.paths import override
 from vehicle.parameters.plausible import require_plausible
 from vehicle.parameters.quantity import field_quantity, quantity, validate
+from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.parameters.toml_file import build, convert, read_table
-
-VEHICLES = Path(str(resources.files("vehicle"))) / "vehicles"
-FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
-"""The Ford-Focus-like car of source 1."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -177,13 +173,6 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     )
     require_plausible(vehicle)
     return vehicle
-
-
-def vehicle_file(path: Path | str) -> Path:
-    """The file of a car: the path as given, or that of the shipped car of this name."""
-    path = Path(path)
-    shipped = VEHICLES / path / "vehicle.toml"
-    return shipped if not path.suffix and not path.exists() and shipped.is_file() else path
 
 
 def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Vehicle:

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.assembly.studio import add_studio
-from vehicle.assembly.visuals import add_shapes
+from vehicle.assembly.visuals import add_shapes, visible_shapes
 from vehicle.rendering.motion import Motion
-from vehicle.shapes import SHELL, car_shapes
+from vehicle.shapes import SHELL
 from vehicle.simulation.car_model import CarModel
 
 Picture = npt.NDArray[np.uint8]
@@ -50,10 +50,11 @@ def stage_model(car: CarModel, size: tuple[int, int]) -> mujoco.MjModel:
         The model; generalised positions mean the same as in the simulated one.
     """
     spec = car.spec.copy()
-    points = {name: np.array(point) for name, point in car.vehicle.points.items()}
-    shapes = {name: shape for name, shape in car_shapes(points).items() if name not in HIDDEN}
+    shapes = {name: shape for name, shape in visible_shapes(car.vehicle).items() if name not in HIDDEN}
     add_shapes(spec, shapes, car.origins, car.vehicle.composition.springs)
     for name, opacity in OPACITY.items():
+        if name not in shapes:
+            continue
         material = spec.material(name)
         material.rgba = [*material.rgba[:3], opacity * material.rgba[3]]
     add_studio(spec, size, SAMPLES)

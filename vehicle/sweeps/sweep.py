@@ -15,8 +15,9 @@ from typing import Any
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.flexbody.library import PACKAGE_FOLDER
 from vehicle.output.folder import folder_lock
+from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.template import SHIPPED as TEMPLATES
-from vehicle.parameters.vehicle import FOCUS_FILE, load_vehicle
+from vehicle.parameters.vehicle import load_vehicle
 from vehicle.sweeps.case import Case, digest
 from vehicle.sweeps.executors import process_pool, workers_of
 from vehicle.sweeps.measure import ComfortMeasure, Measure
