@@ -62,7 +62,6 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.excitation.input_files import find_input
     from vehicle.output.folder import prepare_folder
-    from vehicle.parameters.shipped import 
     from vehicle.parameters.vehicle import load_vehicle
     from vehicle.sweeps.case import Input, SignalFile, signal_of, table_cases
     from vehicle.sweeps.executors import executor_factory
@@ -127,8 +126,8 @@ def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[
     """
     from vehicle.errors import ConfigurationError
     from vehicle.parameters.paths import override
+    from vehicle.parameters.shipped import FOCUS_FILE
     from vehicle.parameters.toml_file import read_table as read_toml
-    from vehicle.parameters.vehicle import FOCUS_FILE
 
     table = override(read_toml(FOCUS_FILE if vehicle is None else vehicle), overrides)
     try:
