@@ -8,7 +8,7 @@ import pytest
 from vehicle.commands.comfort import main
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal_file import read_signal
-from vehicle.records.formats import FORMATS, read_record
+from vehicle.records.formats import FORMATS, read_columns
 from vehicle.records.table import Record, Vector
 
 TIME: Vector = np.linspace(2.0, 5.999, 4000)
@@ -28,7 +28,7 @@ def run(request, tmp_path):
 
 
 def test_what_a_run_writes_comes_back(run):
-    record = read_record(run)
+    record = read_columns(run)
     assert (record.start, record.step) == pytest.approx((2.0, 1e-3))
     assert record.units == UNITS
     for name, values in CHANNELS.items():
@@ -57,19 +57,19 @@ def test_comfort_reads_a_place_of_a_run(run, tmp_path, capsys):
 def test_arrays_that_are_no_record_are_refused(tmp_path):
     path = tmp_path / "own.npz"
     with pytest.raises(ConfigurationError, match=r"own\.npz: no such file"):
-        read_record(path)
+        read_columns(path)
     path.write_bytes(b"PK no archive")
     with pytest.raises(DataError, match=r"own\.npz: no file of arrays"):
-        read_record(path)
+        read_columns(path)
     np.savez(path, x=SINE)
     with pytest.raises(DataError, match=r"own\.npz: no array 'time'; found x; needed are 'time"):
-        read_record(path)
+        read_columns(path)
     np.savez(path, time=TIME, x=SINE[:-1])
     with pytest.raises(DataError, match=r"own\.npz: array 'x' has 3999 samples for 4000 times"):
-        read_record(path)
+        read_columns(path)
     np.savez(path, time=TIME[::-1], x=SINE)
     with pytest.raises(DataError, match=r"own\.npz: sample 2: time 5\.998 s goes back behind the time .* of sample 1"):
-        read_record(path)
+        read_columns(path)
 
 
 def test_the_shaker_reads_the_plates_of_a_run(run):
@@ -86,4 +86,4 @@ def test_arrays_beyond_the_memory_are_refused_before_they_are_unpacked(tmp_path,
     np.savez_compressed(tmp_path / "own.npz", time=TIME, x=0.0 * TIME)  # zeros pack a thousand times smaller
     monkeypatch.setattr("vehicle.records.npz_format.MEMORY_LIMIT", 60_000)
     with pytest.raises(DataError, match=r"own\.npz: its arrays need .* GiB of memory; allowed"):
-        read_record(tmp_path / "own.npz")
+        read_columns(tmp_path / "own.npz")

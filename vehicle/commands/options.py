@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS, ENGINES
 from vehicle.parameters.shipped import vehicle_file
+
+if TYPE_CHECKING:
+    from vehicle.records.choice import Choice
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
@@ -60,7 +64,8 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
         "--input",
         action="append" if several else "store",
         metavar="FILE",
-        help="CSV file, or the name of a shipped one: low.csv" + ("; may be repeated" if several else ""),
+        help="measurement file of any format of `inspect`, or the name of a shipped one: low.csv"
+        + ("; may be repeated" if several else ""),
     )
     parser.add_argument(
         "--wheel",
@@ -83,7 +88,8 @@ def road_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("a road")
     group.add_argument("--speed", type=float, metavar="KM/H", help="speed of the car [km/h]")
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
-    group.add_argument("--rate", type=float, metavar="HZ", help="samples a second; 1000 by default")
+    group.add_argument("--rate", type=float, metavar="HZ", help="samples a second; 1000 by default; beside --input of one run: "
+        "in place of the times of the file")
     group.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
     group.add_argument(
         "--coherence",
@@ -99,8 +105,11 @@ def road_options(parser: argparse.ArgumentParser) -> None:
 ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
 """Options of `road_options`."""
 
-INPUT_CHOICES = ("wheel", "interpolate", "resample", "remove_mean")
-"""Options of a file of signals."""
+INPUT_CHOICES = {
+    **{name: name for name in ("wheel", "interpolate", "resample", "remove-mean", "detrend", "highpass")},
+    **{"channel": "channels", "unit": "units", "from": "first", "to": "last", "remove-mean": "remove_mean"},
+}
+"""Options of a file of signals, and where their values are."""
 
 
 def drives_on_road(options: argparse.Namespace) -> bool:
@@ -118,18 +127,87 @@ def drives_on_road(options: argparse.Namespace) -> bool:
             raise ConfigurationError(
                 f"{words} beside --input: give one of them; --road alone accepts levels beyond a shaker"
             )
-        for name in INPUT_CHOICES:
-            if getattr(options, name, None):
+        for name, place in INPUT_CHOICES.items():
+            if getattr(options, place, None):
                 raise ConfigurationError(
-                    f"--{name.replace('_', '-')}: belongs to --input; {words} drives all wheels of the car"
+                    f"--{name}: belongs to --input; {words} drives all wheels of the car"
                 )
         return True
     if not options.input:
         raise ConfigurationError("needed is either --input FILE, or a road: --road C --speed 80")
     for name in ROAD_NUMBERS:
-        if getattr(options, name) is not None:
+        if getattr(options, name) is not None and not (name == "rate" and hasattr(options, "channels")):
             raise ConfigurationError(f"--{name}: belongs to a road, as --road C --speed 80, and not to --input")
     return False
+
+
+def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool = True, rate: bool = True) -> None:
+    """Add the choice of channels, units and times in a measurement file.
+
+    Args:
+        parser: of the command.
+        roles: what a channel is chosen for, in words, with an example.
+        channel, rate: False where the command has such an option of its own.
+    """
+    if channel:
+        parser.add_argument(
+            "--channel",
+            dest="channels",
+            action="append",
+            default=[],
+            metavar="ROLE=NAME",
+            help=f"channel of the file, by number, exact name, or pattern with *, for {roles}; time=NAME names the "
+            "times; may be repeated; `python -m vehicle inspect FILE` lists them",
+        )
+    parser.add_argument(
+        "--unit",
+        dest="units",
+        action="append",
+        default=[],
+        metavar="[ROLE=]UNIT",
+        help="unit of the chosen channels, or of one, where the file tells none or a wrong one, as mm or g; may be "
+        "repeated",
+    )
+    if rate:
+        parser.add_argument("--rate", type=float, metavar="HZ", help="samples a second, in place of the file's times")
+    parser.add_argument("--from", dest="first", type=float, metavar="S", help="begin at this time of the file [s]")
+    parser.add_argument("--to", dest="last", type=float, metavar="S", help="end at this time of the file [s]")
+    parser.add_argument("--detrend", action="store_true", help="subtract the straight line of least squares")
+    parser.add_argument(
+        "--highpass",
+        type=float,
+        metavar="HZ",
+        help="corner of a high-pass without phase shift [Hz]; with it velocities and accelerations are integrated",
+    )
+
+
+def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
+    """What the options of `record_options` ask for; None for nothing.
+
+    Args:
+        options: of the command.
+        role: of a channel or a unit that names none.
+
+    Raises:
+        ConfigurationError: a role twice, a unit that is not known, a number out of range.
+    """
+    from vehicle.records.choice import Choice, pairs
+
+    channels = pairs("--channel", options.channels, role)
+    units = pairs("--unit", options.units, "")
+    unknown = next((name for name in units if name and name not in channels), None)
+    if unknown is not None:
+        raise ConfigurationError(f"--unit {unknown}=...: no --channel {unknown}=NAME is given")
+    found = Choice(
+        channels=channels,
+        units=units,
+        rate=options.rate,
+        first=options.first,
+        last=options.last,
+        detrend=options.detrend,
+        highpass=options.highpass,
+    )
+    return None if found.empty else found
 
 
 def output_options(parser: argparse.ArgumentParser, folder: Path | None, *, default: str = "") -> None:

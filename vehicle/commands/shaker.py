@@ -16,6 +16,8 @@ from vehicle.commands.options import (
     engine_option,
     message_options,
     output_options,
+    record_choice,
+    record_options,
     signal_options,
     vehicle_options,
 )
@@ -30,6 +32,7 @@ def parser() -> Parser:
     """The options of the command."""
     found = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
     signal_options(found)
+    record_options(found, 'a plate, as fr="Shaker FR"', rate=False)
     output_options(found, None, default="runs/<input stem>, or runs/road_C_80, by default")
     vehicle_options(found)
     engine_option(found, "mujoco")
@@ -73,6 +76,8 @@ def _job(options: argparse.Namespace) -> None:
     inputs = tuple(path for path in (source, options.vehicle) if isinstance(path, Path))
     check_output(output, force=options.force, protect=inputs)
     _check_numbers(options)
+    wheel = CORNERS[options.wheel or "front_right"]
+    choice = record_choice(options, wheel) if drive is None else None
     engine, reason = _engine(options)
     video_name = None
     if options.video is not None:
@@ -92,11 +97,12 @@ def _job(options: argparse.Namespace) -> None:
     if drive is None:
         signal = read_signal(
             source,
-            wheel=CORNERS[options.wheel or "front_right"],
+            wheel=wheel,
             interpolate=options.interpolate,
             resample_hz=options.resample,
             remove_mean=options.remove_mean,
             accept_implausible=options.road is not None,
+            choice=choice,
         )
     else:
         signal = drive.signal()

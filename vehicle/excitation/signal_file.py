@@ -9,13 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
+from vehicle.excitation.chosen_plates import chosen_plates
 from vehicle.excitation.plausibility import aliasing_notices, check_level, drifts, pauses
 from vehicle.excitation.rest import start_from_rest
 from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
 from vehicle.excitation.time_grid import LOWEST_RATE, check_rate, decimate, fill_missing, refine
 from vehicle.names import CORNERS, in_order, is_wheel
+from vehicle.records.choice import Choice
 from vehicle.records.clock import check_increasing, check_uniform, is_uniform, without_rounding
-from vehicle.records.formats import read_table
+from vehicle.records.formats import is_table, read_table
 from vehicle.records.table import TIME, Header, Table, Vector, Wanted, name_and_unit
 from vehicle.records.text_format import write_table
 
@@ -35,6 +37,7 @@ def read_signal(
     resample_hz: float | None = None,
     remove_mean: bool = False,
     accept_implausible: bool = False,
+    choice: Choice | None = None,
 ) -> Signal:
     """Read plate displacements from a file; everything unusual is refused or recorded in `notices`.
 
@@ -49,6 +52,7 @@ def read_signal(
         resample_hz: new sampling rate [Hz] with anti-alias filter, also for non-uniform times.
         remove_mean: subtract the mean of each column.
         accept_implausible: keep going where level or acceleration is beyond a shaker's (roads), with a notice.
+        choice: channels of a measurement file, and what is done to them; None for the columns above.
 
     Raises:
         ConfigurationError: no such file, unknown wheel, resampling rate out of range.
@@ -67,7 +71,7 @@ def read_signal(
         missing="fill" if interpolate else "refuse",
         remedy="repair the cell, or ask for interpolation (--interpolate)",
     )
-    table = read_table(path, wanted)
+    table = read_table(path, wanted) if choice is None and is_table(path) else chosen_plates(path, choice, wheel)
     plates = plate_columns(table.header, wheel)
     del plates["time"]
     units = {driven: unit for driven, (_, unit) in plates.items()}

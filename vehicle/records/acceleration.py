@@ -9,7 +9,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.names import AXES
-from vehicle.records.formats import read_record
+from vehicle.records.formats import read_columns
 from vehicle.records.table import Record, Vector
 
 STANDARD_GRAVITY = 9.80665
@@ -44,7 +44,7 @@ def read_acceleration(path: str | Path, place: str | None = None) -> Record:
     """Read an acceleration in three axes.
 
     Args:
-        path: a record, as of `read_record`.
+        path: a record, as of `read_columns`.
         place: point of a run, as "seat_rail", for the channels `seat_rail_acc_x|y|z`; None for columns x, y, z.
 
     Returns:
@@ -57,7 +57,7 @@ def read_acceleration(path: str | Path, place: str | None = None) -> Record:
     file = Path(path)
     axes = [axis if place is None else f"{place}_acc_{axis}" for axis in AXES]
     needed = f"time [s], {', '.join(f'{name} [m/s2]' for name in axes)} (or [g])"
-    record = read_record(file, needed)
+    record = read_columns(file, needed)
     xyz = {}
     for axis, name in zip(AXES, axes, strict=True):
         if name not in record.channels:

@@ -115,3 +115,27 @@ def _worst_step(time: Vector) -> tuple[float, int]:
     deviation = np.abs(steps - median) / median
     row = int(np.argmax(deviation))
     return float(deviation[row]), row + 1
+
+
+def time_remarks(time: Vector) -> tuple[str, ...]:
+    """Sentences on what is odd with the times [s], shape (n,), of a channel: rounded, not rising, pauses, jitter."""
+    steps = np.diff(time)
+    if steps.size < 2:
+        return ()
+    if not np.isfinite(time).all() or not (steps > 0.0).all():
+        at = int(np.flatnonzero(~(steps > 0.0))[0])
+        return (f"times do not increase behind {time[at]:.9g} s: cut with --from and --to",)
+    median = float(np.median(steps))
+    gaps = np.flatnonzero(steps > longest_step(median))
+    shown = ", ".join(f"{time[at]:.9g} to {time[at + 1]:.9g} s" for at in gaps[:4])
+    if gaps.size:
+        return (f"{gaps.size} pause{'s' if gaps.size > 1 else ''}: {shown}; cut with --from and --to",)
+    rounded = without_rounding(time)[1]
+    if rounded or is_uniform(time):
+        return rounded
+    return (f"times are not uniform: steps of {steps.min():.6g} to {steps.max():.6g} s; give --resample HZ",)
+
+
+def longest_step(median: float) -> float:
+    """Step [s] beyond which a record of this median step [s] pauses: two samples are missing, or half a second."""
+    return max(2.5 * median, min(PAUSE, 100.0 * median))

@@ -9,6 +9,7 @@ from pathlib import Path
 from vehicle.errors import DataError
 from vehicle.records import npz_format, text_format
 from vehicle.records.clock import check_increasing, check_uniform, without_rounding
+from vehicle.records.reader import recognise
 from vehicle.records.table import TIME, Record, Table, Vector, Wanted, key_column, name_and_unit
 
 LEAST_SAMPLES = 3
@@ -36,6 +37,11 @@ FORMATS = {
 """Name of a format, which is the ending of its files, and the format; files are recognised by what they hold."""
 
 
+def is_table(path: Path) -> bool:
+    """Whether a file is of a format of this module; one that is not there counts as one, its reader says so."""
+    return not path.is_file() or recognise(path) in FORMATS
+
+
 def read_table(path: Path, wanted: Wanted) -> Table:
     """Read a table of any format.
 
@@ -55,7 +61,7 @@ def read_table(path: Path, wanted: Wanted) -> Table:
     return next(one for one in FORMATS.values() if head.startswith(one.begins)).read(path, wanted)
 
 
-def read_record(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'") -> Record:
+def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'") -> Record:
     """Read a record: a table with a column `time [s]` that is uniform.
 
     Args:

@@ -56,13 +56,14 @@ class Wanted:
         needed: the columns in words, for messages.
         key: looks at the header before any row is read; returns the index of the column that no row may leave empty.
         missing: what to do about a missing value: "refuse" it; "fill": NaN, for those that will be filled in, so that
-            no column may end before the others; "empty": NaN for an empty cell, the form of an undefined value.
+            no column may end before the others; "empty": NaN for an empty cell, the form of an undefined value;
+            "mark": NaN for every missing value.
         remedy: for a missing value, for messages.
     """
 
     needed: str
     key: Callable[[Header], int]
-    missing: Literal["refuse", "fill", "empty"] = "refuse"
+    missing: Literal["refuse", "fill", "empty", "mark"] = "refuse"
     remedy: str = "repair the cell or cut the record"
 
 

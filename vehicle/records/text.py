@@ -34,8 +34,12 @@ class Text(NamedTuple):
     """Hexadecimal digest of the bytes."""
 
 
-def read_text(path: Path) -> Text:
+def read_text(path: Path, *, western: bool = False) -> Text:
     """Read a UTF-8 file into lines, refusing early what would be slow, large or not text.
+
+    Args:
+        path: the file.
+        western: read what is not UTF-8 as Windows text (cp1252), with a notice.
 
     Memory needed = TEXT_COPIES * size + BYTES_PER_ROW * size / (mean length of the first rows).
 
@@ -68,6 +72,9 @@ def read_text(path: Path) -> Text:
     try:
         lines = data.decode("utf-8").split("\n")
     except UnicodeDecodeError as error:
+        if western:
+            notices.append("the text is not UTF-8: read as Windows text (cp1252)")
+            return Text(lines=data.decode("cp1252", "replace").split("\n"), notices=tuple(notices), sha256=digest)
         raise DataError(
             f"{_place(path, data, error.start)}: byte 0x{data[error.start]:02x} is not UTF-8; save the file as UTF-8 "
             "text"

@@ -48,11 +48,11 @@ def read(path: Path, wanted: Wanted) -> Table:
         raise DataError(f"{path}:{head}: the file ends after the header; needed is one row per sample below it")
     rows = [text.lines[n - 1] for n in numbers]
     if delimiter != "," and any("," in row for row in rows):
-        rows = _decimal_points(numbers, rows, header)
+        rows = decimal_points(numbers, rows, header)
         notices.append("decimal comma read as decimal point")
-    values = _fast(rows, header)
+    values = fast(rows, header)
     if values is None:
-        values = _careful(numbers, rows, header, key, wanted)
+        values = careful(numbers, rows, header, key, wanted)
     return Table(
         header=header, key=key, values=values, lines=np.array(numbers), notices=tuple(notices), sha256=text.sha256
     )
@@ -114,7 +114,13 @@ def _split(row: str, delimiter: str) -> list[str]:
     return [cell.strip().strip('"').strip() for cell in row.split(delimiter)]
 
 
-def _fast(rows: list[str], header: Header) -> Vector | None:
+def fast(rows: list[str], header: Header) -> Vector | None:
+    """All numbers at once, (rows, columns); None unless all are finite and in the right shape.
+
+    Args:
+        rows: lines of text.
+        header: tells the delimiter and the number of columns.
+    """
     try:
         values = np.loadtxt(rows, delimiter=header.delimiter, comments=None, ndmin=2, dtype=np.float64)
     except ValueError:
@@ -122,7 +128,19 @@ def _fast(rows: list[str], header: Header) -> Vector | None:
     return values if values.shape[1] == len(header.cells) and np.isfinite(values).all() else None
 
 
-def _careful(numbers: list[int], rows: list[str], header: Header, key: int, wanted: Wanted) -> Vector:
+def careful(numbers: list[int], rows: list[str], header: Header, key: int, wanted: Wanted) -> Vector:
+    """All numbers cell by cell, (rows, columns), NaN where `Wanted.missing` allows it.
+
+    Args:
+        numbers: line of each row.
+        rows: lines of text.
+        header: of the table.
+        key: index of the time or frequency; -1 for none.
+        wanted: what is asked of the file.
+
+    Raises:
+        DataError: a cell is no number, or a row has another number of cells.
+    """
     width = len(header.cells)
     values: NDArray[np.float64] = np.full((len(rows), width), np.nan)
     for index, (line, row) in enumerate(zip(numbers, rows, strict=True)):
@@ -144,6 +162,8 @@ def _careful(numbers: list[int], rows: list[str], header: Header, key: int, want
                 if cell:
                     raise DataError(f"{place} holds {cell!r}; allowed are finite numbers, or an empty cell where the "
                                     "value is undefined")  # fmt: skip
+                continue
+            if wanted.missing == "mark":
                 continue
             if not cell and index > 0 and _ends_here(rows[index:], column, header):
                 raise _different_length(place)
@@ -181,8 +201,17 @@ def _different_length(place: str) -> DataError:
     )
 
 
-def _decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[str]:
-    """Turn decimal commas into points; refuse when a comma could be anything else."""
+def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[str]:
+    """Rows with decimal points instead of commas; refused where a comma could be anything else.
+
+    Args:
+        numbers: line of each row.
+        rows: lines of text.
+        header: of the table.
+
+    Raises:
+        DataError: a comma that may separate thousands.
+    """
     pointed = next((n for n, row in zip(numbers, rows, strict=True) if "." in row), None)
     for line, row in zip(numbers, rows, strict=True):
         for column, cell in enumerate(_split(row, header.delimiter)):

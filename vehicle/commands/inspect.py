@@ -1,0 +1,112 @@
+"""`python -m vehicle inspect FILE`: what a measurement file holds, and the option that picks a channel."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.command_line import Parser, command
+from vehicle.commands.options import command_parser, message_options
+
+if TYPE_CHECKING:
+    from vehicle.records.channel import Channel, Measurement
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
+    found.add_argument("file", metavar="FILE", help="of any format, recognised by its content; or a shipped input")
+    found.add_argument("--json", action="store_true", help="print JSON")
+    message_options(found)
+    return found
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.excitation.input_files import find_input
+    from vehicle.records.reader import read_record
+
+    measurement = read_record(find_input(options.file))
+    found = contents(measurement)
+    print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+
+
+def contents(measurement: Measurement) -> dict[str, Any]:
+    """A file in plain numbers and texts; levels in SI, or as found where the unit is open."""
+    from vehicle.records.clock import time_remarks
+
+    axes = {id(one.axis): one.axis for one in measurement.channels if one.kind == "time" and one.axis is not None}
+    remarks = [text for axis in axes.values() for text in time_remarks(axis)]
+    return {
+        "file": measurement.path.name,
+        "format": measurement.format,
+        "program": measurement.program,
+        "start": measurement.start,
+        "sha256": measurement.sha256,
+        "channels": [_channel(number, one) for number, one in enumerate(measurement.channels, 1)],
+        "notices": [*measurement.notices, *dict.fromkeys(remarks)],
+    }
+
+
+def _channel(number: int, channel: Channel) -> dict[str, Any]:
+    import numpy as np
+
+    values = channel.si_values
+    known = np.abs(values[np.isfinite(values)]) if np.iscomplexobj(values) else values[np.isfinite(values)]
+    axis = {"rate_hz": channel.rate} if channel.kind == "time" else {"lines": channel.values.size}
+    start = None if channel.axis is None or not channel.axis.size else float(channel.axis[0])
+    return {
+        "number": number,
+        "name": channel.name,
+        "function": channel.function,
+        "quantity": channel.quantity,
+        "unit": channel.unit,
+        "si_unit": channel.si_unit,
+        **axis,
+        "samples": channel.values.size,
+        "start_s" if channel.kind == "time" else "start_hz": start,
+        "rms": float(np.sqrt(np.mean(np.square(known, dtype=float)))) if known.size else None,
+        "min": float(known.min()) if known.size else None,
+        "max": float(known.max()) if known.size else None,
+        "place": channel.place,
+        "direction": channel.direction,
+        "reference": channel.reference,
+        "remark": channel.remark,
+    }
+
+
+def report(found: dict[str, Any]) -> str:
+    """The table as text."""
+    about = [f"{found['file']}: {found['format']}, {len(found['channels'])} channels"]
+    about += [found[key] for key in ("program", "start") if found[key]]
+    width = max([4, *(len(one["name"]) for one in found["channels"])])
+    width = min(width, 40)
+    lines = ["; ".join(about), f"sha256 {found['sha256']}"]
+    lines.append(
+        f"{'no':>4}  {'name':<{width}}  {'unit':<10} {'rate [Hz]':>11} {'samples':>9} {'RMS':>11} {'lowest':>11} "
+        f"{'highest':>11}  {'of':<8} place"
+    )
+    for one in found["channels"]:
+        numbers = ["-" if one[key] is None else f"{one[key]:.4g}" for key in ("rms", "min", "max")]
+        rate = one.get("rate_hz")
+        axis = f"{rate:.6g}" if rate is not None else "lines" if "lines" in one else "-"
+        place = " ".join(text for text in (one["place"], one["direction"], one["reference"]) if text)
+        lines.append(
+            f"{one['number']:>4}  {one['name'][:width]:<{width}}  {one['unit'] or '?':<10} {axis:>11} "
+            f"{one['samples']:>9} {numbers[0]:>11} {numbers[1]:>11} {numbers[2]:>11}  "
+            f"{one['si_unit'] or '?':<8} {place}"
+        )
+        if one["remark"]:
+            lines.append(f"{'':>6}{one['remark']}")
+    lines += [f"notice: {text}" for text in found["notices"]]
+    histories = [one for one in found["channels"] if "rate_hz" in one]
+    if histories:
+        name = histories[-1]["name"]
+        once = name and sum(one["name"] == name for one in found["channels"]) == 1
+        pick = shlex.quote(name) if once else str(histories[-1]["number"])
+        lines.append(f"a channel is chosen by --channel fr={pick}, or by its number, {histories[-1]['number']}")
+    return "\n".join(lines)
+
+
+main = command(parser, _job)

@@ -1,0 +1,186 @@
+"""The one way into measurement files: a file is recognised by what it holds, whatever it is called."""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+import zipfile
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any, cast
+
+from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.records.channel import Measurement
+
+HEAD = 4096
+"""Bytes at the beginning that tell the format."""
+
+READERS = {
+    "csv": "logger_format",
+    "npz": "array_format",
+}
+"""Name of a format and the module that reads it, imported when such a file is met."""
+
+OTHERS = {
+    b"|CF,": ("FAMOS", "UFF 58, MAT or CSV"),
+    b"<usi:tdm": ("TDM", "TDMS or CSV"),
+    b"DEWESOFT": ("Dewesoft", "UFF 58, MAT or MDF4"),
+    b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
+}
+"""First bytes of formats that are not read: name, and what to export instead."""
+
+ENDINGS = {
+    ".tdm": OTHERS[b"<usi:tdm"],
+    ".dxd": OTHERS[b"DEWESOFT"],
+    ".d7d": OTHERS[b"DEWESOFT"],
+    ".op2": OTHERS[b"$OP2"],
+    ".bin": ("Catman or raw numbers", "MAT, MDF4 or CSV"),
+    ".tst": ("Catman", "MAT, MDF4 or CSV"),
+    ".sie": ("SoMat SIE", "RPC III or CSV"),
+    ".dac": ("nCode DAC", "RPC III or CSV"),
+    ".xls": ("Excel before 2007", "XLSX or CSV"),
+    ".lms": ("a Testlab project", "UFF 58 or MAT"),
+    ".pti": ("PULSE time", "UFF 58"),
+    ".atfx": ("ATFX", "UFF 58 or MAT"),
+    ".mp3": ("compressed sound", "WAV"),
+    ".flac": ("compressed sound", "WAV"),
+}
+"""The same by the end of the name, for a file of bytes that nothing else tells."""
+
+
+def read_record(path: str | Path) -> Measurement:
+    """Read all channels of a measurement file as found.
+
+    Args:
+        path: the file, of any format of `READERS`.
+
+    Raises:
+        ConfigurationError: there is no such file.
+        DataError: no format that is read, or a damaged file.
+        MissingPartError: the format needs a library that is not there; the message names the extra.
+    """
+    file = Path(path)
+    name = recognise(file)
+    read = cast(Callable[[Path], Measurement], import_module(f"vehicle.records.{READERS[name]}").read)
+    return read(file)
+
+
+def recognise(path: Path) -> str:
+    """Name of the format of a file, by its content.
+
+    Args:
+        path: the file.
+
+    Raises:
+        ConfigurationError: there is no such file.
+        DataError: bytes of no format that is read.
+    """
+    if not path.is_file():
+        raise ConfigurationError(f"{path}: no such file; give the path of a measurement file")
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD)
+        size = path.stat().st_size
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
+    name = _by_bytes(path, head, size)
+    if name is not None:
+        return name
+    for begins, (other, instead) in OTHERS.items():
+        if head.startswith(begins) or (begins == b"<usi:tdm" and begins in head):
+            raise DataError(f"{path}: is {other}, which is not read; export {instead}")
+    if path.suffix.lower() in (".csv", ".txt", ".asc"):
+        return "csv"  # its reader names the byte that is no text
+    if b"\0" in head and not head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        other, instead = ENDINGS.get(path.suffix.lower(), ("of no known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
+        raise DataError(f"{path}: binary file, {other}, which is not read; export {instead}")
+    if path.suffix.lower() in ENDINGS and not head.isascii():
+        other, instead = ENDINGS[path.suffix.lower()]
+        raise DataError(f"{path}: is {other}, which is not read; export {instead}")
+    return "csv"
+
+
+def _by_bytes(path: Path, head: bytes, size: int) -> str | None:
+    """The format that the first bytes tell; None for text and all else."""
+    if head.startswith(b"PK"):
+        return _archive(path)
+    plain = {
+        b"TDSm": "tdms",
+        b"MDF     ": "mdf",
+        b"UnFinMF ": "mdf",
+        b"\x89HDF\r\n\x1a\n": "hdf5",
+        b"MATLAB 7.3": "hdf5",
+        b"FORMAT\0": "rpc",
+    }
+    for begins, name in plain.items():
+        if head.startswith(begins):
+            return name
+    if head[512:520] == b"\x89HDF\r\n\x1a\n":
+        return "hdf5"
+    if head[:4] in (b"RIFF", b"RIFX", b"RF64") and head[8:12] == b"WAVE":
+        return "wav"
+    if head[126:128] in (b"IM", b"MI") or head.startswith(b"MATLAB 5.0") or _matlab_4(head, size):
+        return "mat"
+    first = [line.strip() for line in head[:600].splitlines() if line.strip()][:2]
+    if len(first) == 2 and first[0] == b"-1" and first[1][:4].strip(b"b ").isdigit():
+        return "uff"
+    return None
+
+
+def _archive(path: Path) -> str:
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError):
+        return "npz"  # its reader says what is wrong
+    return "xlsx" if any(name.startswith("xl/") for name in names) else "npz"
+
+
+def _matlab_4(head: bytes, size: int) -> bool:
+    """Whether a file begins with a matrix of MATLAB 4, of either byte order, that fits into it."""
+    if len(head) < 24:
+        return False
+    for order in "<>":
+        kind, rows, columns, imaginary, letters = struct.unpack(f"{order}5i", head[:20])
+        machine, rest = divmod(kind, 1000)
+        width = {0: 8, 1: 4, 2: 4, 3: 2, 4: 2, 5: 1}.get(rest // 10 % 10)
+        fits = width is not None and rows > 0 and columns > 0 and 20 + letters + rows * columns * width <= size
+        if (
+            kind >= 0
+            and machine in (0, 1)
+            and rest // 100 == 0
+            and rest % 10 in (0, 1)
+            and fits
+            and imaginary in (0, 1)
+            and 1 < letters < 65
+            and head[20 : 19 + letters].isascii()
+            and head[19 + letters] == 0
+        ):
+            return True
+    return False
+
+
+def extra(package: str, name: str, what: str) -> Any:
+    """Import a library of an extra.
+
+    Args:
+        package: to be imported.
+        name: of the extra.
+        what: the format, for the message.
+
+    Raises:
+        MissingPartError: it is not there.
+    """
+    try:
+        return import_module(package)
+    except ImportError:
+        raise MissingPartError(
+            f"{what} needs {package}, which is not installed; install it with: pip install 'vehicle-on-shaker[{name}]'"
+        ) from None
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file, hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,99 @@
+"""Units of measurement files: what they measure, and what they are in SI."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+STANDARD_GRAVITY = 9.80665
+"""[m/s2], ISO 80000-3, for records in g"""
+
+
+class Unit(NamedTuple):
+    """A unit: value in SI = value * factor."""
+
+    quantity: str
+    si: str
+    factor: float
+
+
+_TABLE = {
+    ("time", "s"): {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
+    ("frequency", "Hz"): {"Hz": 1.0, "kHz": 1e3},
+    ("displacement", "m"): {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254, "ft": 0.3048},
+    ("velocity", "m/s"): {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6, "in/s": 0.0254},
+    ("acceleration", "m/s2"): {
+        "m/s2": 1.0,
+        "mm/s2": 1e-3,
+        "cm/s2": 1e-2,
+        "in/s2": 0.0254,
+        "g": STANDARD_GRAVITY,
+        "gn": STANDARD_GRAVITY,
+        "mg": 1e-3 * STANDARD_GRAVITY,
+    },
+    ("force", "N"): {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605},
+    ("moment", "N m"): {"Nm": 1.0, "kNm": 1e3},
+    ("pressure", "Pa"): {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "bar": 1e5, "mbar": 1e2},
+    ("angle", "rad"): {"rad": 1.0, "deg": math.pi / 180.0, "°": math.pi / 180.0},
+    ("angular velocity", "rad/s"): {"rad/s": 1.0, "deg/s": math.pi / 180.0, "°/s": math.pi / 180.0},
+    ("voltage", "V"): {"V": 1.0, "mV": 1e-3},
+    ("current", "A"): {"A": 1.0, "mA": 1e-3},
+    ("strain", "m/m"): {"m/m": 1.0, "um/m": 1e-6},
+    ("temperature", "degC"): {"degC": 1.0, "°C": 1.0},
+}
+
+UNITS = {text: Unit(*kind, factor) for kind, units in _TABLE.items() for text, factor in units.items()}
+"""Plain form of a unit to its meaning. Letters count: m is no M, and g is gravity, in which sensors are calibrated."""
+
+QUANTITIES = {kind[0]: kind[1] for kind in _TABLE}
+"""Quantity to its SI unit."""
+
+_SECONDS_SQUARED = re.compile(r"/(s|sec)(\^2|²|\*\*2|\^\(2\)|/s|/sec)$")
+_NEGATIVE = re.compile(r"[ .·*]?s(\^-|\^\(-|-|⁻)(?P<power>[12¹²])\)?$")
+
+
+def plain_unit(text: str) -> str:
+    """A unit in the one form of the table: m/s^2, m/s², m/s/s, m.s-2 are m/s2; micro signs are u."""
+    found = text.strip().strip("[]").strip()
+    if found.startswith("(") and found.endswith(")") and found.count("(") == 1:
+        found = found[1:-1].strip()
+    found = found.replace("µ", "u").replace("μ", "u").replace("sec", "s").replace("_", "")
+    found = _SECONDS_SQUARED.sub("/s2", found.replace(" / ", "/"))
+    found = _NEGATIVE.sub(lambda match: "/s2" if match["power"] in "2²" else "/s", found)
+    if found in ("N m", "N*m", "N·m", "N.m", "kN m", "kN*m"):
+        found = re.sub(r"[ *·.]", "", found)
+    return "g" if found == "G" else found
+
+
+def find_unit(text: str) -> Unit | None:
+    """What a unit means; None where the table does not have it.
+
+    Args:
+        text: as found in a file.
+    """
+    return UNITS.get(plain_unit(text))
+
+
+def find_ratio(text: str) -> Unit | None:
+    """What a unit or the quotient of two units means, as (m/s2)/N, g/m or m/s2/N; None where that is open.
+
+    Args:
+        text: as found in a file.
+    """
+    whole = find_unit(text)
+    if whole is not None:
+        return whole
+    found: list[Unit] = []
+    for match in re.finditer("/", text):
+        upper, lower = find_unit(text[: match.start()]), find_unit(text[match.end() :])
+        if upper is not None and lower is not None:
+            found.append(
+                Unit(f"{upper.quantity}/{lower.quantity}", f"({upper.si})/({lower.si})", upper.factor / lower.factor)
+            )
+    return found[0] if len(set(found)) == 1 else None
+
+
+def allowed_units(quantity: str | None = None) -> str:
+    """The units of a quantity, or of all, for messages."""
+    return ", ".join(text for text, unit in UNITS.items() if quantity in (None, unit.quantity))
