@@ -135,8 +135,8 @@ def test_a_wrong_pick_lists_all_channels(tmp_path):
             read_signal(path, choice=choice("--channel", f"fr={wanted}"))
     with pytest.raises(ConfigurationError, match=r"--unit furlong: not known"):
         choice("--unit", "furlong")
-    with pytest.raises(ConfigurationError, match=r"--channel rr=.*allowed are fr, fl and time"):
-        read_signal(path, choice=choice("--channel", "rr=1"))
+    with pytest.raises(ConfigurationError, match=r"--channel xx=.*allowed are fr, fl, rr, rl and time"):
+        read_signal(path, choice=choice("--channel", "xx=1"))
 
 
 def test_units_and_rates_of_the_request_are_said(tmp_path):

@@ -88,8 +88,12 @@ def road_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("a road")
     group.add_argument("--speed", type=float, metavar="KM/H", help="speed of the car [km/h]")
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
-    group.add_argument("--rate", type=float, metavar="HZ", help="samples a second; 1000 by default; beside --input of one run: "
-        "in place of the times of the file")
+    group.add_argument(
+        "--rate",
+        type=float,
+        metavar="HZ",
+        help="samples a second; 1000 by default; beside --input of one run: in place of the times of the file",
+    )
     group.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
     group.add_argument(
         "--coherence",
@@ -106,8 +110,12 @@ ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
 """Options of `road_options`."""
 
 INPUT_CHOICES = {
-    **{name: name for name in ("wheel", "interpolate", "resample", "remove-mean", "detrend", "highpass")},
-    **{"channel": "channels", "unit": "units", "from": "first", "to": "last", "remove-mean": "remove_mean"},
+    **{name: name for name in ("wheel", "interpolate", "resample", "detrend", "highpass")},
+    "remove-mean": "remove_mean",
+    "channel": "channels",
+    "unit": "units",
+    "from": "first",
+    "to": "last",
 }
 """Options of a file of signals, and where their values are."""
 
@@ -129,9 +137,7 @@ def drives_on_road(options: argparse.Namespace) -> bool:
             )
         for name, place in INPUT_CHOICES.items():
             if getattr(options, place, None):
-                raise ConfigurationError(
-                    f"--{name}: belongs to --input; {words} drives all wheels of the car"
-                )
+                raise ConfigurationError(f"--{name}: belongs to --input; {words} drives all wheels of the car")
         return True
     if not options.input:
         raise ConfigurationError("needed is either --input FILE, or a road: --road C --speed 80")

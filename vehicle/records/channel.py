@@ -14,6 +14,8 @@ from vehicle.records.clock import clock_of_rounded, is_uniform, longest_step
 from vehicle.records.table import Vector
 from vehicle.records.units import find_ratio
 
+Values = NDArray[np.float64] | NDArray[np.complex128]
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Channel:
@@ -33,7 +35,7 @@ class Channel:
     """
 
     name: str
-    values: NDArray[np.float64] | NDArray[np.complex128]
+    values: Values
     unit: str = ""
     axis: Vector | None = None
     kind: Literal["time", "frequency"] = "time"
@@ -56,7 +58,7 @@ class Channel:
         return unit.si if unit is not None else ""
 
     @property
-    def si_values(self) -> NDArray[np.float64] | NDArray[np.complex128]:
+    def si_values(self) -> Values:
         """Values in SI; as found where the unit is open."""
         unit = find_ratio(self.unit)
         return self.values if unit is None or unit.factor == 1.0 else self.values * unit.factor

@@ -19,6 +19,10 @@ HEAD = 4096
 READERS = {
     "csv": "logger_format",
     "npz": "array_format",
+    "uff": "uff_format",
+    "mat": "matlab_format",
+    "wav": "wave_format",
+    "rpc": "rpc_format",
 }
 """Name of a format and the module that reads it, imported when such a file is met."""
 

@@ -51,6 +51,8 @@ QUANTITIES = {kind[0]: kind[1] for kind in _TABLE}
 
 _SECONDS_SQUARED = re.compile(r"/(s|sec)(\^2|²|\*\*2|\^\(2\)|/s|/sec)$")
 _NEGATIVE = re.compile(r"[ .·*]?s(\^-|\^\(-|-|⁻)(?P<power>[12¹²])\)?$")
+_SCALED = re.compile(r"(?P<number>[+-]?\d+(\.\d*)?([eE][+-]?\d+)?)[ *]+(?P<unit>\D.*)")
+_INVERSE = re.compile(r"\(1/(?P<lower>[^()]+)\)[*·. ]\(?(?P<upper>[^()]+)\)?")
 
 
 def plain_unit(text: str) -> str:
@@ -70,9 +72,14 @@ def find_unit(text: str) -> Unit | None:
     """What a unit means; None where the table does not have it.
 
     Args:
-        text: as found in a file.
+        text: as found in a file; a number before it, as in "12.5 mm", is the value of one.
     """
-    return UNITS.get(plain_unit(text))
+    known = UNITS.get(plain_unit(text))
+    scaled = _SCALED.fullmatch(text.strip()) if known is None else None
+    if scaled is None:
+        return known
+    unit = UNITS.get(plain_unit(scaled["unit"]))
+    return None if unit is None else unit._replace(factor=unit.factor * float(scaled["number"]))
 
 
 def find_ratio(text: str) -> Unit | None:
@@ -84,6 +91,9 @@ def find_ratio(text: str) -> Unit | None:
     whole = find_unit(text)
     if whole is not None:
         return whole
+    inverse = _INVERSE.fullmatch(text.strip())
+    if inverse:
+        text = f"({inverse['upper']})/({inverse['lower']})"
     found: list[Unit] = []
     for match in re.finditer("/", text):
         upper, lower = find_unit(text[: match.start()]), find_unit(text[match.end() :])
