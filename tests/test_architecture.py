@@ -18,7 +18,7 @@ EVERYWHERE = {"errors", "names"}
 """May be used by every room."""
 
 ROOMS: dict[str, set[str]] = {
-    "parameters": set(),
+    "parameters": {"records"},
     "laws": {"compiler", "parameters"},
     "records": {"analysis"},
     "excitation": {"records"},

@@ -77,11 +77,11 @@ def add_mode(spec, number, omega, ratio=0.0):
     )
 
 
-def add_damper(spec, body, parameters, *, stiffness=0.0):
+def add_damper(spec, body, parameters, *, stiffness=0.0, pieces=(), rest=0.0):
     """Slide joint `damper_fr` along x with the user actuator of a damper.
 
-    `parameters` are viscous, smoothing, sliding limit, static limit, Stribeck velocity and exponent, and for a
-    degressive damper Ddeg - D and (Ddeg - D) Vdeg.
+    `parameters` are viscous, smoothing, sliding limit, static limit, Stribeck velocity and exponent; `pieces`
+    are slope, middle and limit of the clamped lines beside it, `rest` is the whole force at rest.
     """
     body.add_joint(
         name="damper_fr",
@@ -96,11 +96,12 @@ def add_damper(spec, body, parameters, *, stiffness=0.0):
     actuator = spec.add_actuator(name="damper_fr", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="damper_fr")
     actuator.gaintype, actuator.biastype = mujoco.mjtGain.mjGAIN_USER, mujoco.mjtBias.mjBIAS_USER
     law = FRICTION_LAWS.index("coulomb" if parameters[3] == parameters[2] else "stribeck")
-    actuator.biasprm = [*parameters, *np.zeros(8 - len(parameters)), law, 0.0]
-    if len(parameters) > 6:
-        tendon = spec.add_tendon(name="valve_fr")
+    actuator.biasprm = [*parameters[:6], rest, rest - sum(np.clip(-e * m, -w, w) for e, m, w in pieces), law, 0.0]
+    for number, piece in enumerate(pieces):
+        tendon = spec.add_tendon(name=f"valve_{number}")
         tendon.wrap_joint("damper_fr", 1.0)
-        tendon.frictionloss = parameters[7]
+        tendon.frictionloss = piece[2]
+        spec.add_numeric(name=f"law/valve_{number}", data=piece)
 
 
 class Stepper:

@@ -13,7 +13,7 @@ from vehicle.assembly.connections import element_law
 from vehicle.flexbody.attached_mass import with_attached_masses
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, attached_nodes
-from vehicle.laws.damper import actuator_parameters, pack
+from vehicle.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.parameters.composition import (
     PlacedConnection,
     PlacedDamper,
@@ -267,11 +267,12 @@ class _Builder:
             name=placed.name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name
         )
         laws = pack(damper)
-        if laws["degressive_limit"] > 0.0:
-            # What the valve adds below its velocity is a second friction row, which a joint cannot have: a tendon.
-            tendon = self.spec.add_tendon(name=f"valve/{placed.name}")
+        for number, piece in enumerate(damper_curve(damper).clamped()):
+            # Each steeper piece of the curve is a further friction row, which a joint cannot have: a tendon.
+            tendon = self.spec.add_tendon(name=f"valve/{placed.name}" + (f"/{number}" if number else ""))
             tendon.wrap_joint(name, 1.0)
-            tendon.frictionloss = laws["degressive_limit"]
+            tendon.frictionloss = piece[2]
+            self._numeric(f"law/{tendon.name}", piece)
         actuator = self.spec.add_actuator(name=placed.name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER
         actuator.biastype = mujoco.mjtBias.mjBIAS_USER

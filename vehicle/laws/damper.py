@@ -1,8 +1,8 @@
 """The laws of a damper as one record: written into a model as the parameters of its actuator, read back as an array.
 
-    F = D v + clamp(c v, L(v)) + clamp(d v, M),   d = Ddeg - D, M = d Vdeg: the degressive law, else zero
+    F = F_c(v) - F_gas + clamp(c v, L(v)),   F_c = D v + shift + sum of clamp(e (v - m), e w)
 
-with the friction of `vehicle.laws.friction`.
+with the friction of `vehicle.laws.friction` and the curve F_c of `vehicle.laws.curve`: linear, degressive, or a table.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.compiler import jitable
-from vehicle.laws.degressive import Degressive
+from vehicle.laws.curve import Curve
 from vehicle.laws.friction import Friction
-from vehicle.laws.law import Parallel
+from vehicle.laws.law import Constant, Parallel
 from vehicle.parameters.elements import FRICTION_LAWS, Damper
 
 RECORD = np.dtype(
     [
         (name, np.float64)
         for name in (
-            "viscous_damping",  # D [N s/m]
+            "viscous_damping",  # D [N s/m], the smallest slope of the curve
             "smoothing",  # eps [s/m]
             "friction_limit",  # Fd [N]
             "static_limit",  # Fs [N]
             "stribeck_velocity",  # vs [m/s]
             "stribeck_exponent",  # delta [-]
-            "degressive_slope",  # d [N s/m]
-            "degressive_limit",  # M [N]
+            "rest_force",  # F_c(0) - F_gas [N]
+            "shift",  # shift - F_gas [N]
             "friction_law",  # index of its word
             "spare",
         )
@@ -44,21 +44,36 @@ RECORD = np.dtype(
 
 def pack(damper: Damper) -> npt.NDArray[Any]:
     """Record of the laws of a damper; ()."""
-    slope = damper.degressive_viscous - damper.viscous if damper.viscous_law == "degressive" else 0.0
+    curve = damper_curve(damper)
+    rest = float(curve.force(0.0)) - damper.gas_force
     return np.array(
         (
-            damper.viscous,
+            curve.least_slope,
             damper.smoothing,
             damper.coulomb_friction,
             damper.static_friction,
             damper.stribeck_velocity,
             damper.stribeck_exponent,
-            slope,
-            slope * damper.degressive_velocity,
+            rest,
+            rest - curve.at_rest(),
             FRICTION_LAWS.index(damper.friction_law),
             0.0,
         ),
         dtype=RECORD,
+    )
+
+
+def damper_curve(damper: Damper) -> Curve:
+    """Force over velocity without friction and gas."""
+    if damper.viscous_law == "table":
+        return Curve.through(damper.velocity, damper.force)
+    if damper.viscous_law == "linear":
+        return Curve.line(damper.viscous)
+    knee, excess = damper.degressive_velocity, damper.degressive_viscous - damper.viscous
+    return Curve(
+        knots=np.array([-knee, knee]),
+        slopes=np.array([damper.viscous, damper.degressive_viscous, damper.viscous]),
+        offsets=np.array([-excess * knee, 0.0, excess * knee]),
     )
 
 
@@ -75,13 +90,8 @@ def unpack(parameters: npt.ArrayLike) -> npt.NDArray[Any]:
 def damper_law(damper: Damper) -> Parallel:
     """Whole force of a damper as a law of arrays, its friction in the smooth form."""
     record, law = pack(damper), FRICTION[damper.friction_law]
-    viscous = Degressive(
-        low_damping=float(record["viscous_damping"] + record["degressive_slope"]),
-        high_damping=damper.viscous,
-        knee_velocity=damper.degressive_velocity,
-    )
     friction = law(**{entry.name: float(record[entry.name]) for entry in dataclasses.fields(law)})
-    return Parallel(laws=(viscous, friction))
+    return Parallel(laws=(damper_curve(damper), Constant(value=-damper.gas_force), friction))
 
 
 def _friction_laws() -> dict[str, type[Friction]]:

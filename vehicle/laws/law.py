@@ -22,6 +22,21 @@ class ForceLaw(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Constant:
+    """F = F0, as of a gas."""
+
+    value: Numbers
+
+    def force(self, velocity: Numbers) -> npt.NDArray[np.float64]:
+        """F0 [N] at every velocity."""
+        return np.asarray(self.value + 0.0 * np.asarray(velocity))
+
+    def slope(self, velocity: Numbers) -> npt.NDArray[np.float64]:
+        """Zero."""
+        return np.zeros(np.shape(velocity))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Parallel:
     """Laws side by side on the same velocity: F(v) = sum of F_i(v)."""
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.curves import require_curve
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.quantity import quantity, validate
 
@@ -88,17 +89,28 @@ class SlideSpring:
 class Damper:
     """F = D v + clamp(c v, limit(v)), plus (Ddeg - D) v up to Vdeg and (Ddeg - D) Vdeg above, if degressive.
 
+    With the table law, D v is the line through points of velocity and force, positive in extension, which goes on
+    beyond them; a gas force pushes the damper apart, and the preload of the springs balances it where the car stands.
     Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
     the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
     """
 
     viscous: float = quantity("N s/m", "D, damping constant", at_least=0.0, **STRONGEST)
-    viscous_law: str = quantity("-", "law of the damping", choices=("linear", "degressive"))
+    viscous_law: str = quantity("-", "law of the damping", choices=("linear", "degressive", "table"))
     degressive_viscous: float = quantity(
         "N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0, **STRONGEST
     )
     degressive_velocity: float = quantity("m/s", "Vdeg, where the degressive law turns flatter", above=0.0, **MOVING)
+    velocity: tuple[float, ...] = quantity(
+        "m/s", "velocities of the table law, bump negative", default=(), at_least=-10.0, at_most=10.0
+    )
+    force: tuple[float, ...] = quantity(
+        "N", "forces of the table law, bump negative", default=(), at_least=-1e6, at_most=1e6
+    )
+    gas_force: float = quantity(
+        "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
+    )
     friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(
@@ -123,6 +135,8 @@ class Damper:
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
                 f"coulomb_friction ({self.coulomb_friction!r} N)"
             )
+        if self.viscous_law == "table":
+            require_curve("Damper", "velocity", self.velocity, self.force)
         if self.viscous_law == "degressive" and self.degressive_viscous < self.viscous:
             raise ConfigurationError(
                 f"Damper.degressive_viscous: found {self.degressive_viscous!r} N s/m, must be at least "

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 import typing
 from collections.abc import Mapping
 from typing import Any
-
-import numpy as np
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
@@ -110,37 +109,29 @@ def check(path: str, value: Any, metadata: Any) -> None:
         return
     if value is None:
         return
-    if metadata["length"] is not None:
-        if not isinstance(value, tuple) or len(value) != metadata["length"]:
-            raise ConfigurationError(
-                f"{path}: found {value!r}, needed is a list of {metadata['length']} numbers [{metadata['unit']}]"
-            )
-        components = value
-    else:
-        components = (value,)
-    for component in components:
-        _check_number(path, component, metadata)
+    length = metadata["length"]
+    if length is not None and (not isinstance(value, tuple) or len(value) != length):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is a list of {length} numbers [{metadata['unit']}]")
+    # The package is imported without numpy; its arrays turn themselves into lists.
+    numbers = value.ravel().tolist() if hasattr(value, "ravel") else value if isinstance(value, tuple) else (value,)
+    for number in numbers:
+        _check_number(path, number, metadata)
 
 
 def _check_number(path: str, number: Any, metadata: Any) -> None:
-    """Check a number, or all numbers of an array, against the range of its field."""
-    unit, values = metadata["unit"], np.asarray(number)
-    if values.dtype.kind not in "iuf":
+    """Check one number against the range of its field."""
+    unit = metadata["unit"]
+    if isinstance(number, bool) or not isinstance(number, int | float):
         raise ConfigurationError(f"{path}: found {number!r}, needed is a number [{unit}]")
-    above, least, most = metadata["above"], metadata["at_least"], metadata["at_most"]
-    ranges = (
-        (np.isfinite(values), f", needed is a finite number ({metadata['meaning']})"),
-        (above is None or values > above, f", must be greater than {above!r}"),
-        (least is None or values >= least, f", must be at least {least!r}"),
-        (most is None or values <= most, f", must be at most {most!r}"),
-    )
-    for allowed, words in ranges:
-        if np.all(allowed):
-            continue
-        bad = number if values.ndim == 0 else float(values[~allowed].flat[0])
-        # A negative mass needs no reason.
-        why = f" ({metadata['why']})" if metadata["why"] and bad >= 0.0 and "at " in words else ""
-        raise ConfigurationError(f"{path}: found {bad!r} {unit}{words}{why}")
+    why = f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""  # a negative mass needs no reason
+    if not math.isfinite(number):
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, needed is a finite number ({metadata['meaning']})")
+    if metadata["above"] is not None and not number > metadata["above"]:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be greater than {metadata['above']!r}")
+    if metadata["at_least"] is not None and number < metadata["at_least"]:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {metadata['at_least']!r}{why}")
+    if metadata["at_most"] is not None and number > metadata["at_most"]:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {metadata['at_most']!r}{why}")
 
 
 def field_quantity(kind: type[Any], path: str) -> Mapping[str, Any]:

@@ -52,7 +52,7 @@ class Damper(Validated):
 class Friction(Validated):
     """Friction of the shock absorber, smoothed by an arc tangent; numbers of the laws of `vehicle.laws` by their names.
 
-    What the Coulomb law does not need is that of the complete car where a file leaves it out (Bommer 2006, section 3.4).
+    What the Coulomb law does not need is that of the complete car where a file leaves it out (Bommer 2006, 3.4).
     """
 
     limit: float = quantity("N", "Coulomb friction force Fd", at_least=0.0)

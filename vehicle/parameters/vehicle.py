@@ -12,6 +12,7 @@ from vehicle.names import AXES, acceleration_channels, wheel_channels
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.compose import compose
 from vehicle.parameters.composition import Composition
+from vehicle.parameters.curves import with_curve_files
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.paths import override
@@ -159,6 +160,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     for key in ("name", "gravity", "body", "solver"):
         if key not in table:
             raise ConfigurationError(f"{key}: missing; every vehicle file has it")
+    table = with_curve_files(table, folder or Path())
     head = build(Head, {key: table[key] for key in ("name", "gravity")})
     body = build(TrimmedBody, convert(dict, table["body"], "body"), "body")
     solver = build(Solver, convert(dict, table["solver"], "solver"), "solver")

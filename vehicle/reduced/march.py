@@ -2,7 +2,7 @@
 
 v+ = a + G f with a the w velocities without the forces of the step, f = -phi(v+) and
 
-    phi(v) = clamp(c v, L) + clamp(d v, M),   c = (2/pi) L eps: friction;  d = Ddeg - D, M = d Vdeg: degressive law.
+    phi(v) = clamp(c v, L) + F_c(v) - D v - F_c(0),   c = (2/pi) L eps: friction;  F_c: curve, D its smallest slope.
 
 phi grows with v and is piecewise linear, so one damper alone is solved exactly. Several are solved by turns: the fixed
 point is the minimum of a convex function (G is symmetric, positive). Two find it from anywhere, by coordinate descent;
@@ -36,39 +36,47 @@ ACCURACY = 1e-9
 
 
 @jitable
-def solve_damper(
-    a: float, g: float, c: float, limit: float, d: float, limit2: float, both: float, alone: float, extra: float
-) -> float:
-    """Velocity v of a = v + g (clamp(c v, limit) + clamp(d v, limit2)); odd in a, g > 0.
+def solve_damper(a: float, g: float, limit: float, smoothing: float, curve: Any, piece: int) -> tuple[float, int]:
+    """Velocity v of a = v + g (clamp(c v, L) + s v + b), and the piece of the curve that it is on.
 
-    `both`, `alone` and `extra` are 1 / (1 + g (c + d)), 1 / (1 + g c) and 1 / (1 + g d): divisions are slow, and these
-    do not wait.
+    With the piece s v + b known, v = (a - g b) k - g k clamp(c v, L), k = 1/(1 + g s). Beyond the edge of that piece,
+    the solution is beyond it in truth too, for all of the law rises: the next piece is tried.
+
+    Args:
+        a: velocity without the forces of the step.
+        g: own gain, above 0.
+        limit: L.
+        smoothing: eps, with c = (2/pi) L eps: the friction is full at pi/(2 eps).
+        curve: upper edge, s, b and k of every piece; (4, pieces).
+        piece: to begin with.
     """
-    size = abs(a)
-    v = size * both
-    if c * v > limit or d * v > limit2:
-        # The corner that comes first on the way up: as a rule friction, at some micrometres a second.
-        if limit * d <= limit2 * c:
-            v = (size - g * limit) * extra
-            if d * v > limit2:
-                v = size - g * (limit + limit2)
+    full = 0.5 * np.pi / smoothing
+    while True:
+        k = curve[3, piece]
+        u, brake = (a - g * curve[2, piece]) * k, g * k * limit
+        if abs(u) > full + brake:
+            v = u - brake if u > 0.0 else u + brake
         else:
-            v = (size - g * limit2) * alone
-            if c * v > limit:
-                v = size - g * (limit + limit2)
-    signed: float = v if a > 0.0 else -v
-    return signed
+            v = u * full / (full + brake)
+        if v > curve[0, piece]:
+            piece += 1
+        elif piece > 0 and v < curve[0, piece - 1]:
+            piece -= 1
+        else:
+            return v, piece
 
 
 @jitable
-def damper_force(v: float, c: float, limit: float, d: float, limit2: float) -> float:
+def damper_force(v: float, limit: float, smoothing: float, curve: Any, piece: int) -> float:
     """-phi(v)."""
-    force: float = -clamp(c * v, limit) - clamp(d * v, limit2)
+    force: float = -clamp(slope_at_rest(limit, smoothing) * v, limit) - curve[1, piece] * v - curve[2, piece]
     return force
 
 
 @jitable
-def solve_dampers(count: int, arriving: Any, gain: Any, laws: Any, velocity: Any, force: Any, room: Any) -> None:
+def solve_dampers(
+    count: int, arriving: Any, gain: Any, laws: Any, curves: Any, velocity: Any, force: Any, last: Any, pieces: Any
+) -> None:
     """Velocities and forces of w dampers in a step.
 
     Args:
@@ -76,19 +84,15 @@ def solve_dampers(count: int, arriving: Any, gain: Any, laws: Any, velocity: Any
         arriving: velocities without the forces of the step [m/s]; (w,).
         gain: G [m/(N s)]; (w, w).
         laws: records of `vehicle.laws.damper`; (w,).
+        curves: what the pieces of the curves have beside D v, as of `solve_damper`; (w, 4, pieces).
         velocity: at the beginning of the step, which sets the friction limits, and at its end; changed in place, (w,).
         force: of the last step and of this one [N], changed in place; (w,).
-        room: limits, slopes, forces and inverses as of the last step; not numbers before the first; (6, w).
+        last: room; (2, w).
+        pieces: which of a curve each damper was on; changed in place, (w,).
     """
-    limit, slope, last, inverses = room[0], room[1], room[2], room[3:]
+    limit, before = last[0], last[1]
     for i in range(count):
-        now = friction_limit(laws[i], velocity[i])
-        if now != limit[i]:
-            limit[i], slope[i] = now, slope_at_rest(now, laws[i]["smoothing"])
-            g, d = gain[i, i], laws[i]["degressive_slope"]
-            inverses[0, i] = 1.0 / (1.0 + g * (slope[i] + d))
-            inverses[1, i] = 1.0 / (1.0 + g * slope[i])
-            inverses[2, i] = 1.0 / (1.0 + g * d)
+        limit[i] = friction_limit(laws[i], velocity[i])
     for _ in range(TURNS):
         # By turns with the others' last forces; all at once, so that none waits for another.
         for i in range(count):
@@ -96,19 +100,17 @@ def solve_dampers(count: int, arriving: Any, gain: Any, laws: Any, velocity: Any
             for j in range(count):
                 if j != i:
                     own += gain[i, j] * force[j]
-            d, m = laws[i]["degressive_slope"], laws[i]["degressive_limit"]
-            both, alone, extra = inverses[0, i], inverses[1, i], inverses[2, i]
-            velocity[i] = solve_damper(own, gain[i, i], slope[i], limit[i], d, m, both, alone, extra)
+            eps = laws[i]["smoothing"]
+            velocity[i], pieces[i] = solve_damper(own, gain[i, i], limit[i], eps, curves[i], pieces[i])
         for i in range(count):
-            d, m = laws[i]["degressive_slope"], laws[i]["degressive_limit"]
-            last[i] = force[i]
-            force[i] = damper_force(velocity[i], slope[i], limit[i], d, m)
+            before[i] = force[i]
+            force[i] = damper_force(velocity[i], limit[i], laws[i]["smoothing"], curves[i], pieces[i])
         settled = True
         for i in range(count):
             change = 0.0
             for j in range(count):
                 if j != i:
-                    change += gain[i, j] * (force[j] - last[j])
+                    change += gain[i, j] * (force[j] - before[j])
             settled = settled and abs(change) <= ACCURACY * gain[i, i]
         if settled:
             return
@@ -122,6 +124,7 @@ def march(
     slip_plate: Any,
     gain: Any,
     laws: Any,
+    curves: Any,
     plates: Any,
     pair: Any,
     real: Any,
@@ -146,6 +149,7 @@ def march(
         slip_plate: what the plates add to the damper velocities, (e, m).
         gain: G of the damper forces of a step, (e, e).
         laws: records of `vehicle.laws.damper`; (e,).
+        curves: pieces of their curves, as of `solve_damper`; (e, 4, pieces).
         plates: (z, z') of the driven plates at the ends of the steps; (steps + 1, m).
         pair, real: eta without the forces of the step, changed in place; (2, p), (q,).
         force: damper forces of the last step [N], changed in place; (e,).
@@ -164,7 +168,7 @@ def march(
     r0, r1, r2, r3, r4, r5, r6 = r[0], r[1], r[2], r[at], r[at + 1], r[at + 2], r[at + 3]
     sample, phase = first, 0  # phase: steps since the last sample
     velocity, arriving, u = velocities[first - 1].copy(), np.empty(count), np.empty(inputs)
-    room = np.full((6, count), np.nan)
+    room, pieces = np.empty((2, count)), np.zeros(count, dtype=np.int64)
     for step in range(plates.shape[0] - 1):
         u[0], u[1], u[2], u[3] = force[0], force[1], plates[step, 0], plates[step, 1]
         for k in range(2, count):
@@ -212,7 +216,7 @@ def march(
         for i in range(count):
             for k in range(plates.shape[1]):
                 arriving[i] += slip_plate[i, k] * plates[step + 1, k]
-        solve_dampers(count, arriving, gain, laws, velocity, force, room)
+        solve_dampers(count, arriving, gain, laws, curves, velocity, force, room, pieces)
         phase += 1
         if phase == 1:
             after[sample - 1] = force

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.laws.damper import RECORD, pack
+from vehicle.laws.damper import RECORD, damper_curve, pack
 from vehicle.names import channel_units, wheel_channels
 from vehicle.parameters.elements import Damper
 from vehicle.reduced.march import March, compiled_march
@@ -137,6 +137,8 @@ class _Run:
         self.slip_plate, self.gain = np.zeros((even, len(self.columns))), np.zeros((even, even))
         self.slip_plate[:count] = (model.slip @ factors.ahead[:, self.columns]).real
         self.gain[:count, :count] = (model.slip @ factors.force).real
+        self.rest = np.array([pack(damper)["rest_force"] for damper in dampers])
+        self.curves = _curves(dampers, np.diag(self.gain))
         self.count = count
         self.pair, self.real = np.zeros((2, len(pairs))), np.zeros(len(reals))
         self.force = np.zeros(even)
@@ -154,6 +156,7 @@ class _Run:
             self.slip_plate,
             self.gain,
             self.laws,
+            self.curves,
             piece,
             self.pair,
             self.real,
@@ -202,5 +205,18 @@ class _Run:
             friction = 0.5 * (self.before + self.after)[: len(plates), column]
             found[f"plate_{wheel}_displacement"] = height.copy()
             found[f"damper_{wheel}_velocity"] = velocity.copy()
-            found[f"damper_{wheel}_force"] = model.matrices.viscous[column] * velocity - friction
+            found[f"damper_{wheel}_force"] = model.matrices.viscous[column] * velocity - friction + self.rest[column]
         return found
+
+
+def _curves(dampers: Sequence[Damper], gains: Vector) -> Vector:
+    """Pieces of the curves without D v and F(0), as the march takes them; (w, 4, pieces), idle ones behind the last."""
+    found = np.zeros((len(gains), 4, max(len(damper_curve(damper).slopes) for damper in dampers)))
+    found[:, 0], found[:, 3] = np.inf, 1.0
+    for own, damper, gain in zip(found, dampers, gains, strict=False):
+        curve = damper_curve(damper)
+        count, excess = len(curve.slopes), curve.slopes - curve.least_slope
+        own[0, : count - 1] = curve.knots
+        own[1, :count], own[2, :count] = excess, curve.offsets - curve.force(0.0)
+        own[3, :count] = 1.0 / (1.0 + gain * excess)
+    return found

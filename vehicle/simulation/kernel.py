@@ -11,8 +11,8 @@ stiff local springs take up to beta = 1/4, which is stable at any step (Newmark;
 row of a damper is f = -clamp(c (v + h a)): D = c h, aref = -v/h, its limit the friction force: set-valued in effect,
 sticking is exact. With c = (2/pi) Fd eps it is a line through zero, clamped at the limit Fd: the slope at rest of the
 published Fd (2/pi) atan(eps v), without its tail (`vehicle.laws.friction`).
-The second row of a degressive damper, F = D v + clamp((Ddeg - D) v) with the limit (Ddeg - D) Vdeg, is a friction row
-too; its law is smooth, so that it is centred like the viscous one: D = (Ddeg - D) h/2, aref = -2 v/h, second order.
+Every steeper piece of the curve of a damper, clamp(e (v - m), e w), is a friction row too (`vehicle.laws.curve`). It
+has no jump, so that it is centred like the viscous one: D = e h/2, aref = -2 (v - m)/h, second order, at any slope.
 The two forces of a bushing are opposite and act each at the point of its own part, in the axes of the carrier; the
 moment r x f of their distance r is left out, which changes no frequency by more than 0.05 %.
 Rotations need no rows: K_rot is soft against every inertia and undamped, so its torque is given explicitly,
@@ -239,8 +239,8 @@ def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     for n in range(own.valves.shape[0]):
         row, damper = own.valves[n, 0], own.valves[n, 1]
         efc.D[row] = c.valve_impedance[n]
-        efc.aref[row] = -2.0 * d.qvel[own.dofs[damper]] / c.timestep
-        efc.frictionloss[row] = own.laws[damper]["degressive_limit"]
+        efc.aref[row] = -2.0 * (d.qvel[own.dofs[damper]] - own.pieces[n, 1]) / c.timestep
+        efc.frictionloss[row] = own.pieces[n, 2]
 
 
 @jitable
@@ -282,6 +282,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
 
 @jitable
 def damper_force(damper: int, d: Fields, e: Layout) -> float:
-    """Viscous force of a user actuator [N], -D v at the present velocity."""
-    force: float = -e.dampers.laws[damper]["viscous_damping"] * d.actuator_velocity[damper]
+    """Force of a user actuator [N]: -D v at the present velocity, and what is constant in the law."""
+    law = e.dampers.laws[damper]
+    force: float = -law["viscous_damping"] * d.actuator_velocity[damper] - law["shift"]
     return force

@@ -187,6 +187,7 @@ def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], f
     tendons = np.flatnonzero(model.tendon_frictionloss > 0.0)
     wrapped = [joints.index(int(model.wrap_objid[model.tendon_adr[tendon]])) for tendon in tendons]
     # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
+    laws = [_required(model, f"law/{model.tendon(tendon).name}") for tendon in tendons]
     valves = [(first + len(own) + index, damper) for index, damper in enumerate(wrapped)]
     return Dampers(
         laws=unpack(model.actuator_biasprm[own]) if own else unpack(np.zeros((0, 10))),
@@ -194,6 +195,7 @@ def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], f
         frictions=first + np.argsort(np.argsort(dofs)),
         dofs=dofs,
         valves=_whole(valves, 2),
+        pieces=np.reshape(laws, (-1, 3)).astype(float),
     )
 
 

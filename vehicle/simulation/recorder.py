@@ -193,7 +193,8 @@ class Recorder:
         e, bushings = self.rows.layout, self.rows.layout.bushings
         total = b.solved + b.explicit
         damper_force = -(b.actuator + total[:, e.dampers.rows] + total[:, e.dampers.frictions])
-        damper_force[:, e.dampers.valves[:, 1]] -= total[:, e.dampers.valves[:, 0]]
+        for row, damper in e.dampers.valves:
+            damper_force[:, damper] -= total[:, row]
         velocity = motion.velocity[steps]
         tyre = total[:, bushings.rows[e.tyres][:, 2]]
         for column, damper in enumerate(self.dampers):

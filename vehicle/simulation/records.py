@@ -77,7 +77,8 @@ class Dampers(NamedTuple):
         laws: records of `vehicle.laws.damper`; (w,).
         rows, frictions: equality and friction rows; (w,).
         dofs: velocity coordinates; (w,).
-        valves: second friction row of a degressive damper, and which damper that is; a row each.
+        valves: further friction rows, one for each steeper piece of a damper's curve, and which damper that is.
+        pieces: their e [N s/m], m [m/s] and limit [N], as of `vehicle.laws.curve`; a row each.
     """
 
     laws: Records
@@ -85,6 +86,7 @@ class Dampers(NamedTuple):
     frictions: Index
     dofs: Index
     valves: Indices
+    pieces: Table
 
 
 class Modes(NamedTuple):

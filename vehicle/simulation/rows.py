@@ -165,7 +165,7 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
         inertial=averaged[layout.tyres] * b.stiffness[layout.tyres] * h**2,
         spring_impedance=np.maximum(FOURTH_ORDER * layout.springs.stiffness * h**2, EMPTY_ROW),
         damper_impedance=np.maximum(laws["viscous_damping"] * h / 2, EMPTY_ROW),
-        valve_impedance=np.maximum(laws["degressive_slope"][layout.dampers.valves[:, 1]] * h / 2, EMPTY_ROW),
+        valve_impedance=np.maximum(layout.dampers.pieces[:, 0] * h / 2, EMPTY_ROW),
     )
 
 

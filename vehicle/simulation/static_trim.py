@@ -68,7 +68,7 @@ def trim(rows: Rows) -> StaticTrim:
         mujoco.mj_forward(model, data)
     e, twist = rows.layout, rows.layout.rotations.stiffness
     jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
-    gravity = data.qfrc_smooth.copy()
+    gravity = _unsolved(rows, data)
     row_stiffness = np.zeros(e.row_count)
     row_stiffness[e.bushings.rows] = e.bushings.stiffness
     row_stiffness[e.bushings.rows[ground_contacts(rows), :2]] *= SLIDING_SHARE
@@ -90,6 +90,13 @@ def trim(rows: Rows) -> StaticTrim:
             position = model.jnt_qposadr[joint]
             model.qpos_spring[position] = model.qpos0[position] - displacement[dof]
     return _loads(rows.anew(preload), stiffness, hard)
+
+
+def _unsolved(rows: Rows, data: mujoco.MjData) -> Vector:
+    """Forces on the coordinates at rest, but those of the implicit rows; of these, what the curves of dampers have."""
+    own, force = rows.layout.dampers, data.qfrc_smooth.copy()
+    force[own.dofs] += own.laws["shift"] - own.laws["rest_force"]
+    return np.asarray(force)
 
 
 def ground_contacts(rows: Rows) -> npt.NDArray[np.intp]:
@@ -120,7 +127,7 @@ def _loads(rows: Rows, stiffness: Vector, hard: Vector) -> StaticTrim:
     with installed(rows):
         mujoco.mj_forward(rows.model, data)
     preload = rows.weights.preload
-    remaining, _ = _settle(stiffness, hard, data.qfrc_smooth)
+    remaining, _ = _settle(stiffness, hard, _unsolved(rows, data))
     vertical, tyres = preload[rows.layout.bushings.rows][:, 2], rows.layout.tyres
     others = [index for index in ground_contacts(rows) if index not in tyres]
     return StaticTrim(
