@@ -1,0 +1,151 @@
+"""A damper as a table of force over velocity: bump and rebound different, with gas, in both engines."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from tests.simulation.row_model import Stepper, add_damper, empty_spec
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.laws.curve import Curve
+from vehicle.parameters.toml_file import read_table
+from vehicle.parameters.vehicle import FOCUS_FILE, vehicle_of
+
+VELOCITY = [-0.5, -0.1, -0.02, 0.0, 0.02, 0.1, 0.5]
+FORCE = [-700.0, -300.0, -150.0, 0.0, 300.0, 600.0, 1400.0]
+REST = -150.0  # a gas that pushes the damper apart
+MASS, STIFFNESS = 40.0, 4e4
+
+
+def table_force(velocity):
+    """The table by interpolation, and its outer lines beyond it."""
+    if velocity < VELOCITY[0]:
+        return FORCE[0] + 1000.0 * (velocity - VELOCITY[0])
+    if velocity > VELOCITY[-1]:
+        return FORCE[-1] + 2000.0 * (velocity - VELOCITY[-1])
+    return float(np.interp(velocity, VELOCITY, FORCE))
+
+
+def strut(step, mass=MASS, stiffness=STIFFNESS):
+    """A mass on the damper and a spring that carries the gas."""
+    spec = empty_spec(step)
+    body = spec.worldbody.add_body(name="mass")
+    body.explicitinertial = True
+    body.mass, body.inertia, body.ipos = mass, [1.0] * 3, np.zeros(3)
+    curve = Curve.through(VELOCITY, FORCE)
+    law = [curve.least_slope, 1e5, 1e-9, 1e-9, 0.03, 3.5]
+    add_damper(spec, body, law, stiffness=stiffness, pieces=curve.clamped(), rest=REST)
+    return Stepper(spec)
+
+
+@pytest.mark.parametrize("velocity", [-2.0, -0.3, -0.05, -1e-3, 0.0, 0.013, 0.06, 0.4, 3.0])
+def test_the_force_is_that_of_the_table_at_the_present_velocity(velocity):
+    run = strut(1e-3, mass=1e9, stiffness=0.0)
+    run.data.qvel[0] = velocity
+    run.step(1, run.position)
+    e, data = run.rows.layout.dampers, run.data
+    found = -(data.actuator_force[0] + np.sum(data.efc_force[[*e.rows, *e.valves[:, 0]]]))
+    assert found == pytest.approx(table_force(velocity) + REST, rel=1e-6, abs=1e-4)
+
+
+def swing(step, duration=0.2):
+    """Positions of a mass that is released on its spring, every 4 ms."""
+    run = strut(step)
+    run.data.qpos[0] = 0.02
+    # MuJoCo holds the velocity of half a step before; the mass is at rest at time zero.
+    run.data.qvel[0] = 0.5 * step * (STIFFNESS * 0.02 + REST) / MASS
+    return run.step(round(duration / step) + 1, run.position)[:: round(4e-3 / step), 0]
+
+
+def test_against_a_stiff_solver_with_second_order():
+    solution = solve_ivp(
+        lambda _, y: [y[1], -(STIFFNESS * y[0] + table_force(y[1]) + REST) / MASS],
+        (0.0, 0.2),
+        [0.02, 0.0],
+        method="Radau",
+        t_eval=np.linspace(0.0, 0.2, 51),
+        rtol=1e-10,
+        atol=1e-13,
+        max_step=1e-3,
+    )
+    steps = np.array([4e-3, 2e-3, 1e-3])
+    errors = [np.max(np.abs(swing(step) - solution.y[0])) for step in steps]
+    assert 1.7 < np.polyfit(np.log(steps), np.log(errors), 1)[0] < 2.5, errors
+    assert errors[-1] < 2e-3 * 0.02
+
+
+def test_the_clamped_lines_are_the_curve():
+    curve = Curve.through(VELOCITY, FORCE)
+    excess, middle, limit = curve.clamped().T
+    speed = np.linspace(-3.0, 3.0, 401)
+    lines = np.sum(np.clip(excess * (speed[:, None] - middle), -limit, limit), axis=1)
+    expected = [table_force(v) for v in speed]
+    np.testing.assert_allclose(curve.least_slope * speed + lines - curve.at_rest(), expected, atol=1e-8)
+    np.testing.assert_allclose(curve.force(speed), expected, atol=1e-9)
+
+
+def table_car(folder=None, **law):
+    """The car with this damper."""
+    table = read_table(FOCUS_FILE)
+    table["front"]["damper"] |= {"viscous_law": "table", **law}
+    return Car(vehicle_of(table, folder or FOCUS_FILE.parent), folder=FOCUS_FILE.parent)
+
+
+@pytest.fixture(scope="module")
+def tabled():
+    return table_car(velocity=VELOCITY, force=FORCE, gas_force=150.0)
+
+
+def test_the_car_stands_on_the_force_of_the_gas(tabled, car):
+    # The springs carry so much less, and nothing else is changed but for the share of the ground's horizontal stiffness.
+    for name in ("tyre_load", "support_load"):
+        mine, other = getattr(tabled.model.static, name), getattr(car.model.static, name)
+        assert list(mine.values()) == pytest.approx(list(other.values()), rel=1e-4)
+    assert tabled.model.static.residual < 1e-9
+
+
+def test_both_engines_take_the_table(tabled, high_piece):
+    exact = tabled.run(high_piece)
+    velocity, force = exact["damper_fr_velocity"], exact["damper_fr_force"]
+    sliding = np.abs(velocity) > 2e-3
+    expected = [table_force(v) - 150.0 + np.sign(v) * 125.0 for v in velocity[sliding]]
+    assert np.mean(np.abs(force[sliding] - expected) > 1e-6) < 0.1  # but where it stops within the step
+    assert np.max(velocity) > 0.02 and np.min(velocity) < -0.01  # bump, rebound, and beyond a corner
+    assert exact.recording.statistics.energies.residual < 1e-3
+    fast = tabled.run(high_piece, engine="reduced")
+    for name in ("seat_rail_acc_z", "damper_fr_velocity", "damper_fr_force", "tyre_fr_force_z"):
+        difference = np.sqrt(np.mean((fast[name] - exact[name]) ** 2))
+        assert difference < 5e-3 * np.std(exact[name]), name
+
+
+def test_a_file_of_a_test_gives_the_same_law(tmp_path, tabled):
+    rows = "".join(f"{v},{f}\n" for v, f in zip(VELOCITY, FORCE, strict=True))
+    (tmp_path / "test.csv").write_text("velocity [m/s],force [N]\n" + rows, encoding="utf-8")
+    one = table_car(tmp_path, curve="test.csv", gas_force=150.0)
+    assert one.vehicle == tabled.vehicle
+
+
+BAD = [
+    ({"velocity": VELOCITY, "force": FORCE[1:]}, "front.damper.force: found 6 numbers for 7 of velocity"),
+    ({}, "front.damper.velocity: found 0 points, needed are 2 to 40"),
+    ({"velocity": [-1, 1, 1], "force": [-1, 0, 1]}, "front.damper.velocity: found 1.0 after 1.0, must be ascending"),
+    ({"velocity": [-1, 1], "force": [1, -1]}, "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
+    ({"velocity": [0, 1], "force": [0, 1]}, "front.damper.velocity: found 0.0 to 1.0, must lie on both sides of 0"),
+    ({"velocity": [-11, 1], "force": [0, 1]}, "front.damper.velocity: found -11.0 m/s, must be at least -10.0"),
+    ({"curve": "none.csv"}, "front.damper.curve: "),
+    ({"curve": "a.csv", "force": FORCE}, "front.damper.curve: found 'a.csv'; needed is the name of a file, and no"),
+    ({"gas_force": -1.0, "velocity": VELOCITY, "force": FORCE}, "front.damper.gas_force: found -1.0 N, must be at"),
+]
+
+
+@pytest.mark.parametrize(("law", "message"), BAD)
+def test_bad_tables_are_refused_by_name(law, message):
+    with pytest.raises(ConfigurationError) as caught:
+        table_car(**law)
+    assert str(caught.value).startswith(message)
+
+
+def test_a_file_without_the_columns_is_refused(tmp_path):
+    (tmp_path / "test.csv").write_text("speed [m/s],force [N]\n0,1\n", encoding="utf-8")
+    with pytest.raises((ConfigurationError, DataError), match=r"test\.csv.*velocity \[m/s\]"):
+        table_car(tmp_path, curve="test.csv")
