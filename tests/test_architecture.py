@@ -30,7 +30,7 @@ ROOMS: dict[str, set[str]] = {
     "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation"},
     "analysis": set(),
     "lumped": {"parameters", "laws", "linear"},
-    "rendering": {"simulation", "analysis", "assembly", "shapes"},
+    "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes"},
     "car": {"analysis", "excitation", "flexbody", "linear", "parameters", "reduced", "simulation"},
     "output": {"analysis", "car", "excitation", "flexbody", "parameters", "records", "rendering"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},

@@ -24,6 +24,25 @@ AXES = ("x", "y", "z")
 _UNITS = {r"\w+_acc_[xyz]": "m/s2", r"\w+_velocity": "m/s", r"\w+_force(_z)?": "N", r"plate_\w+_displacement": "m"}
 
 
+def side_of(wheel: str, wheels: Iterable[str]) -> str:
+    """The word for a wheel among those of its car: its side where the car has one axle, else its corner, else its name.
+
+    Args:
+        wheel: its name, as "fr".
+        wheels: names of all wheels of the car.
+    """
+    words = {name: words.replace("_", " ") for words, name in CORNERS.items()}
+    if len({name[0] for name in wheels}) == 1 and wheel in words:
+        return words[wheel].split()[1]
+    return words.get(wheel, wheel)
+
+
+def wheel_words(wheel: str, wheels: Iterable[str]) -> str:
+    """A wheel in a sentence: "right front wheel" of a car with one axle there, else "rear right wheel"."""
+    side = side_of(wheel, wheels)
+    return f"{side} front wheel" if side in SIDE_SIGN and wheel.startswith("f") else f"{side} wheel"
+
+
 def is_wheel(name: str) -> bool:
     """Whether a wheel may have this name: a corner, or the side of a further axle, as middle_r."""
     return name in CORNERS.values() or re.fullmatch(r"[a-z]\w*_[rl]", name) is not None

@@ -64,8 +64,13 @@ def test_scales_are_rounded_up(value, rounded):
     assert round_up(value) == pytest.approx(rounded)
 
 
-def test_the_coil_follows_both_seats(stage, run, motion):
-    coil = Coil(motion, "fr")
+def coil_of(car, motion, wheel):
+    composition = car.vehicle.composition
+    return Coil(motion, composition, next(one for one in composition.springs if one.name == f"main_spring_{wheel}"))
+
+
+def test_the_coil_follows_both_seats(car, stage, run, motion):
+    coil = coil_of(car, motion, "fr")
     state = motion.at(run.recording.pose_time[7])
     still = type(state)(translation=0.0 * state.translation, rotation=0.0 * state.rotation, modal=0.0 * state.modal)
     np.testing.assert_allclose(coil.places(still, 500.0), coil.rest, atol=1e-12)
@@ -79,8 +84,8 @@ def test_the_coil_follows_both_seats(stage, run, motion):
     np.testing.assert_allclose(places[top], upper[top], atol=1e-12)
 
 
-def test_the_coil_is_written_in_the_frame_of_its_mesh(stage, run, motion):
-    coil = Coil(motion, "fl")
+def test_the_coil_is_written_in_the_frame_of_its_mesh(car, stage, run, motion):
+    coil = coil_of(car, motion, "fl")
     before = stage.mesh_vert[coil.rows].copy()
     data = mujoco.MjData(stage)
     try:

@@ -169,6 +169,6 @@ def test_liveliest_stretch():
 
 
 def test_without_slip_the_knuckle_decides(run):
-    start, reason = excerpt_start(run.recording, "fl", 1.0, 0.1)
+    start, reason = excerpt_start(run.recording, "fl", "knuckle_fl_acc_z", 1.0, 0.1)
     assert reason == "liveliest knuckle; no slip"
     assert 0.0 <= start <= 0.2

@@ -8,13 +8,14 @@ FLOOR_COLOUR = (0.78, 0.80, 0.82, 1.0)
 BACKGROUND = (0.80, 0.825, 0.85)
 
 
-def add_studio(spec: mujoco.MjSpec, size: tuple[int, int], samples: int) -> None:
+def add_studio(spec: mujoco.MjSpec, size: tuple[int, int], samples: int, ground: float) -> None:
     """Give a specification of the car what a picture needs; nothing of it has mass or touches anything.
 
     Args:
         spec: specification with its shapes; changed in place.
         size: width and height of the largest picture [pixel].
         samples: multisampling of the picture.
+        ground: height of the floor [m].
     """
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size
     spec.visual.global_.fovy = 32.0
@@ -44,7 +45,7 @@ def add_studio(spec: mujoco.MjSpec, size: tuple[int, int], samples: int) -> None
         name="floor",
         type=mujoco.mjtGeom.mjGEOM_PLANE,
         size=[0.0, 0.0, 0.05],
-        pos=[0.0, 0.0, -0.002],
+        pos=[0.0, 0.0, ground],
         material="floor",
         contype=0,
         conaffinity=0,

@@ -8,7 +8,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.parameters.composition import PlacedSpring
+from vehicle.parameters.composition import Composition, PlacedSpring
+from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.shapes.roles import ROLES, Part
 from vehicle.shapes.scene import car_shapes
@@ -19,15 +20,19 @@ Vector = npt.NDArray[np.float64]
 SHELL_GROUP = 1
 """Visual group of everything on the trimmed body."""
 
+ELSEWHERE = {"coil_spring": "coil"}
+"""Role of a part that is not on a strut to the one that it is drawn as then."""
+
 PART_GROUP = 2
 """Visual group of all other parts and of the rig."""
 
 
-def visible_shapes(vehicle: Vehicle) -> dict[str, Shape]:
+def visible_shapes(vehicle: Vehicle, *, rig: bool = True) -> dict[str, Shape]:
     """Shapes of a car and its rig at the design position, by name: of each part by its role, else a rod.
 
     Args:
         vehicle: the car.
+        rig: draw what moves and stands under the wheels.
     """
     car = vehicle.composition
     points = {name: np.array(point) for name, point in car.points.items()}
@@ -38,7 +43,7 @@ def visible_shapes(vehicle: Vehicle) -> dict[str, Shape]:
     }
     blocks = [one for one in car.connections if one.carrier == "world" and one.ground]
     supports = {one.name.rpartition("_")[2]: np.array(one.at) for one in blocks}
-    return car_shapes(points, corners, supports, _drawn(vehicle, points))
+    return car_shapes(points, corners, supports, _drawn(vehicle, points), rig=rig)
 
 
 def _around(points: Mapping[str, Vector], suffix: str) -> dict[str, Vector]:
@@ -57,9 +62,19 @@ def _drawn(vehicle: Vehicle, points: Mapping[str, Vector]) -> Iterator[Part]:
         base = path.rpartition(".")[2]
         around = _around(points, name.removeprefix(base))
         needed = set(ROLES[role][1]) if role in ROLES else {""}
-        chosen = around if needed <= set(around) else {key: np.array(place) for key, place in own.items()}
+        if needed <= set(around):
+            chosen = around
+        else:
+            role = ELSEWHERE.get(role, role)
+            chosen = {key: np.array(place) for key, place in (own if len(own) > 1 else _reach(car, name, own)).items()}
         if role != "none":
             yield Part(name=base, role=role, points=chosen, suffix=name.removeprefix(base), left=side < 0.0)
+
+
+def _reach(car: Composition, name: str, own: Mapping[str, Point]) -> dict[str, Point]:
+    """Points of a part, and those at which others hang on it."""
+    joints = {joint.name: joint.at for part in car.parts if part.parent == name for joint in part.joints}
+    return {**own, **joints}
 
 
 def add_shapes(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +22,7 @@ from vehicle.commands.options import (
     vehicle_options,
 )
 from vehicle.errors import ConfigurationError
-from vehicle.names import CORNERS, SIDE_OF_WHEEL
+from vehicle.names import CORNERS, side_of
 
 if TYPE_CHECKING:
     from vehicle.excitation.signal import Signal
@@ -200,9 +200,9 @@ def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
     return name
 
 
-def _each(wheels: Iterable[str], say: Callable[[str, str], str], last: str = ", ") -> str:
+def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
     """What is said of each wheel by its name and its word, as a list."""
-    words = [say(wheel, SIDE_OF_WHEEL.get(wheel, wheel)) for wheel in wheels]
+    words = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
     return last.join(word for word in (", ".join(words[:-1]), words[-1]) if word)
 
 

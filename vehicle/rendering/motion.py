@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.parameters.composition import Composition, PlacedSpring
 from vehicle.rendering.recorded_run import wheels_of
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.recording import Recording
@@ -195,22 +196,32 @@ def _append(
     return geom
 
 
+def coil_seats(composition: Composition, spring: PlacedSpring) -> list[str]:
+    """Bodies that carry the lower and the upper seat: parts that are drawn to its ends, else those that it acts on."""
+    drawn = [part for part in composition.parts if part.shape != "none"]
+    return [
+        next((part.name for part in drawn if end in part.points.values()), body)
+        for body, end in zip(spring.parts, spring.at, strict=True)
+    ]
+
+
 class Coil:
-    """Coil between the lower seat on the damper tube and the upper seat on the damper rod.
+    """Coil between its seats.
 
     A vertex at the share s of the way up moves by (1 - s) times what the lower seat would move it, and s times what
     the upper one would.
 
     Args:
         motion: motion of the bodies.
-        wheel: its wheel.
+        composition: of the car.
+        spring: one of its springs.
     """
 
-    def __init__(self, motion: Motion, wheel: str) -> None:
+    def __init__(self, motion: Motion, composition: Composition, spring: PlacedSpring) -> None:
         model = motion.model
         self.motion = motion
-        self.lower, self.upper = (int(model.body(f"{part}_{wheel}").id) for part in ("damper_bottom", "damper_top"))
-        self.geom = int(model.geom(f"main_spring_{wheel}").id)
+        self.lower, self.upper = (int(model.body(seat).id) for seat in coil_seats(composition, spring))
+        self.geom = int(model.geom(spring.name).id)
         self.mesh = int(model.geom_dataid[self.geom])
         first = int(model.mesh_vertadr[self.mesh])
         self.rows = slice(first, first + int(model.mesh_vertnum[self.mesh]))
@@ -218,7 +229,7 @@ class Coil:
         self.origin = motion.position[body] + motion.orientation[body] @ motion.geom_position[self.geom]
         self.frame = motion.orientation[body] @ motion.geom_orientation[self.geom]
         self.rest = model.mesh_vert[self.rows] @ self.frame.T + self.origin
-        axis = motion.position[self.upper] - motion.position[self.lower]
+        axis = np.subtract(spring.at[1], spring.at[0])
         height = self.rest @ (axis / np.linalg.norm(axis))
         self.share = ((height - height.min()) / np.ptp(height))[:, None]
 

@@ -150,7 +150,9 @@ class Overlay:
     def _lamps(self, pen: ImageDraw.ImageDraw, lamps: Mapping[str, bool]) -> None:
         """One lamp for each damper on a white plate above the close-up."""
         right, radius, row = self.layout.width - self._px(12), self._px(9), self._px(30)
-        left, top = right - self._px(236), self._px(12)
+        longest = max((self._font(16).getlength(label) for label in lamps), default=0.0)
+        # A label, its lamp on the left and the word on the right.
+        left, top = right - max(self._px(236), round(longest) + self._px(112)), self._px(12)
         pen.rounded_rectangle([left, top, right, top + row * len(lamps) + self._px(6)], self._px(8), fill=PAPER)
         for number, (label, slipping) in enumerate(lamps.items()):
             colour, word = (SLIP_COLOUR, "SLIP") if slipping else (STICK_COLOUR, "STICK")

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.analysis.frf import FrequencyResponse
+from vehicle.names import side_of, wheel_words
 from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, shade, wrapped_phase
-from vehicle.rendering.recorded_run import RecordedRun, liveliest, side_of, wheels_of
+from vehicle.rendering.recorded_run import RecordedRun, dampers_of, liveliest, wheels_of
 
 REGION = 1.96
 """Half width of the band around a magnitude, in standard errors: 95 % of all records lie within it."""
@@ -36,7 +37,8 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
         caption: line under the picture: input, level, estimator.
     """
     rows = {name: row for row, name in enumerate(run.car.model.vehicle.acceleration_channels)}
-    wheel, side = run.wheel, side_of(run.wheel)
+    wheel, wheels = run.wheel, run.car.model.vehicle.wheels
+    side = side_of(wheel, wheels)
     mount = {f"suspension_mount_{wheel}_acc_z": "body at suspension mount"}
     corner = {f"knuckle_{wheel}_acc_z": "knuckle at damper bottom", f"damper_top_{wheel}_acc_z": "damper top"}
     body = {"seat_rail_acc_z": "seat rail", "body_front_acc_z": "body front", "roof_left_rear_acc_z": "roof, left rear"}
@@ -44,10 +46,15 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
         f"Suspension ({side}) and engine, vertical": corner | mount | {"engine_acc_z": "engine"},
         "Body, vertical": body | mount,
     }
+    groups = {
+        title: {name: label for name, label in labels.items() if name in rows} for title, labels in groups.items()
+    }
     frequency = response.frequency
     inside = np.asarray(np.isfinite(response.response).any(axis=0))
     shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels]])
-    with saved_figure(path, (13.0, 8.6), f"FRFs to the plate under the {side} front wheel", caption) as figure:
+    with saved_figure(
+        path, (13.0, 8.6), f"FRFs to the plate under the {wheel_words(wheel, wheels)}", caption
+    ) as figure:
         axes = figure.subplots(3, 2, sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9))
         for column, (title, labels) in enumerate(groups.items()):
             magnitude, phase, coherence = axes[:, column]
@@ -64,7 +71,8 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
             magnitude.set_title(title)
             for axis in axes[:, column]:
                 shade(axis, frequency, ~inside, UNDRIVEN, "no FRF: no input")
-            magnitude.legend(loc="upper left")
+            if labels:
+                magnitude.legend(loc="upper left")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
         levels = shown[:, inside]
         levels = levels[np.isfinite(levels) & (levels > 0.0)]
@@ -79,16 +87,25 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         run: the run.
     """
     recording, wheel, wheels = run.recording, run.wheel, wheels_of(run.recording)
-    time, velocity = recording.time, recording[f"damper_{wheel}_velocity"]
-    slip, side = run.car.model.vehicle.damper.slip_velocity, side_of(wheel)
+    dampers = dampers_of(recording)
+    time, velocity = recording.time, recording[f"damper_{wheel if wheel in dampers else dampers[0]}_velocity"]
+    slip, side = run.car.model.vehicle.damper.slip_velocity, side_of(wheel, wheels)
     corner = {f"knuckle_{wheel}_acc_z": f"knuckle {side}", f"damper_top_{wheel}_acc_z": f"damper top {side}"}
     # label, scale from the unit of the channels to that of the label, legend text of each channel
     panels: tuple[tuple[str, float, dict[str, str]], ...] = (
-        ("plate\ndisplacement [mm]", 1e3, _each("plate_{}_displacement", "plate", recording.excited or (wheel,))),
+        (
+            "plate\ndisplacement [mm]",
+            1e3,
+            _each("plate_{}_displacement", "plate", recording.excited or (wheel,), wheels),
+        ),
         ("acceleration z\n[m/s²]", 1.0, {"seat_rail_acc_z": "seat rail"}),
         ("acceleration z\n[m/s²]", 1.0, corner),
-        ("damper velocity\n[mm/s]", 1e3, _each("damper_{}_velocity", "damper", wheels)),
-        ("tyre force z\n[kN]", 1e-3, _each("tyre_{}_force_z", "tyre", wheels)),
+        ("damper velocity\n[mm/s]", 1e3, _each("damper_{}_velocity", "damper", dampers, wheels)),
+        ("tyre force z\n[kN]", 1e-3, _each("tyre_{}_force_z", "tyre", wheels, wheels)),
+    )
+    panels = tuple(
+        (unit, scale, {name: label for name, label in lines.items() if name in recording.channels})
+        for unit, scale, lines in panels
     )
     start = liveliest(time, velocity, DETAIL)
     end = min(start + DETAIL, float(time[-1]))
@@ -109,7 +126,8 @@ def plot_time(path: Path, run: RecordedRun) -> None:
                 detail.plot(time[inside], values[inside], **style)
             lowest, highest = whole.get_ylim()
             whole.set(ylim=(lowest, highest + LEGEND_ROOM * (highest - lowest)), ylabel=unit)
-            whole.legend(loc="upper right", ncols=2)
+            if lines:
+                whole.legend(loc="upper right", ncols=2)
             whole.axvspan(start, end, color=MAGNIFIED, zorder=0)
             whole.set_xlim(time[0], time[-1])
             detail.set_xlim(start, end)
@@ -125,14 +143,16 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         axes[0, 0].set_title("whole record")
         axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
         histories.align_ylabels(axes[:, 0])
-        for axis, name in zip(characteristics.subplots(len(wheels), 1, squeeze=False)[:, 0], wheels, strict=True):
+        for axis, name in zip(characteristics.subplots(len(dampers), 1, squeeze=False)[:, 0], dampers, strict=True):
             speed, force = 1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"]
             axis.plot(speed, force, ".", markersize=1.5, color=COLOURS[0], zorder=3)
             for limit in (-1e3 * slip, 1e3 * slip):
                 axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
-            axis.set(xlabel="damper velocity [mm/s]", ylabel="damper force [N]", title=f"{side_of(name)} damper")
+            axis.set(
+                xlabel="damper velocity [mm/s]", ylabel="damper force [N]", title=f"{side_of(name, wheels)} damper"
+            )
 
 
-def _each(channel: str, label: str, wheels: Sequence[str]) -> dict[str, str]:
-    """Channel of each wheel to its legend text."""
-    return {channel.format(wheel): f"{label} {side_of(wheel)}" for wheel in wheels}
+def _each(channel: str, label: str, these: Sequence[str], wheels: Sequence[str]) -> dict[str, str]:
+    """Channel of each of these wheels to its legend text; `wheels` are all of the car."""
+    return {channel.format(wheel): f"{label} {side_of(wheel, wheels)}" for wheel in these}

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.names import SIDE_OF_WHEEL
+from vehicle.parameters.composition import Composition
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.recording import Recording
 
@@ -54,17 +54,31 @@ class RecordedRun(Protocol):
 
 
 def wheels_of(recording: Recording) -> tuple[str, ...]:
-    """Names of the wheels of a car: those whose dampers are recorded, in the order of the channels."""
-    return tuple(
-        name.removeprefix("damper_").removesuffix("_velocity")
-        for name in recording.channels
-        if name.startswith("damper_") and name.endswith("_velocity")
-    )
+    """Names of the wheels of a car: those whose plates are recorded, in the order of the channels."""
+    return _between(recording, "plate_", "_displacement")
 
 
-def side_of(wheel: str) -> str:
-    """The word for a wheel in a picture; its name where there is none."""
-    return SIDE_OF_WHEEL.get(wheel, wheel)
+def dampers_of(recording: Recording) -> tuple[str, ...]:
+    """Names of the dampers behind "damper_": those of their wheels, in the order of the channels."""
+    return _between(recording, "damper_", "_velocity")
+
+
+def _between(recording: Recording, start: str, end: str) -> tuple[str, ...]:
+    found = [name for name in recording.channels if name.startswith(start) and name.endswith(end)]
+    return tuple(name.removeprefix(start).removesuffix(end) for name in found)
+
+
+def hub_of(composition: Composition, wheel: str) -> str:
+    """The part that carries a wheel."""
+    rolling = next(one.part for one in composition.wheels if one.name == wheel)
+    return next(part.parent for part in composition.parts if part.name == rolling)
+
+
+def hub_channel(composition: Composition, wheel: str) -> str:
+    """Channel of the vertical acceleration on the part that carries a wheel; the tyre force where none is recorded."""
+    hub = hub_of(composition, wheel)
+    names = [output.name for output in composition.outputs if output.on == hub]
+    return f"{names[0]}_acc_z" if names else f"tyre_{wheel}_force_z"
 
 
 def liveliest(time: Vector, values: Vector, length: float) -> float:
@@ -83,19 +97,20 @@ def liveliest(time: Vector, values: Vector, length: float) -> float:
     return float(time[np.argmax(sums[count:] - sums[:-count])])
 
 
-def excerpt_start(recording: Recording, wheel: str, slip_velocity: float, length: float) -> tuple[float, str]:
+def excerpt_start(recording: Recording, wheel: str, hub: str, slip_velocity: float, length: float) -> tuple[float, str]:
     """Choose a stretch: where the damper of a wheel works most; where it never slips, where the knuckle shakes most.
 
     Args:
         recording: the run.
         wheel: the excited wheel.
+        hub: channel that tells how the part shakes that carries it.
         slip_velocity: [m/s].
         length: of the stretch [s].
 
     Returns:
         First time [s], and why.
     """
-    velocity = recording[f"damper_{wheel}_velocity"]
-    if np.any(np.abs(velocity) > slip_velocity):
+    velocity = recording.channels.get(f"damper_{wheel}_velocity")
+    if velocity is not None and np.any(np.abs(velocity) > slip_velocity):
         return liveliest(recording.time, velocity, length), "most damper motion"
-    return liveliest(recording.time, recording[f"knuckle_{wheel}_acc_z"], length), "liveliest knuckle; no slip"
+    return liveliest(recording.time, recording[hub], length), "liveliest knuckle; no slip"

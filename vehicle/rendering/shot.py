@@ -12,9 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
+from vehicle.names import side_of, wheel_words
 from vehicle.rendering.motion import Coil, Motion, Wireframe
 from vehicle.rendering.overlay import Layout, Overlay, Trace, colours, round_factor, round_up
-from vehicle.rendering.recorded_run import RecordedRun, excerpt_start, side_of, wheels_of
+from vehicle.rendering.recorded_run import RecordedRun, dampers_of, excerpt_start, hub_channel, hub_of, wheels_of
+from vehicle.rendering.road_strip import RoadStrip
 from vehicle.rendering.stage import OPACITY, Canvas, Picture, close_up, stage_model, whole_car
 
 Vector = npt.NDArray[np.float64]
@@ -31,7 +33,6 @@ FASTEST_MOTION = 40.0
 VISIBLE_TIME = 2.0
 """Seconds of the record that the traces show at once in real time; over the root of the slow motion otherwise."""
 
-GHOSTS = ("tyre", "rim", "wheel_bolts")
 GHOST_OPACITY = 0.22
 """The wheel hides the strut in the close-up."""
 
@@ -102,25 +103,32 @@ class Shot:
     """
 
     def __init__(self, run: RecordedRun, layout: Layout, take: Take) -> None:
-        self.run, self.layout, self.wheels = run, layout, wheels_of(run.recording)
-        recording = run.recording
+        self.run, self.layout, self.speed = run, layout, take.speed
+        recording, vehicle = run.recording, run.car.model.vehicle
+        self.composition = vehicle.composition
+        self.wheels, self.dampers, self.hub = (
+            wheels_of(recording),
+            dampers_of(recording),
+            hub_channel(vehicle.composition, run.wheel),
+        )
         record, interval = float(recording.time[-1]), 1.0 / (FPS * take.slow)
-        self.slip = run.car.model.vehicle.damper.slip_velocity
+        self.slip = vehicle.damper.slip_velocity
         length = take.duration / take.slow
         if take.start is None:
-            start, reason = excerpt_start(recording, run.wheel, self.slip, length)
+            start, reason = excerpt_start(recording, run.wheel, self.hub, self.slip, length)
         elif 0.0 <= take.start < record:
             start, reason = take.start, "chosen"
         else:
             raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
         length = min(length, record - start)
         frames = max(int(length * take.slow * FPS + 1e-9), 1)
-        self.model = stage_model(run.car.model, (layout.width, layout.view_height))
+        self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
         self.motion = Motion(self.model, recording, start, start + length)
         self.wireframe = Wireframe(run.car.model, self.motion)
         largest, node = self._largest(start + np.arange(frames) / (FPS * take.slow), interval)
         factor = round_factor(VISIBLE_TRAVEL / largest) if take.exaggeration is None else take.exaggeration
         self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=reason)
+        self.road = None if take.speed is None else RoadStrip(self.composition.wheels, recording, take.speed, interval)
         self.visible = VISIBLE_TIME / np.sqrt(take.slow)
         self.scale_top = 1e-3 * round_up(1e3 * node)
         self.overlay = Overlay(
@@ -139,7 +147,7 @@ class Shot:
         # Lights and cameras take their places once; the geoms are then placed frame by frame.
         for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
             place(model, data)
-        coils = [Coil(self.motion, wheel) for wheel in self.wheels]
+        coils = [Coil(self.motion, self.composition, spring) for spring in self.composition.springs]
         views = self._views()
         with closing(Canvas(model, (layout.width, layout.view_height), backend)) as canvas:
             for number in range(self.cut.frames):
@@ -155,26 +163,30 @@ class Shot:
                     model.mat_rgba[:, 3] = opacity
                     canvas.update(data, camera)
                     self.wireframe.draw(canvas.scene, places, shades)
+                    if self.road is not None:
+                        self.road.draw(canvas.scene, time, self.cut.interval, factor)
                     canvas.render(viewport)
                 yield self.overlay.draw(canvas.read(), time, self._lamps(time))
 
     def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]]:
         """Camera, viewport and opacity of all materials of each view."""
-        layout, wheel = self.layout, self.run.wheel
+        layout, wheel, model = self.layout, self.run.wheel, self.model
         usual, cleared = self.model.mat_rgba[:, 3].copy(), self.model.mat_rgba[:, 3].copy()
-        cleared[[self.model.material(f"{name}_{wheel}").id for name in GHOSTS]] = GHOST_OPACITY
-        cleared[[self.model.material(name).id for name in OPACITY]] = 0.0
+        rolling = next(one.part for one in self.composition.wheels if one.name == wheel)
+        names = {model.mat(number).name: number for number in range(model.nmat)}
+        cleared[model.geom_matid[model.geom_bodyid == model.body(rolling).id]] = GHOST_OPACITY
+        cleared[[names[name] for name in OPACITY if name in names]] = 0.0
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
         return [
-            (whole_car(), (0, 0, layout.main_width, layout.view_height), usual),
-            (close_up(self.motion, wheel), right, cleared),
+            (whole_car(self.run.car.model.vehicle), (0, 0, layout.main_width, layout.view_height), usual),
+            (close_up(self.motion, self.run.car.model.vehicle, wheel), right, cleared),
         ]
 
     def _largest(self, times: Vector, exposure: float) -> tuple[float, float]:
         """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
         parts, nodes = [], []
-        bodies = [self.model.body(number).name for number in range(self.model.nbody)]
-        moving = [number for number, name in enumerate(bodies) if name.startswith(("knuckle_", "plate_"))]
+        bodies = [(hub_of(self.composition, wheel.name), wheel.plate) for wheel in self.composition.wheels]
+        moving = [int(self.model.body(name).id) for pair in bodies for name in pair]
         for time in times:
             state = self.motion.at(time, exposure)
             parts.append(np.linalg.norm(state.translation[moving], axis=1))
@@ -189,10 +201,15 @@ class Shot:
         highest = 0.5 / cut.interval
         if highest < FASTEST_MOTION:
             speed += f" (faster than {highest:g} Hz averages out)"
+        road, exaggerated = [], "motion"
+        if self.road is not None:
+            road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
+            exaggerated = "motion and road"
         return [
             f"{Path(run.signal.source).name}: RMS {1e3 * run.signal.rms(run.wheel):.3g} mm under the "
-            f"{side_of(run.wheel)} front wheel",
-            f"motion exaggerated {cut.exaggeration:g} times, {speed}",
+            f"{wheel_words(run.wheel, self.wheels)}",
+            f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
+            *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
         ]
 
@@ -203,10 +220,12 @@ class Shot:
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
         found = []
         for label, channel, scale, band in (
-            ("plate [mm]", f"plate_{wheel}_displacement", 1e3, None),
+            ("plate [mm]" if self.road is None else "road [mm]", f"plate_{wheel}_displacement", 1e3, None),
             ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
-            (f"damper {side_of(wheel)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
+            (f"damper {side_of(wheel, self.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
         ):
+            if channel not in recording.channels:
+                continue
             values = scale * recording[channel]
             top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0)))
             found.append(Trace(label=label, values=values, top=top, band=band))
@@ -218,5 +237,8 @@ class Shot:
         half = max(0.5 * self.cut.interval, 0.5 * recording.timestep)
         first, last = np.searchsorted(recording.time, [time - half, time + half])
         part = slice(int(first), max(int(last), int(first) + 1))
-        speeds = {wheel: recording[f"damper_{wheel}_velocity"][part] for wheel in self.wheels}
-        return {f"damper {side_of(wheel)}": bool(np.any(np.abs(speeds[wheel]) > self.slip)) for wheel in self.wheels}
+        speeds = {wheel: recording[f"damper_{wheel}_velocity"][part] for wheel in self.dampers}
+        return {
+            f"damper {side_of(wheel, self.wheels)}": bool(np.any(np.abs(speed) > self.slip))
+            for wheel, speed in speeds.items()
+        }

@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from vehicle.assembly.studio import add_studio
 from vehicle.assembly.visuals import add_shapes, visible_shapes
+from vehicle.parameters.vehicle import Vehicle
 from vehicle.rendering.motion import Motion
+from vehicle.rendering.recorded_run import hub_of
 from vehicle.shapes import SHELL
 from vehicle.simulation.car_model import CarModel
 
@@ -39,42 +41,53 @@ OPACITY = {
 """Opacity of the shapes that would hide suspension and wireframe; the close-up leaves them out."""
 
 
-def stage_model(car: CarModel, size: tuple[int, int]) -> mujoco.MjModel:
+GROUND = -0.002
+"""Height of the floor under a rig [m]."""
+
+BELOW_ROAD = 0.30
+"""Height of the road above the floor, which the exaggerated road does not reach [m]."""
+
+
+def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> mujoco.MjModel:
     """Compile the visible car: the same bodies and joints as the simulated one, plus shapes, lights and floor.
 
     Args:
         car: the simulated car.
         size: width and height of the largest picture [pixel].
+        road: the car drives: no shakers, no plates, and the floor below the road.
 
     Returns:
         The model; generalised positions mean the same as in the simulated one.
     """
     spec = car.spec.copy()
-    shapes = {name: shape for name, shape in visible_shapes(car.vehicle).items() if name not in HIDDEN}
+    shapes = {name: shape for name, shape in visible_shapes(car.vehicle, rig=not road).items() if name not in HIDDEN}
     add_shapes(spec, shapes, car.origins, car.vehicle.composition.springs)
-    for name, opacity in OPACITY.items():
-        if name not in shapes:
-            continue
+    for name in shapes:
         material = spec.material(name)
-        material.rgba = [*material.rgba[:3], opacity * material.rgba[3]]
-    add_studio(spec, size, SAMPLES)
+        material.rgba = [*material.rgba[:3], OPACITY.get(name, 1.0) * material.rgba[3]]
+    patch = min(wheel.patch[2] for wheel in car.vehicle.composition.wheels)
+    add_studio(spec, size, SAMPLES, patch - BELOW_ROAD if road else GROUND)
     return spec.compile()
 
 
-def whole_car() -> mujoco.MjvCamera:
-    """Camera in front of the car at its right."""
+def whole_car(vehicle: Vehicle) -> mujoco.MjvCamera:
+    """Camera in front of the car at its right, as far as the car is long."""
+    wheels = vehicle.composition.wheels
+    standing = [wheel.patch for wheel in wheels]
+    standing += [one.at for one in vehicle.composition.connections if one.ground and one.moving == "body"]
+    front, rear = min(place[0] for place in standing), max(place[0] for place in standing)
     camera = mujoco.MjvCamera()
-    camera.lookat = [2.15, 0.05, 0.98]
-    camera.distance, camera.azimuth, camera.elevation = 5.9, -52.0, -13.0
+    camera.lookat = [0.5 * (front + rear), 0.05, min(wheel.patch[2] for wheel in wheels) + 0.58]
+    camera.distance, camera.azimuth, camera.elevation = max(2.256 * (rear - front), 4.0), -52.0, -13.0
     return camera
 
 
-def close_up(motion: Motion, wheel: str) -> mujoco.MjvCamera:
-    """Camera on the strut of a wheel, from outside in front."""
-    model = motion.model
-    ends = motion.position[[model.body(f"{part}_{wheel}").id for part in ("knuckle", "suspension_mount")]]
+def close_up(motion: Motion, vehicle: Vehicle, wheel: str) -> mujoco.MjvCamera:
+    """Camera on the suspension of a wheel, from outside in front: between its hub and its highest point."""
+    hub = motion.position[motion.model.body(hub_of(vehicle.composition, wheel)).id]
+    top = max((place for name, place in vehicle.points.items() if name.endswith(f"_{wheel}")), key=lambda at: at[2])
     camera = mujoco.MjvCamera()
-    camera.lookat = ends.mean(axis=0)
+    camera.lookat = np.mean([hub, top], axis=0)
     camera.distance, camera.elevation = 2.0, -7.0
     camera.azimuth = -60.0 * np.sign(camera.lookat[1])
     return camera

@@ -15,6 +15,7 @@ from vehicle.shapes.solids import ball, drum, hull, joined, lathe, placed, ring,
 from vehicle.shapes.surface import bezier, helix, rounded
 
 STRUT = ("damper_bottom", "spring_lower", "strut_top")
+SEATS, EYES = ("lower", "upper"), ("damper_lower", "damper_upper")
 SEAT_BELOW_TOP = 0.014  # [m] the upper spring seat lies this far below the strut top
 HOUSING_SHARE = 0.34  # the housing ends at this share of the way from the lower seat to the strut top
 LOWEST_TURN = 0.60  # radius of the lowest turn over that of the others: the tyre is close there
@@ -121,6 +122,36 @@ def coil_spring(points: Points, size: Sizes) -> list[Piece]:
     high = strut.top - SEAT_BELOW_TOP - wire
     path = helix(radius, strut.seat + wire, high, size["spring_turns"], steps=13)
     return [Piece("", strut.place(tube(path, wire, sides=5)), palette.SPRING)]
+
+
+def coil(points: Points, size: Sizes) -> list[Piece]:
+    """Wire on a helix between two seats anywhere, of one radius."""
+    lower, along, length = _between(points, SEATS)
+    wire, r = size["spring_wire_radius"], size["spring_coil_radius"]
+    path = helix(lambda share: r + 0.0 * share, wire, length - wire, size["spring_turns"], steps=13)
+    return [Piece("", placed(tube(path, wire, sides=5), lower, along), palette.SPRING)]
+
+
+def plain_tube(points: Points, size: Sizes) -> list[Piece]:
+    """Housing of a damper between two eyes: the lower part of the way."""
+    lower, along, length = _between(points, EYES)
+    eye = placed(ball(0.022, sections=8), lower, along)
+    housing = placed(drum(size["damper_tube_radius"], 0.03, 0.6 * length, bevel=0.004, sections=14), lower, along)
+    return [Piece("", joined(housing, eye), palette.DAMPER)]
+
+
+def piston(points: Points, size: Sizes) -> list[Piece]:
+    """Rod of a damper between two eyes: the upper part of the way."""
+    lower, along, length = _between(points, EYES)
+    shaft = rod(lower + 0.4 * length * along, lower + length * along, 0.009)
+    return [Piece("", joined(shaft, placed(ball(0.018, sections=8), points[EYES[1]], along)), palette.ROD)]
+
+
+def _between(points: Points, ends: tuple[str, str]) -> tuple[Array, Array, float]:
+    """Lower end, direction and distance to the upper end."""
+    lower, upper = (points[end] for end in ends)
+    length = float(np.linalg.norm(upper - lower))
+    return lower, (upper - lower) / length, length
 
 
 def lower_arm(points: Points, size: Sizes) -> list[Piece]:
