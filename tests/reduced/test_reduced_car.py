@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
-
 import numpy as np
 import pytest
 
@@ -156,14 +154,11 @@ def test_without_numba_it_is_named_and_auto_is_mujoco(car, high_piece, monkeypat
     piece = Signal(time=high_piece.time[:101], displacement={"fr": high_piece.displacement["fr"][:101]})
     monkeypatch.setattr(march, "find_spec", lambda name: None)
     march.compiled_march.cache_clear()
-    real = importlib.import_module("builtins").__import__
 
-    def without(name, *arguments, **keywords):
-        if name == "numba":
-            raise ImportError(name)
-        return real(name, *arguments, **keywords)
+    def without():
+        raise ImportError("numba")
 
-    monkeypatch.setattr("builtins.__import__", without)
+    monkeypatch.setattr(march, "numba_module", without)
     try:
         with pytest.raises(MissingPartError, match="needs numba, which is missing"):
             car.run(piece, engine="reduced")

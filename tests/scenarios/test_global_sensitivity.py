@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ import pytest
 from scenarios.global_sensitivity import RANGES, _evaluate, main, points_of
 from tests.sweeps.pieces import ShortRoad
 from vehicle.errors import DataError
+from vehicle.parameters.paths import value_of
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.sweeps.case import table_cases
 from vehicle.sweeps.table import SweepTable
@@ -23,10 +23,7 @@ def test_ranges_hold_the_car():
         # The path exists, both limits are accepted, and the car of the source lies between them.
         load_vehicle(None, [f"{one.path}={one.low}"])
         load_vehicle(None, [f"{one.path}={one.high}"])
-        value: Any = vehicle
-        for name in one.path.split("."):
-            value = value["xyz".index(name)] if isinstance(value, tuple) else getattr(value, name)
-        assert one.low <= value <= one.high, one.path
+        assert one.low <= value_of(vehicle, one.path) <= one.high, one.path
 
 
 def test_points():

@@ -205,6 +205,6 @@ def test_item_40_no_rendering_library(shaker, short_signal, tmp_path, monkeypatc
 def test_usage_errors(shaker, short_signal):
     assert shaker().code == 2
     outcome = shaker("--input", "short.csv", "--wheel", "rear_left")
-    assert outcome.code == 2 and "wheel: found 'rl', allowed are fr, fl" in outcome.err
+    assert outcome.code == 2 and "wheel rl (rear_left): focus does not have it; it has fr (front_right)" in outcome.err
     outcome = shaker("--input", "short.csv", "--set", "damper")
     assert outcome.code == 2 and "PATH=VALUE" in outcome.err

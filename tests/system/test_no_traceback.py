@@ -99,7 +99,7 @@ def test_the_working_folder_is_refused_before_the_run(shaker, short_signal, tmp_
 
 
 def test_a_wrong_wheel_or_channel_of_an_frf(car):
-    with pytest.raises(ConfigurationError, match="wheel: found 'rr', allowed are fr, fl"):
+    with pytest.raises(ConfigurationError, match=r"wheel rr \(rear_right\): focus does not have it"):
         car.matrix_frf(["seat_rail_acc_z"], [10.0], wheel="rr")
     with pytest.raises(ConfigurationError, match="no acceleration channel 'seat'"):
         car.matrix_frf(["seat"], [10.0])

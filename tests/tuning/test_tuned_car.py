@@ -129,8 +129,10 @@ def test_bad_targets_are_refused(car, high_piece):
     data = frf_data(np.ones((2, FREQUENCY.size)), 0)
     with pytest.raises(ConfigurationError, match="low: found 0 averages"):
         FrfTarget(name="low", data=data, signal=None, averages=0.0)
-    with pytest.raises(ConfigurationError, match="low: found wheel 'rl'"):
-        FrfTarget(name="low", data=data, signal=None, wheel="rl")
+    with pytest.raises(ConfigurationError, match="low: found wheel 'zz'"):
+        FrfTarget(name="low", data=data, signal=None, wheel="zz")
+    with pytest.raises(ConfigurationError, match=r"wheel rl \(rear_left\): focus does not have it"):
+        FrfTarget(name="low", data=data, signal=None, wheel="rl").residuals(car)
     with pytest.raises(ConfigurationError, match="the signal must drive the plate fl alone"):
         FrfTarget(name="low", data=data, signal=high_piece, wheel="fl")
     with pytest.raises(DataError, match="low: no FRF value with a coherence that counts"):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES, acceleration_channels, wheel_channels
+from vehicle.names import AXES, CORNERS, acceleration_channels, wheel_channels
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.compose import compose
 from vehicle.parameters.composition import Composition
@@ -97,7 +97,9 @@ class Vehicle:
         """
         for wheel in wheels:
             if wheel not in self.wheels:
-                raise ConfigurationError(f"wheel: found {wheel!r}, allowed are {', '.join(self.wheels)}")
+                words = {name: f"{name} ({corner})" for corner, name in CORNERS.items()}
+                has = ", ".join(words.get(name, name) for name in self.wheels)
+                raise ConfigurationError(f"wheel {words.get(wheel, wheel)}: {self.name} does not have it; it has {has}")
 
     def require_channels(self, channels: Iterable[str], known: Sequence[str]) -> None:
         """Refuse channels that are none of the car.
