@@ -86,3 +86,23 @@ def test_refusals(shaker, tmp_path, arguments, message):
     outcome = shaker(*arguments)
     assert outcome.code == 2 and message in outcome.err
     assert not (tmp_path / "runs").exists()
+
+
+def test_the_rear_plates_follow_by_the_wheelbase_over_the_speed(shaker, tmp_path):
+    """2.615 m at 94.14 km/h are 100 ms: a hundred samples later the rear plates do the same, to rounding."""
+    outcome = shaker(
+        *("--road", "B", "--speed", "94.14", "--duration", "5", "--vehicle", "focus_road", "--engine", "reduced")
+    )
+    assert outcome.code == 0, outcome.err
+    folder = tmp_path / "runs" / "road_B_94.14"
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["input"]["road"]["behind_m"] == pytest.approx({"fr": 0.0, "fl": 0.0, "rr": 2.615, "rl": 2.615})
+    with np.load(folder / "time.npz") as arrays:
+        plates = {wheel: arrays[f"plate_{wheel}_displacement"] for wheel in ("fr", "fl", "rr", "rl")}
+    for front, rear in (("fr", "rr"), ("fl", "rl")):
+        assert np.std(plates[front]) > 1e-3 and np.ptp(plates[rear][:100]) == 0.0
+        # An input is a spline through the samples at the steps of the engine: rounding alone.
+        np.testing.assert_allclose(plates[rear][100:], plates[front][:-100], rtol=0.0, atol=1e-12)
+    assert np.std(plates["fr"] - plates["fl"]) > 1e-3
+    assert any(notice.startswith("no FRFs: ") and "delayed by 0.1 s" in notice for notice in summary["notices"])
+    assert "(front right)" in outcome.out and "(rear left)" in outcome.out

@@ -1,0 +1,89 @@
+"""A car on four wheels on the road: what passes under it is what its plates did."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.rendering.conftest import FakeCar, FakeRun, fabricated
+from vehicle.car import Car
+from vehicle.names import side_of, wheel_words
+from vehicle.rendering.backend import choose_backend
+from vehicle.rendering.overlay import Layout
+from vehicle.rendering.recorded_run import hub_channel
+from vehicle.rendering.road_strip import RoadStrip
+from vehicle.rendering.shot import Shot, Take
+
+SPEED = 26.15
+"""[m/s]: the wheelbase of 2.615 m is 0.1 s."""
+
+
+@pytest.fixture(scope="module")
+def road_car():
+    return Car.load(Path("focus_road")).model
+
+
+@pytest.fixture(scope="module")
+def road_run(road_car):
+    """Plates on a wave of 2 m under the right wheels, of 3 m under the left ones."""
+    recording = fabricated(road_car, 1.0)
+    channels = dict(recording.channels)
+    for wheel in road_car.vehicle.composition.wheels:
+        late = (wheel.patch[0] - 0.85) / SPEED
+        length = 2.0 if wheel.side > 0.0 else 3.0
+        channels[f"plate_{wheel.name}_displacement"] = 0.02 * np.sin(
+            2.0 * np.pi * SPEED / length * (recording.time - late)
+        )
+    return FakeRun(car=FakeCar(model=road_car), recording=dataclasses.replace(recording, channels=channels))
+
+
+def test_every_wheel_stands_on_the_strip_of_its_track(road_car, road_run):
+    wheels = road_car.vehicle.composition.wheels
+    strip = RoadStrip(wheels, road_run.recording, SPEED, 1.0 / 30.0)
+    assert [leader.name for leader in strip.leaders] == ["fl", "fr"]
+    for number in (200, 437, 800):
+        time = float(road_run.recording.time[number])
+        for wheel in wheels:
+            track = 1 if wheel.side > 0.0 else 0
+            (height,) = strip.height(track, np.array([wheel.patch[0]]), time, 0.0)
+            # A quarter of both neighbours and a half of the sample: (w h)^2 / 4 of 2 cm less, 13.1 Hz at 1 kHz.
+            assert height == pytest.approx(road_run.recording[f"plate_{wheel.name}_displacement"][number], abs=3.5e-5)
+    # Half a metre before the foremost wheel lies what it meets half a metre later.
+    ahead = strip.height(1, np.array([0.85 - 0.523]), 0.4, 0.0)
+    assert ahead == pytest.approx(road_run.recording["plate_fr_displacement"][420], abs=3.5e-5)
+
+
+@pytest.mark.render
+@pytest.mark.usefixtures("film_machine")
+def test_the_road_passes_in_the_film(road_run):
+    take = Take(start=0.3, duration=0.2, slow=4.0)
+    layout = Layout(width=320, height=180)
+    driving = Shot(road_run, layout, dataclasses.replace(take, speed=SPEED))
+    first, second = (frame for frame, _ in zip(driving.frames(choose_backend()), range(2), strict=False))
+    moved = np.abs(first[:142].astype(int) - second[:142].astype(int)).max(axis=2) > 30
+    assert moved.sum() > 200  # stripes
+    assert any(line.startswith("road passes at 94.14 km/h") for line in driving.overlay.heading)
+    assert any(line.startswith("motion and road exaggerated") for line in driving.overlay.heading)
+    names = {driving.model.geom(number).name for number in range(driving.model.ngeom)}
+    standing = Shot(road_run, layout, take)
+    rig = {standing.model.geom(number).name for number in range(standing.model.ngeom)} - names
+    assert rig == {
+        *("plate_fr", "plate_inserts_fr", "plate_fl", "plate_rr", "plate_inserts_rr", "plate_rl", "bed_plate"),
+        *("shaker_fr", "shaker_frame_fr", "pedestal_fl", "shaker_rr", "shaker_frame_rr", "pedestal_rl"),
+    }
+    assert {"main_spring_rr", "damper_bottom_rl", "damper_top_rr", "knuckle_rr", "upper_link_rl"} <= names
+
+
+def test_wheels_are_called_front_where_they_are():
+    one, two = ("fr", "fl"), ("fr", "fl", "rr", "rl")
+    assert [wheel_words("fr", one), wheel_words("fl", one)] == ["right front wheel", "left front wheel"]
+    assert [wheel_words(wheel, two) for wheel in two[::2]] == ["front right wheel", "rear right wheel"]
+    assert [side_of("rl", ("rr", "rl")), wheel_words("rl", ("rr", "rl"))] == ["left", "left wheel"]
+    assert wheel_words("middle_r", (*two, "middle_r")) == "middle_r wheel"
+
+
+def test_the_part_that_carries_a_wheel_tells_how_it_shakes(road_car):
+    assert hub_channel(road_car.vehicle.composition, "rl") == "knuckle_rl_acc_z"
