@@ -11,7 +11,7 @@ from vehicle.errors import DataError
 from vehicle.records.channel import Channel, Measurement
 from vehicle.records.frf import FREQUENCY, SUFFIXES, read_frf
 from vehicle.records.table import Header, Vector, Wanted
-from vehicle.records.text import read_text
+from vehicle.records.text import Text, read_text
 from vehicle.records.text_format import careful, decimal_points, fast
 from vehicle.records.units import find_unit
 
@@ -37,10 +37,27 @@ def read(path: Path) -> Measurement:
         DataError: no numbers in columns, a row of another length, a cell that is no number, a comma in doubt.
     """
     text = read_text(path, western=True)
-    lines = text.lines
-    if any(line.startswith(FREQUENCY) and SUFFIXES[0] in line for line in lines[:20]):
+    if any(line.startswith(FREQUENCY) and SUFFIXES[0] in line for line in text.lines[:20]):
         return _responses(path, text.sha256)
+    return read_lines(path, text, "csv")
+
+
+def read_lines(path: Path, text: Text, form: str) -> Measurement:
+    """A table of numbers in lines of text.
+
+    Args:
+        path: the file, for messages.
+        text: its lines.
+        form: name of its format.
+
+    Raises:
+        DataError: as of `read`.
+    """
+    lines = text.lines
     start, delimiter = _table(path, lines)
+    above = next((line for line in reversed(lines[:start]) if line.strip()), "")
+    if _trailing(lines[start], delimiter) and (_trailing(above, delimiter) or delimiter not in above):
+        lines = [line.rstrip().removesuffix(delimiter) for line in lines]  # no cell follows the last delimiter
     count = len(_cells(lines[start], delimiter))
     names, units, titled = _heads(path, lines, start, delimiter, count)
     if not titled and delimiter == "," and not any("." in line for line in lines[start : start + AGREEING]):
@@ -53,9 +70,7 @@ def read(path: Path) -> Measurement:
     notices = list(text.notices)
     if not titled:
         notices.append(f"no line of names above line {start + 1}: the columns are numbered")
-    rows = [
-        lines[n].rstrip().removesuffix(delimiter) if _trailing(lines[start], delimiter) else lines[n] for n in where
-    ]
+    rows = [lines[n] for n in where]
     if not delimiter:
         rows = [" ".join(row.split()) for row in rows]
     numbers = [n + 1 for n in where]
@@ -93,7 +108,7 @@ def read(path: Path) -> Measurement:
     )
     program = next((line.strip(" \t#;,") for line in lines[:start] if line.strip(" \t#;,")), "") if start > 1 else ""
     return Measurement(
-        path=path, format="csv", channels=channels, sha256=text.sha256, program=program[:80], notices=tuple(notices)
+        path=path, format=form, channels=channels, sha256=text.sha256, program=program[:80], notices=tuple(notices)
     )
 
 
@@ -126,8 +141,7 @@ def _is_axis(name: str, unit: str, kind: str) -> bool:
 def _cells(row: str, delimiter: str) -> list[str]:
     if not delimiter:
         return row.split()
-    cells = [cell.strip().strip('"').strip() for cell in row.rstrip().split(delimiter)]
-    return cells[:-1] if len(cells) > 1 and _trailing(row, delimiter) else cells
+    return [cell.strip().strip('"').strip() for cell in row.rstrip("\r\n").split(delimiter)]
 
 
 def _trailing(row: str, delimiter: str) -> bool:

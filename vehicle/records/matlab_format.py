@@ -69,6 +69,9 @@ def channels_of(held: Mapping[str, Any], path: Path) -> tuple[tuple[Channel, ...
         for label, record in _records(name, value):
             if "x_values" in record and "y_values" in record:
                 found += _signal(path, label, record)
+                continue
+            inner = {f"{label}.{field}": np.asarray(one) for field, one in record.items()}
+            found += [_plain(text, one) for text, one in inner.items() if _is_vector(one)]
         array = np.asarray(value)
         if array.dtype.kind not in "fiuc" or array.ndim > 2 or array.size == 0:
             continue
@@ -81,7 +84,7 @@ def channels_of(held: Mapping[str, Any], path: Path) -> tuple[tuple[Channel, ...
         columns = array if array.shape[0] >= array.shape[1] else array.T
         found += [_plain(f"{name}(:,{n + 1})", columns[:, n]) for n in range(columns.shape[1])]
     if not found:
-        names = ", ".join(list(held)[:8]) or "nothing"
+        names = ", ".join(name for name in list(held)[:12] if not name.startswith("__")) or "nothing"
         raise DataError(f"{path}: no structure with x_values and y_values and no array of numbers; it holds {names}")
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
     if any(one.axis is None for one in found):
@@ -89,9 +92,13 @@ def channels_of(held: Mapping[str, Any], path: Path) -> tuple[tuple[Channel, ...
     return tuple(found), notices
 
 
+def _is_vector(array: Any) -> bool:
+    return array.dtype.kind in "fiuc" and array.size > 1 and array.size == max(array.shape)
+
+
 def _plain(name: str, values: Any) -> Channel:
     kind = complex if np.iscomplexobj(values) else np.float64
-    return Channel(name=name, values=np.array(values, dtype=kind))
+    return Channel(name=name, values=np.array(values, dtype=kind).ravel())
 
 
 def _records(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, dict[str, Any]]]:

@@ -23,6 +23,10 @@ READERS = {
     "mat": "matlab_format",
     "wav": "wave_format",
     "rpc": "rpc_format",
+    "hdf5": "hdf_format",
+    "mdf": "mdf_format",
+    "tdms": "tdms_format",
+    "xlsx": "sheet_format",
 }
 """Name of a format and the module that reads it, imported when such a file is met."""
 

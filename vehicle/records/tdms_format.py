@@ -1,0 +1,71 @@
+"""TDMS files of LabVIEW."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.records.channel import Channel, Measurement, clock_step, uniform_axis
+from vehicle.records.reader import digest, extra
+
+NO_DATE = 1904
+"""Year of the start time of a waveform that has none."""
+
+
+def read(path: Path) -> Measurement:
+    """Read all channels of numbers; the length is that of the data, never `wf_samples`.
+
+    Raises:
+        MissingPartError: npTDMS is not installed.
+        DataError: damaged, cut off, or without numbers.
+    """
+    nptdms = extra("nptdms", "tdms", "a TDMS file")
+    found: list[Channel] = []
+    left, start = 0, ""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            file = nptdms.TdmsFile.read(path)
+        for group in file.groups():
+            for one in group.channels():
+                values = np.asarray(one[:])
+                if values.dtype.kind not in "fiuc" or values.ndim != 1 or not values.size:
+                    left += 1
+                    continue
+                step = one.properties.get("wf_increment")
+                axis, remark = None, ""
+                if isinstance(step, float) and step > 0.0:
+                    step, remark = clock_step(step)
+                    axis = uniform_axis(values.size, step, float(one.properties.get("wf_start_offset") or 0.0))
+                date = one.properties.get("wf_start_time")
+                if not start and date is not None and not str(date).startswith(str(NO_DATE)):
+                    start = str(date)
+                unit = one.properties.get("unit_string") or one.properties.get("NI_UnitDescription") or ""
+                found.append(
+                    Channel(
+                        name=one.name,
+                        values=values.astype(complex if values.dtype.kind == "c" else np.float64),
+                        unit=str(unit),
+                        axis=axis,
+                        place=group.name,
+                        remark=remark,
+                    )
+                )
+    except Exception as error:  # damaged files raise what they like
+        raise DataError(
+            f"{path}: no TDMS file that can be read ({error}); it may be cut off; export it again"
+        ) from None
+    if not found:
+        raise DataError(f"{path}: no channel of numbers; {left} of other kinds")
+    return Measurement(
+        path=path,
+        format="tdms",
+        channels=tuple(found),
+        sha256=digest(path),
+        program=str(file.properties.get("name") or ""),
+        start=start,
+        notices=(f"{left} channels hold no numbers",) if left else (),
+    )
