@@ -31,6 +31,17 @@ def test_the_run_meets_the_road_of_the_road_command(shaker, tmp_path):
     }
     assert "G(0.1 cycles/m) = 6.4e-05 m3" in said["words"] and "80 km/h" in said["words"]
     assert summary["input"]["file"] == "road_B_80" and summary["input"]["plate_rms_m"]["fl"] > 0.0
+    with (folder / "psd.csv").open(encoding="utf-8") as file:
+        head = [line for _, line in zip(range(3), file, strict=False)][2].strip().split(",")
+    assert summary["files"]["psd"] == "psd.csv" and head[:2] == ["frequency [Hz]", "knuckle_fr_acc_x [(m/s2)^2/Hz]"]
+    table = np.genfromtxt(folder / "psd.csv", delimiter=",", skip_header=3)
+    plates = [head.index(f"plate_{wheel}_displacement [(m)^2/Hz]") for wheel in ("fr", "fl")]
+    frequency, density = table[:, 0], table[:, plates].mean(axis=1)
+    band = (frequency > 3.0) & (frequency < 30.0)
+    # G(n0) n0^2 V / f^2 less the contact patch; both tracks hold it together, two windows of it are left to chance.
+    patch = np.sinc(frequency[band] / (80.0 / 3.6) * 0.1) ** 2
+    share = np.mean(density[band] * frequency[band] ** 2 / patch) / (64e-6 * 0.1**2 * 80.0 / 3.6)
+    assert share == pytest.approx(1.0, abs=0.15)
     assert road(["--class", "B", *numbers, "--quiet"]) == 0
     written = read_signal("road.csv", accept_implausible=True)
     with np.load(folder / "time.npz") as arrays:

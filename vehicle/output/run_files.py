@@ -13,6 +13,7 @@ from vehicle.analysis.dependence import DependentInputsError, common_motions
 from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import resonances
+from vehicle.analysis.spectra import power_spectral_density
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
@@ -24,9 +25,13 @@ from vehicle.parameters.toml_file import write_text as vehicle_text
 from vehicle.records.formats import FORMATS
 from vehicle.records.frf import write_frf
 from vehicle.records.table import Record
+from vehicle.records.text_format import write_table
 from vehicle.rendering.plots import plot_frf, plot_time
 
 COMFORT_PLACES = ("seat_rail", "seat")
+PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
+"""Length of a window [s] and highest frequency [Hz] of the densities of a run on a road."""
+
 FRAME = "x to the rear, y to the driver's right, z up; SI units"
 
 
@@ -79,6 +84,9 @@ def write_run(
     files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if response is not None:
         files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
+    if road is not None:
+        files["psd"] = "psd.csv"
+        write_whole(folder / "psd.csv", lambda path: _write_psd(path, run))
     files["time_plot"] = "time.png"
     header = f"parameters of this run, as used\nframe: {FRAME}"
     write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
@@ -100,6 +108,16 @@ def write_run(
     summary["notices"] += missing
     write_json(folder / "summary.json", summary)
     return summary
+
+
+def _write_psd(path: Path, run: Run) -> None:
+    """One-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
+    window, recording = min(PSD_WINDOW, run.signal.duration), run.recording
+    found = power_spectral_density(recording.timestep, np.array(list(recording.channels.values())), window_s=window)
+    inside = found.frequency <= PSD_HIGHEST
+    cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]
+    method = f"one-sided power spectral density: Hann windows of {window:g} s, {found.averages:.3g} averages"
+    write_table(path, cells, [found.frequency[inside], *found.density[:, inside]], [method, f"frame: {FRAME}"])
 
 
 def _frf(run: Run, accepted: type[DataError]) -> tuple[FrequencyResponse | None, list[str]]:
