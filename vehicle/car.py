@@ -29,6 +29,7 @@ from vehicle.excitation.signal import Signal
 from vehicle.flexbody.library import body_model
 from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.first_order import first_order
+from vehicle.linear.load_rows import LoadRows, load_rows
 from vehicle.linear.matrices import CarMatrices, car_matrices
 from vehicle.linear.modes import Mode, car_modes, require_stable
 from vehicle.linear.response import frequency_response as exact_response
@@ -108,6 +109,11 @@ class Car:
         """The same matrices as scalar equations of the poles: what the reduced engine marches."""
         return pole_model(self.matrices)
 
+    @cached_property
+    def load_rows(self) -> LoadRows:
+        """Forces of all elements and the suspension travel as rows over the same matrices."""
+        return load_rows(self.model, self.matrices)
+
     def check(self, engine: str = "mujoco") -> None:
         """Refuse a car that cannot be run, before anything is: for each engine once.
 
@@ -154,7 +160,8 @@ class Car:
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
             engine: "mujoco"; "reduced", hundreds of times faster, linear but for the dampers; "auto", which takes the
                 reduced one and falls back to MuJoCo where the motion leaves its validity or numba is missing.
-            channels: names of the recorded channels; all by default.
+            channels: names of the recorded channels, loads (`vehicle.load_channels`) among them; by default all
+                but the loads.
 
         Returns:
             The run; `run.recording.statistics.engine` says which engine made it, `run.engine_reason` why.
@@ -167,9 +174,11 @@ class Car:
         """
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        self.vehicle.require_channels(channels or (), self.vehicle.channels)
+        known = self.vehicle.channels
+        self.vehicle.require_channels(channels or (), (*known, *self.vehicle.load_channels))
         self.vehicle.require_wheels(signal.wheels)
-        names = self.vehicle.channels if channels is None else channels
+        names = known if channels is None else channels
+        loads = [name for name in names if name not in known]
         require_memory(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
         if engine == "auto" and not has_compiler():
@@ -183,6 +192,7 @@ class Car:
                 record_rate=self.vehicle.solver.record_rate,
                 tyre_load=self.model.static.tyre_load,
                 channels=channels,
+                loads=self.load_rows if loads else None,
             )
             require_finite(recording)
             if engine == "reduced" or recording.statistics.within_validity:
@@ -191,7 +201,7 @@ class Car:
                 return Run(car=self, signal=signal, recording=recording, engine_reason=reason)
             reason = "; ".join(recording.statistics.warnings)
         self.check("mujoco")
-        recording = simulate(self.model, signal, progress=progress)
+        recording = simulate(self.model, signal, progress=progress, loads=loads)
         require_finite(recording)
         if channels is not None:
             recording = recording.only(channels)

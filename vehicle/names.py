@@ -21,7 +21,14 @@ ENGINES = ("mujoco", "reduced", "auto")
 
 AXES = ("x", "y", "z")
 
-_UNITS = {r"\w+_acc_[xyz]": "m/s2", r"\w+_velocity": "m/s", r"\w+_force(_z)?": "N", r"plate_\w+_displacement": "m"}
+_UNITS = {
+    r"\w+_acc_[xyz]": "m/s2",
+    r"\w+_velocity": "m/s",
+    r"\w+_force(_[xyz])?": "N",
+    r"plate_\w+_displacement": "m",
+    r"suspension_travel_\w+": "m",
+    r"\w+_torque": "N m",
+}
 
 
 def side_of(wheel: str, wheels: Iterable[str]) -> str:

@@ -31,6 +31,7 @@ def one_pole(pole, height, velocity):
         force=np.array([[2.0 - 1.0j, 0.0]]),
         slip=np.zeros((2, 1), dtype=complex),
         modal=np.zeros((1, 1), dtype=complex),
+        branch=np.zeros((0, 1), dtype=complex),
         matrices=None,  # type: ignore[arg-type]
     )
 

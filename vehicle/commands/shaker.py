@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
     command_parser,
     drives_on_road,
@@ -38,6 +39,12 @@ def parser() -> Parser:
     engine_option(found, "mujoco")
     found.add_argument("--timestep", type=float, metavar="S", help="step of the integration [s]")
     found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
+    found.add_argument(
+        "--channels",
+        metavar="loads|all|NAME,...",
+        help="record more than the default channels: loads, the forces of all elements [N] and the suspension travel "
+        "[m], or some of these by name; all is everything; python -m vehicle loads counts their cycles",
+    )
     found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
     found.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
     found.add_argument(
@@ -107,6 +114,7 @@ def _job(options: argparse.Namespace) -> None:
     else:
         signal = drive.signal()
     _check_signal(options, signal)
+    channels = None if options.channels is None else recorded_channels(options.channels, car.vehicle)
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
     car.check(engine)
     if options.road is None:
@@ -115,7 +123,8 @@ def _job(options: argparse.Namespace) -> None:
     signal = signal if drive is None else replace(signal, source=drive.name)
     with output_folder(output, force=options.force, protect=inputs) as folder:
         try:
-            run = car.run(signal, ProgressLine("simulation", enabled=not options.quiet), engine=engine)
+            progress = ProgressLine("simulation", enabled=not options.quiet)
+            run = car.run(signal, progress, engine=engine, channels=channels)
         except SimulationError as error:
             raise save_last_state(error, output) from None
 

@@ -33,6 +33,11 @@ PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
 """Length of a window [s] and highest frequency [Hz] of the densities of a run on a road."""
 
 FRAME = "x to the rear, y to the driver's right, z up; SI units"
+LOADS = (
+    "; forces of elements: on the moving part, in the axes of the carrier; springs: compression positive; "
+    "suspension travel: wheel centre against body, upwards from the design position"
+)
+"""What the time histories say beside where loads are among them."""
 
 
 def require_plates(signal: Signal) -> None:
@@ -91,7 +96,8 @@ def write_run(
     header = f"parameters of this run, as used\nframe: {FRAME}"
     write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
-    write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, FRAME))
+    frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME
+    write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, frame))
     if response is not None:
         found = response
         write_whole(folder / "frf.csv", lambda path: write_frf(path, found, channels, FRAME))

@@ -113,8 +113,29 @@ class Vehicle:
         """
         for name in channels:
             if name not in known:
-                what = "channel" if len(known) == len(self.channels) else "acceleration channel"
+                what = "channel" if len(known) >= len(self.channels) else "acceleration channel"
                 raise ConfigurationError(f"no {what} {name!r}; there are {', '.join(known)}")
+
+    @property
+    def load_channels(self) -> tuple[str, ...]:
+        """Names of the channels that are recorded on request, in the order of the files.
+
+        Forces `<connection>_force_<axis>` [N] on the moving part, in the axes of the carrier; `<spring>_force` [N] of
+        the main springs, compression positive; `<joint>_torque` [N m] or `<joint>_spring_force` [N] of springs in
+        joints, on the part behind the joint; `suspension_travel_<wheel>` [m] of the wheel centre against the body,
+        upwards from the design position.
+        """
+        own, kinds = (
+            self.composition,
+            {joint.name: joint.kind for part in self.composition.parts for joint in part.joints},
+        )
+        ends = {"slide": "spring_force"}
+        found = [f"{one.name}_force_{axis}" for one in own.connections for axis in AXES]
+        found += [f"{spring.name}_force" for spring in own.springs]
+        found += [f"{spring.joint}_{ends.get(kinds[spring.joint], 'torque')}" for spring in own.joint_springs]
+        found += [f"suspension_travel_{wheel}" for wheel in self.wheels]
+        recorded = set(self.channels)
+        return tuple(name for name in found if name not in recorded)
 
     @property
     def damper(self) -> Damper:

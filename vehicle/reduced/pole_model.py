@@ -37,6 +37,14 @@ class Outputs:
     height: Vector
     velocity: Vector
 
+    def __add__(self, other: Outputs) -> Outputs:
+        """These outputs, and others behind them."""
+        return Outputs(
+            poles=np.concatenate([self.poles, other.poles]),
+            height=np.concatenate([self.height, other.height]),
+            velocity=np.concatenate([self.velocity, other.velocity]),
+        )
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PoleModel:
@@ -48,6 +56,7 @@ class PoleModel:
         height, velocity, force: b_z, b_c and e; (p, w) each, in the order of the inputs and of the dampers.
         slip: rows of the damper velocities, real part taken; (w, p).
         modal: displacements u = Re(modal xi) of the velocity coordinates of MuJoCo; (n, p).
+        branch: forces f_b = Re(branch xi) of the Maxwell branches; (b, p).
         matrices: what the model was made from.
     """
 
@@ -58,6 +67,7 @@ class PoleModel:
     force: Complex
     slip: Complex
     modal: Complex
+    branch: Complex
     matrices: CarMatrices
 
     def outputs(self, channels: Sequence[str]) -> Outputs:
@@ -116,5 +126,6 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         force=residues[:, 2 * w :],
         slip=form.slide @ weighted,
         modal=form.shape(weighted),
+        branch=weighted[2 * form.basis.shape[1] :],
         matrices=matrices,
     )

@@ -10,8 +10,10 @@ import numpy.typing as npt
 
 from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.laws.damper import RECORD, damper_curve, pack
+from vehicle.linear.load_rows import LoadRows
 from vehicle.names import channel_units, wheel_channels
 from vehicle.parameters.elements import Damper
+from vehicle.reduced.loads import direct_forces, load_outputs
 from vehicle.reduced.march import March, compiled_march
 from vehicle.reduced.plate_samples import LongPlates, plate_samples
 from vehicle.reduced.pole_model import PoleModel
@@ -40,6 +42,7 @@ def simulate_reduced(
     record_rate: float,
     tyre_load: Mapping[str, float],
     channels: Sequence[str] | None = None,
+    loads: LoadRows | None = None,
 ) -> Recording:
     """Run a car on its plates with the reduced engine.
 
@@ -49,7 +52,8 @@ def simulate_reduced(
         dampers: their laws, one for each; the viscous parts are in the model already.
         record_rate: rate of the samples [Hz].
         tyre_load: static tyre loads [N] by wheel.
-        channels: names of the recorded channels; all by default.
+        channels: names of the recorded channels; all but the loads by default.
+        loads: rows of the load channels, where `channels` names such.
 
     Returns:
         The recording; without poses, and without an energy balance.
@@ -70,8 +74,13 @@ def simulate_reduced(
     # No step at all: compiling is no part of the time of the run.
     run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
     started = clock.perf_counter()
-    linear = [name for name in names if name in system.outputs or name.startswith("tyre_")]
-    readout = Readout(model.outputs(linear), run.factors, model.pairs, run.columns)
+    tyres = {f"tyre_{wheel}_force_z" for wheel in system.inputs}
+    linear = [name for name in names if name in system.outputs or name in tyres]
+    outputs, chosen = model.outputs(linear), None if loads is None else loads.only(names)
+    if chosen is not None:
+        outputs += load_outputs(model, chosen)
+        linear += chosen.names
+    readout = Readout(outputs, run.factors, model.pairs, run.columns)
     watch = ValidityWatch(model, run.factors, run.columns, tyre_load)
     table = np.empty((len(linear), samples + AHEAD))
     table[:, 0] = readout.at(run.state()[None], plates[:1], run.before[:1, : run.count])[:, 0] if linear else 0.0
@@ -85,6 +94,10 @@ def simulate_reduced(
     for wheel in run.corners:
         if f"tyre_{wheel}_force_z" in channel:
             channel[f"tyre_{wheel}_force_z"] = channel[f"tyre_{wheel}_force_z"] + tyre_load[wheel]
+    if chosen is not None:
+        friction = run.friction(samples)
+        for name, static, row in zip(chosen.names, chosen.static, direct_forces(model, chosen), strict=True):
+            channel[name] = channel[name] + static + friction @ row
     wall = clock.perf_counter() - started
     return Recording(
         time=uniform_time(samples=samples, timestep=interval),
@@ -194,6 +207,13 @@ class _Run:
             done += size
         self.after[-1] = self.before[-1]
 
+    def friction(self, samples: int) -> Vector:
+        """Nonlinear damper forces at the samples [N]; (samples, d).
+
+        The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
+        """
+        return 0.5 * (self.before + self.after)[:samples, : self.count]
+
     def wheel_channels(self, model: PoleModel, plates: Vector) -> dict[str, Vector]:
         """Plate displacements, damper velocities and damper forces at the samples."""
         found = {}
@@ -201,8 +221,7 @@ class _Run:
             driven = wheel in self.wheels
             height = plates[:, 2 * self.wheels.index(wheel)] if driven else np.zeros(len(plates))
             velocity = self.velocities[: len(plates), column]
-            # The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
-            friction = 0.5 * (self.before + self.after)[: len(plates), column]
+            friction = self.friction(len(plates))[:, column]
             found[f"plate_{wheel}_displacement"] = height.copy()
             found[f"damper_{wheel}_velocity"] = velocity.copy()
             found[f"damper_{wheel}_force"] = model.matrices.viscous[column] * velocity - friction + self.rest[column]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import mujoco
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +13,7 @@ from vehicle.names import AXES, channel_units
 from vehicle.simulation.acceleration import AHEAD, acceleration
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.layout import numeric
+from vehicle.simulation.loads import LoadPlaces
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recording import Energies, Recording, Statistics
 from vehicle.simulation.rows import Rows, joint_dampers
@@ -32,6 +35,7 @@ class Recorder:
         samples: number of recorded samples.
         every: steps between two recorded samples.
         pose_every: samples between two stored poses.
+        loads: names of the load channels to be recorded beside the others.
     """
 
     def __init__(
@@ -44,6 +48,7 @@ class Recorder:
         samples: int,
         every: int,
         pose_every: int,
+        loads: Sequence[str] = (),
     ) -> None:
         self.car, self.model, self.data, self.rows = car, model, data, rows
         self.step = model.opt.timestep
@@ -56,6 +61,9 @@ class Recorder:
             shape = numeric(model, f"shape/place/{place}")
             if shape is not None:
                 self.shapes[place] = shape.reshape(3, -1)
+        self.loads = LoadPlaces(car, rows, loads) if loads else None
+        bodies = np.zeros(0, dtype=np.int64) if self.loads is None else self.loads.bodies
+        joints = np.zeros((0, 2), dtype=np.int64) if self.loads is None else self.loads.coordinates
         self.sites = np.array([model.site(f"place/{place}").id for place in self.places], dtype=np.int64)
         self.buffers = Samples(
             places=np.zeros((CHUNK, 3 * len(self.sites))),
@@ -69,6 +77,8 @@ class Recorder:
             rate=np.zeros((CHUNK, *e.bushings.rows.shape)),
             branch=np.zeros((CHUNK, *e.bushings.rows.shape)),
             poses=np.zeros((CHUNK, model.nq)),
+            frames=np.zeros((CHUNK, 12 * len(bodies))),
+            springs=np.zeros((CHUNK, 2 * len(joints))),
         )
         self.sources = Sources(
             position=data.qpos,
@@ -82,6 +92,9 @@ class Recorder:
             branch=rows.state.branch_past,
             sites=self.sites,
             dampers=e.dampers.dofs,
+            origins=data.xpos,
+            bodies=bodies,
+            springs=joints,
         )
         self.order = Order(
             step=0,
@@ -97,6 +110,7 @@ class Recorder:
             half=-0.5 * self.step,
         )
         self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
+        self.channels |= {name: np.zeros(samples) for name in loads}
         # Positions until the end of the run, which makes accelerations of them.
         self.channels |= {name: np.zeros(samples + AHEAD) for name in car.vehicle.acceleration_channels}
         self.poses: list[Vector] = []
@@ -207,6 +221,9 @@ class Recorder:
             if tyre[lowest, column] < self.lowest_load[wheel][0]:
                 when = (self.done + lowest) * every * self.step
                 self.lowest_load[wheel] = (float(tyre[lowest, column]), when)
+        if self.loads is not None:
+            for name, values in self.loads.channels(total, b.frames, b.springs).items():
+                self.channels[name][here] = values
         # What lifts the weight is known without any quadrature, and is a multiple of what the dampers take.
         static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]
         power_in = np.sum((tyre - static) * velocity, axis=1)

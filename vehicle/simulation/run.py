@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import mujoco
@@ -37,7 +37,12 @@ LARGEST_STATE = 1e8
 
 
 def simulate(
-    car: CarModel, signal: Signal, *, progress: Progress | None = None, native: bool | None = None
+    car: CarModel,
+    signal: Signal,
+    *,
+    progress: Progress | None = None,
+    native: bool | None = None,
+    loads: Sequence[str] = (),
 ) -> Recording:
     """Run a car on its shaker plates.
 
@@ -47,6 +52,7 @@ def simulate(
         progress: called with the finished fraction [-] now and then.
         native: True for the compiled form of the element laws, False for the Python form; by default the compiled
             one where it can be had, with a notice where not.
+        loads: names of load channels to be recorded beside the others.
 
     Returns:
         The recording, sampled at `solver.record_rate`.
@@ -82,7 +88,9 @@ def simulate(
     )
     compiled, notices = _compiled(rows, native)
     pose_every = max(round(1.0 / (POSE_RATE * step * every)), 1)
-    recorder = Recorder(car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every)
+    recorder = Recorder(
+        car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, loads=loads
+    )
     advance = None
     if compiled is not None:
         compiled.attach(data)

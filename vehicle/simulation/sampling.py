@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from vehicle.compiler import jitable
-from vehicle.simulation.records import Index, Table, Vector
+from vehicle.simulation.records import Index, Indices, Table, Vector
 
 
 class Plates(NamedTuple):
@@ -21,7 +21,11 @@ class Plates(NamedTuple):
 
 
 class Sources(NamedTuple):
-    """What is read after a step: views of mjData and of the state of the rows, and which sites and dampers."""
+    """What is read after a step: views of mjData and of the state of the rows, and which sites and dampers.
+
+    `bodies` are those whose frames the loads need, `springs` places and velocity coordinates of joints with a spring;
+    both are empty in a run without loads.
+    """
 
     position: Vector
     velocity: Vector
@@ -34,6 +38,9 @@ class Sources(NamedTuple):
     branch: Table
     sites: Index
     dampers: Index
+    origins: Table
+    bodies: Index
+    springs: Indices
 
 
 class Samples(NamedTuple):
@@ -50,6 +57,8 @@ class Samples(NamedTuple):
     rate: Table
     branch: Table
     poses: Table
+    frames: Table
+    springs: Table
 
 
 class Order(NamedTuple):
@@ -99,3 +108,12 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
     b.explicit[row] = s.explicit
     b.rate[row] = s.rate
     b.branch[row] = s.branch
+    for body in range(s.bodies.shape[0]):
+        for axis in range(3):
+            b.frames[row, 12 * body + axis] = s.origins[s.bodies[body], axis]
+        for entry in range(9):
+            b.frames[row, 12 * body + 3 + entry] = s.orientation[s.bodies[body], entry]
+    for spring in range(s.springs.shape[0]):
+        place, dof = s.springs[spring, 0], s.springs[spring, 1]
+        b.springs[row, 2 * spring] = s.position[place]
+        b.springs[row, 2 * spring + 1] = s.velocity[dof] + half * s.acceleration[dof]
