@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -12,10 +13,13 @@ from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.car import Car
 from vehicle.names import side_of, wheel_words
 from vehicle.rendering.backend import choose_backend
+from vehicle.rendering.motion import Motion
 from vehicle.rendering.overlay import Layout
 from vehicle.rendering.recorded_run import hub_channel
 from vehicle.rendering.road_strip import RoadStrip
+from vehicle.rendering.rolling import RollingRim
 from vehicle.rendering.shot import Shot, Take
+from vehicle.rendering.stage import stage_model
 
 SPEED = 26.15
 """[m/s]: the wheelbase of 2.615 m is 0.1 s."""
@@ -75,6 +79,25 @@ def test_the_road_passes_in_the_film(road_run):
         *("shaker_fr", "shaker_frame_fr", "pedestal_fl", "shaker_rr", "shaker_frame_rr", "pedestal_rl"),
     }
     assert {"main_spring_rr", "damper_bottom_rl", "damper_top_rr", "knuckle_rr", "upper_link_rl"} <= names
+
+
+def test_rims_roll_with_the_road(road_car, road_run):
+    """The car drives towards -x: seen along y a rim turns by V t / r backwards about its moved centre."""
+    model = stage_model(road_car, (320, 180), road=True)
+    motion = Motion(model, road_run.recording, 0.0, 1.0)
+    wheel = road_car.vehicle.composition.wheels[2]
+    state, data = motion.at(0.4), mujoco.MjData(model)
+    data.geom_xpos[:], data.geom_xmat[:] = motion.geoms(state, 1.0)
+    before = data.geom_xmat.reshape(-1, 3, 3).copy()
+    rim = RollingRim(motion, wheel, SPEED)
+    quarter = 0.5 * np.pi * 0.295 / SPEED
+    rim.turn(data, state, 1.0, quarter)
+    assert {model.geom(geom).name for geom in rim.geoms} == {"rim_rr", "wheel_bolts_rr"}
+    geom = model.geom("rim_rr").id
+    across = motion.poses(state, 1.0)[1][model.body("tyre_rr").id]
+    turned = across.T @ data.geom_xmat[geom].reshape(3, 3) @ before[geom].T @ across
+    # What was on top (z) is now in front (-x).
+    np.testing.assert_allclose(turned @ [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], atol=1e-12)
 
 
 def test_wheels_are_called_front_where_they_are():

@@ -17,6 +17,7 @@ from vehicle.rendering.motion import Coil, Motion, Wireframe
 from vehicle.rendering.overlay import Layout, Overlay, Trace, colours, round_factor, round_up
 from vehicle.rendering.recorded_run import RecordedRun, dampers_of, excerpt_start, hub_channel, hub_of, wheels_of
 from vehicle.rendering.road_strip import RoadStrip
+from vehicle.rendering.rolling import RollingRim
 from vehicle.rendering.stage import OPACITY, Canvas, Picture, close_up, stage_model, whole_car
 
 Vector = npt.NDArray[np.float64]
@@ -148,12 +149,17 @@ class Shot:
         for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
             place(model, data)
         coils = [Coil(self.motion, self.composition, spring) for spring in self.composition.springs]
+        rims = [
+            RollingRim(self.motion, wheel, self.speed) for wheel in self.composition.wheels if self.speed is not None
+        ]
         views = self._views()
         with closing(Canvas(model, (layout.width, layout.view_height), backend)) as canvas:
             for number in range(self.cut.frames):
                 time = self.cut.start + number * self.cut.interval
                 state = self.motion.at(time, self.cut.interval)
                 data.geom_xpos[:], data.geom_xmat[:] = self.motion.geoms(state, factor)
+                for rim in rims:
+                    rim.turn(data, state, factor, time)
                 for coil in coils:
                     coil.write(data, coil.places(state, factor))
                     canvas.upload(coil.mesh)
