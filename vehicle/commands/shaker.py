@@ -41,6 +41,7 @@ def parser() -> Parser:
     found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
     found.add_argument(
         "--channels",
+        dest="recorded",
         metavar="loads|all|NAME,...",
         help="record more than the default channels: loads, the forces of all elements [N] and the suspension travel "
         "[m], or some of these by name; all is everything; python -m vehicle loads counts their cycles",
@@ -114,7 +115,7 @@ def _job(options: argparse.Namespace) -> None:
     else:
         signal = drive.signal()
     _check_signal(options, signal)
-    channels = None if options.channels is None else recorded_channels(options.channels, car.vehicle)
+    channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
     car.check(engine)
     if options.road is None:
