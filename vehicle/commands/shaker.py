@@ -46,6 +46,15 @@ def parser() -> Parser:
         help="record more than the default channels: loads, the forces of all elements [N] and the suspension travel "
         "[m], or some of these by name; all is everything; python -m vehicle loads counts their cycles",
     )
+    found.add_argument(
+        "--format",
+        dest="formats",
+        action="append",
+        default=[],
+        choices=("csv", "npz", "mat", "uff", "rpc", "h5"),
+        help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
+        "uff with the places of the car; may be repeated",
+    )
     found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
     found.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
     found.add_argument(
@@ -84,6 +93,10 @@ def _job(options: argparse.Namespace) -> None:
     inputs = tuple(path for path in (source, options.vehicle) if isinstance(path, Path))
     check_output(output, force=options.force, protect=inputs)
     _check_numbers(options)
+    if "h5" in options.formats:
+        from vehicle.records.reader import extra
+
+        extra("h5py", "hdf5", "--format h5")
     wheel = CORNERS[options.wheel or "front_right"]
     choice = record_choice(options, wheel) if drive is None else None
     engine, reason = _engine(options)
@@ -146,6 +159,7 @@ def _job(options: argparse.Namespace) -> None:
             folder,
             run,
             time_format=options.time_format,
+            formats=options.formats,
             engine_reason=reason,
             road=road,
             video=None if video_name is None else (video_name, make_film),

@@ -9,10 +9,16 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS, is_wheel
+from vehicle.records.channel import Channel
 from vehicle.records.choice import Choice, choose
 from vehicle.records.integration import displacement
 from vehicle.records.reader import read_record
 from vehicle.records.table import TIME, Header, Table
+
+
+def _moves(channel: Channel) -> bool:
+    """A run records the plate that it did not drive, too."""
+    return not channel.name.startswith("plate_") or bool(np.ptp(channel.values) > 0.0)
 
 
 def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> Table:
@@ -36,7 +42,7 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> Table:
     if not any(role != "time" for role in choice.channels):
         wheels = CORNERS.values()
         named = {f"displacement_{one}": one for one in wheels} | {f"plate_{one}_displacement": one for one in wheels}
-        found = {named[one.name]: one.name for one in measurement.channels if one.name in named}
+        found = {named[one.name]: one.name for one in measurement.channels if one.name in named and _moves(one)}
         if not found and len(measurement.channels) == 1:
             found = {wheel: "1"}
         elif not found and (plain := [one for one in measurement.channels if one.name == "displacement"]):

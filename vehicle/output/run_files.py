@@ -20,6 +20,7 @@ from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.names import AXES
 from vehicle.output.folder import write_json, write_text, write_whole
+from vehicle.output.run_formats import writer
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
 from vehicle.records.formats import FORMATS
@@ -64,6 +65,7 @@ def write_run(
     run: Run,
     *,
     time_format: str = "npz",
+    formats: Sequence[str] = (),
     engine_reason: str = "",
     road: Mapping[str, object] | None = None,
     video: tuple[Path, Callable[[Path], None]] | None = None,
@@ -74,6 +76,7 @@ def write_run(
         folder: as of `output_folder`.
         run: the run.
         time_format: "npz" or "csv".
+        formats: further ones of `vehicle.output.run_formats.WRITERS`.
         engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
         road: what the summary says of the road; on one, FRFs that cannot be had are left out with a notice.
         video: name of the film, or a path of its own, and what writes it.
@@ -103,6 +106,10 @@ def write_run(
         write_whole(folder / "frf.csv", lambda path: write_frf(path, found, channels, FRAME))
         caption = _caption(run, found)
         write_whole(folder / "frf.png", lambda path: plot_frf(path, run, found, caption))
+    for one in dict.fromkeys(formats):
+        if one != time_format:
+            files[f"time_{one}"] = f"time.{one}"
+            write_whole(folder / f"time.{one}", writer(one, run, response, channels, FRAME))
     write_whole(folder / "time.png", lambda path: plot_time(path, run))
     if video is not None:
         name, make = video

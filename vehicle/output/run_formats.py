@@ -1,0 +1,118 @@
+"""A run in the formats of other programs: its channels with places and directions, its FRFs, its geometry."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.car import Run
+from vehicle.records import hdf_format, matlab_format, rpc_format, uff_writer
+from vehicle.records.channel import Channel, uniform_axis
+from vehicle.records.formats import FORMATS
+from vehicle.records.table import Record
+
+WRITERS = ("csv", "npz", "mat", "uff", "rpc", "h5")
+"""Formats that a run can be written in, which are the endings of the files."""
+
+_ACCELERATION = re.compile(r"(?P<place>\w+)_acc_(?P<axis>[xyz])")
+_PLATE = re.compile(r"(?P<place>plate_\w+)_displacement")
+_FORCE = re.compile(r"tyre_(?P<wheel>\w+)_force_z")
+
+
+def time_channels(run: Run) -> tuple[Channel, ...]:
+    """All channels of a run over its recorded times."""
+    step = run.recording.timestep
+    axis = uniform_axis(run.time.size, step, float(run.time[0]))
+    return tuple(
+        Channel(name=name, values=values, unit=run.recording.units[name], axis=axis, **_point(name))
+        for name, values in run.recording.channels.items()
+    )
+
+
+def response_channels(run: Run, response: FrequencyResponse, channels: Sequence[str]) -> tuple[Channel, ...]:
+    """Each frequency response and beside it its coherence.
+
+    Args:
+        run: tells the plate.
+        response: of its rows.
+        channels: names of the rows.
+    """
+    found = []
+    for row, name in enumerate(channels):
+        about = _point(name) | {"reference": f"plate_{run.wheel}+Z"}
+        found.append(
+            Channel(
+                name=f"{name} / plate_{run.wheel}",
+                values=response.response[row],
+                unit="(m/s2)/(m)",
+                axis=response.frequency,
+                kind="frequency",
+                function="frequency response",
+                **about,
+            )
+        )
+        found.append(
+            Channel(
+                name=f"{name} / plate_{run.wheel} coherence",
+                values=response.coherence[row],
+                axis=response.frequency,
+                kind="frequency",
+                function="coherence",
+                **about,
+            )
+        )
+    return tuple(found)
+
+
+def _point(name: str) -> dict[str, Any]:
+    """Place and direction that the name of a channel tells."""
+    match = _ACCELERATION.fullmatch(name)
+    if match:
+        return {"place": match["place"], "direction": f"+{match['axis'].upper()}"}
+    match = _PLATE.fullmatch(name)
+    if match:
+        return {"place": match["place"], "direction": "+Z"}
+    match = _FORCE.fullmatch(name)
+    return {"place": f"plate_{match['wheel']}", "direction": "+Z"} if match else {}  # a damper acts between two places
+
+
+def geometry(run: Run) -> uff_writer.Geometry:
+    """Places of a car in its design position, and lines from each plate over the places of its wheel."""
+    car = run.car.vehicle.composition
+    points = {one.name: tuple(one.at) for one in car.outputs}
+    lines = []
+    for wheel in car.wheels:
+        plate = f"plate_{wheel.name}"
+        own = [name for name in points if re.search(rf"_{wheel.name}(_|$)", name)]
+        points[plate] = tuple(wheel.patch)
+        lines.append([plate, *sorted(own, key=lambda name: points[name][2])])
+    return uff_writer.Geometry(points=points, lines=[line for line in lines if len(line) > 1])
+
+
+def writer(
+    form: str, run: Run, response: FrequencyResponse | None, channels: Sequence[str], frame: str
+) -> Callable[[Path], None]:
+    """What writes a run in a format.
+
+    Args:
+        form: of `WRITERS`.
+        run: the run.
+        response: its FRFs; None where there are none.
+        channels: names of their rows.
+        frame: axes of the vectors, in words.
+    """
+    if form in FORMATS:
+        record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
+        return lambda path: FORMATS[form].write(path, record, frame)
+    histories = time_channels(run)
+    about = f"{run.car.vehicle.name}; {frame}"
+    if form == "rpc":
+        return lambda path: rpc_format.write(path, histories, about)
+    everything = histories + (() if response is None else response_channels(run, response, channels))
+    if form == "uff":
+        return lambda path: uff_writer.write(path, everything, about, geometry(run))
+    write = {"mat": matlab_format.write, "h5": hdf_format.write}[form]
+    return lambda path: write(path, everything, about)
