@@ -135,7 +135,7 @@ def test_a_traceback_appears_with_debug_only(tmp_path, capsys):
 
 
 def test_an_interrupt_exits_130(ride, capsys, monkeypatch):
-    def interrupted(path, place):
+    def interrupted(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("vehicle.records.acceleration.read_acceleration", interrupted)

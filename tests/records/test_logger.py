@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from vehicle.commands.comfort import main as comfort
 from vehicle.commands.inspect import main as inspect
 from vehicle.commands.options import record_choice
 from vehicle.commands.shaker import parser
@@ -159,3 +160,25 @@ def test_formats_that_are_not_read_are_named(tmp_path, head):
     path.write_text(head + "x" * 50)
     with pytest.raises(DataError, match=r"is (FAMOS|TDM|Dewesoft), which is not read; export "):
         read_record(path)
+
+
+def test_comfort_takes_any_channels(tmp_path, capsys):
+    path = tmp_path / "logger.txt"
+    logger(path, seconds=20.0, rate=512.0)
+    picks = [
+        word
+        for axis, name in zip("xyz", ("Acc 1", "3", "Acc 8"), strict=True)
+        for word in ("--channel", f"{axis}={name}")
+    ]
+    assert comfort(["--input", str(path), "--json", *picks, "--from", "102"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    # 8 Hz, amplitude n/10 g: Wk(8 Hz) = 1.036, Wd(8 Hz) = 0.253 (ISO 2631-1, table 3)
+    assert found["z"]["weighted_rms"] == pytest.approx(0.8 * 9.80665 / np.sqrt(2.0) * 1.036, rel=0.01)
+    assert found["y"]["weighted_rms"] == pytest.approx(0.2 * 9.80665 / np.sqrt(2.0) * 0.253, rel=0.01)
+    assert any("z: channel 9 'Acc 8' [g]" in text for text in found["notices"])
+    for wrong, said in (
+        (["--channel", "z=1"], "needed are three axes"),
+        ([*picks[:4], "--channel", "z=1"], "but a displacement"),
+    ):
+        assert comfort(["--input", str(path), *wrong]) == 3
+        assert said in capsys.readouterr().err

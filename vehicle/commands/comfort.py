@@ -8,8 +8,8 @@ import sys
 from typing import Any
 
 from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import command_parser, message_options
-from vehicle.errors import DataError
+from vehicle.commands.options import command_parser, message_options, record_choice, record_options
+from vehicle.errors import ConfigurationError, DataError
 
 
 def parser() -> Parser:
@@ -18,11 +18,21 @@ def parser() -> Parser:
         "comfort", "Weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums of a record of acceleration."
     )
     found.add_argument(
-        "--input", required=True, metavar="FILE", help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g])"
+        "--input",
+        required=True,
+        metavar="FILE",
+        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file",
     )
     found.add_argument(
-        "--channel", metavar="PLACE", help="point of a run, as seat_rail in its time.csv or time.npz; columns x, y, z"
+        "--channel",
+        dest="channels",
+        action="append",
+        default=[],
+        metavar="PLACE|AXIS=NAME",
+        help="point of a run, as seat_rail in its time.csv or time.npz; columns x, y, z by default; or the channel of "
+        'axis in any measurement file, as x="Seat X" (number, exact name, or pattern with *), for x, y and z',
     )
+    record_options(found, "", channel=False)
     found.add_argument("--json", action="store_true", help="print the result as JSON")
     found.add_argument(
         "--place",
@@ -70,7 +80,11 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     from vehicle.records.acceleration import read_acceleration
 
     application(options.place)
-    record = read_acceleration(options.input, options.channel)
+    places = [text for text in options.channels if "=" not in text]
+    if len(places) > 1 or (places and len(options.channels) > 1):
+        raise ConfigurationError("--channel: give one PLACE, or x=NAME, y=NAME and z=NAME")
+    options.channels = [text for text in options.channels if "=" in text]
+    record = read_acceleration(options.input, places[0] if places else None, record_choice(options, ""))
     xyz = np.array(list(record.channels.values()))
     mean = xyz.mean(axis=1)
     line = offset_line(xyz)

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.names import AXES
-from vehicle.records.formats import read_columns
+from vehicle.records.choice import Choice, choose
+from vehicle.records.clock import is_uniform
+from vehicle.records.formats import is_table, read_columns
+from vehicle.records.integration import filtered
+from vehicle.records.reader import read_record
 from vehicle.records.table import Record, Vector
+from vehicle.records.units import STANDARD_GRAVITY
 
-STANDARD_GRAVITY = 9.80665
-"""[m/s2], ISO 80000-3, for records in g"""
 UNITS = {"m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY}
 """accepted units of acceleration and their value in m/s2"""
 LARGEST_ACCELERATION = 50.0
@@ -40,12 +44,42 @@ def _notices(xyz: Mapping[str, Vector], rate: float) -> tuple[str, ...]:
     return tuple(found)
 
 
-def read_acceleration(path: str | Path, place: str | None = None) -> Record:
+def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
+    """Chosen channels under the names of the axes, in m/s2."""
+    measurement = read_record(path)
+    roles = {role: wanted for role, wanted in choice.channels.items() if role != "time"}
+    held = {one.name for one in measurement.channels}
+    if not roles and held.issuperset(names):
+        roles = dict(zip(AXES, names, strict=True))
+    if set(roles) != set(AXES):
+        listed = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
+        raise DataError(
+            f"{path}: needed are three axes: --channel x=NAME --channel y=NAME --channel z=NAME, each a number, exact "
+            f"name or a pattern with *; the file has {listed}"
+        )
+    chosen = choose(measurement, replace(choice, channels=choice.channels | roles))
+    wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)
+    if wrong is not None:
+        raise DataError(
+            f"{path}: channel {roles[wrong]!r} for {wrong} is no acceleration but a {chosen.quantities[wrong]}; choose "
+            f"another, or give --unit {wrong}=m/s2 or {wrong}=g if the file is wrong"
+        )
+    values, notices = dict(chosen.values), chosen.notices
+    if choice.highpass is not None:
+        values, notices = filtered(chosen, choice.highpass)
+    channels = {name: values[axis] for name, axis in zip(names, AXES, strict=True)}
+    if not is_uniform(chosen.time):
+        raise DataError(f"{path}: times are not uniform; give --rate HZ if the samples are and their stamps are not")
+    return Record(time=chosen.time, channels=channels, units=dict.fromkeys(names, "m/s2"), notices=notices)
+
+
+def read_acceleration(path: str | Path, place: str | None = None, choice: Choice | None = None) -> Record:
     """Read an acceleration in three axes.
 
     Args:
         path: a record, as of `read_columns`.
         place: point of a run, as "seat_rail", for the channels `seat_rail_acc_x|y|z`; None for columns x, y, z.
+        choice: channels of a measurement file for the roles x, y and z, and what is done to them.
 
     Returns:
         Channels x, y, z [m/s2], with remarks on what is odd.
@@ -57,7 +91,10 @@ def read_acceleration(path: str | Path, place: str | None = None) -> Record:
     file = Path(path)
     axes = [axis if place is None else f"{place}_acc_{axis}" for axis in AXES]
     needed = f"time [s], {', '.join(f'{name} [m/s2]' for name in axes)} (or [g])"
-    record = read_columns(file, needed)
+    if choice is not None or not is_table(file):
+        record = _chosen(file, choice or Choice(), axes)
+    else:
+        record = read_columns(file, needed)
     xyz = {}
     for axis, name in zip(AXES, axes, strict=True):
         if name not in record.channels:

@@ -62,6 +62,21 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
     return found, tuple(notices)
 
 
+def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[str, ...]]:
+    """Chosen channels behind the high-pass alone, and the notices with it.
+
+    Args:
+        chosen: as of `choose`.
+        corner: fc [Hz].
+
+    Raises:
+        DataError: as of `integrate`.
+    """
+    step = float(chosen.time[-1] - chosen.time[0]) / (chosen.time.size - 1)
+    said = f"high-pass {corner:g} Hz on request (Butterworth, order {ORDER}, forwards and backwards)"
+    return {role: integrate(one, step, 0, corner) for role, one in chosen.values.items()}, (*chosen.notices, said)
+
+
 def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:
     """High-pass and integrate: X(f) = A(f) / (2 pi i f)^k * r / (1 + r), r = (f / fc)^(2 n), without phase shift.
 
