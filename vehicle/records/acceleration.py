@@ -57,7 +57,7 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
             f"{path}: needed are three axes: --channel x=NAME --channel y=NAME --channel z=NAME, each a number, exact "
             f"name or a pattern with *; the file has {listed}"
         )
-    chosen = choose(measurement, replace(choice, channels=choice.channels | roles))
+    chosen = choose(measurement, replace(choice, channels={**choice.channels, **roles}))
     wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)
     if wrong is not None:
         raise DataError(
@@ -99,9 +99,9 @@ def read_acceleration(path: str | Path, place: str | None = None, choice: Choice
     for axis, name in zip(AXES, axes, strict=True):
         if name not in record.channels:
             places = dict.fromkeys(one[:-6] for one in record.channels if one.endswith("_acc_x"))
-            choice = f"; give --channel with one of {', '.join(places)}" if places else ""
+            places_shown = f"; give --channel with one of {', '.join(places)}" if places else ""
             shown = ", ".join(list(record.channels)[:6])
-            raise DataError(f"{file}: no column {name}; found {shown}; needed are {needed}{choice}")
+            raise DataError(f"{file}: no column {name}; found {shown}; needed are {needed}{places_shown}")
         if (unit := record.units[name]) not in UNITS:
             raise DataError(
                 f"{file}: column {name!r} has the unit {unit!r}, allowed are "
