@@ -25,7 +25,7 @@ def parser() -> Parser:
     )
     found.add_argument(
         "--channel",
-        dest="channels",
+        dest="picks",
         action="append",
         default=[],
         metavar="PLACE|AXIS=NAME",
@@ -80,10 +80,10 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     from vehicle.records.acceleration import read_acceleration
 
     application(options.place)
-    places = [text for text in options.channels if "=" not in text]
-    if len(places) > 1 or (places and len(options.channels) > 1):
+    places = [text for text in options.picks if "=" not in text]
+    if len(places) > 1 or (places and len(options.picks) > 1):
         raise ConfigurationError("--channel: give one PLACE, or x=NAME, y=NAME and z=NAME")
-    options.channels = [text for text in options.channels if "=" in text]
+    options.picks = [text for text in options.picks if "=" in text]
     record = read_acceleration(options.input, places[0] if places else None, record_choice(options, ""))
     xyz = np.array(list(record.channels.values()))
     mean = xyz.mean(axis=1)

@@ -112,7 +112,7 @@ ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
 INPUT_CHOICES = {
     **{name: name for name in ("wheel", "interpolate", "resample", "detrend", "highpass")},
     "remove-mean": "remove_mean",
-    "channel": "channels",
+    "channel": "picks",
     "unit": "units",
     "from": "first",
     "to": "last",
@@ -142,7 +142,7 @@ def drives_on_road(options: argparse.Namespace) -> bool:
     if not options.input:
         raise ConfigurationError("needed is either --input FILE, or a road: --road C --speed 80")
     for name in ROAD_NUMBERS:
-        if getattr(options, name) is not None and not (name == "rate" and hasattr(options, "channels")):
+        if getattr(options, name) is not None and not (name == "rate" and hasattr(options, "picks")):
             raise ConfigurationError(f"--{name}: belongs to a road, as --road C --speed 80, and not to --input")
     return False
 
@@ -158,7 +158,7 @@ def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool
     if channel:
         parser.add_argument(
             "--channel",
-            dest="channels",
+            dest="picks",
             action="append",
             default=[],
             metavar="ROLE=NAME",
@@ -199,7 +199,7 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
     """
     from vehicle.records.choice import Choice, pairs
 
-    channels = pairs("--channel", options.channels, role)
+    channels = pairs("--channel", options.picks, role)
     units = pairs("--unit", options.units, "")
     unknown = next((name for name in units if name and name not in channels), None)
     if unknown is not None:
