@@ -2,13 +2,156 @@
 
 from __future__ import annotations
 
+import argparse
+from collections.abc import Mapping
 from difflib import get_close_matches
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.command_line import Parser, command
+from vehicle.commands.options import FORCE_HELP, command_parser, message_options
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
+    from vehicle.analysis.load_spectrum import LoadSpectrum
     from vehicle.parameters.vehicle import Vehicle
+
+FILES = ("loads.csv", "load_spectra.csv", "loads.png")
+SHOWN = 15
+"""Most channels that are printed."""
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser("loads", "Rainflow counts, load spectra and equivalent amplitudes of the loads of a run.")
+    found.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or a file of time histories")
+    found.add_argument(
+        "--channels", metavar="NAME,...", help="channels to count; all forces, torques and travels by default"
+    )
+    found.add_argument(
+        "--slope",
+        type=float,
+        default=5.0,
+        metavar="K",
+        help="slope of the line of Woehler [-]: damage of n cycles of amplitude A is n A^K; %(default)s by default, "
+        "usual for steel parts of a chassis",
+    )
+    found.add_argument(
+        "--classes", type=int, default=64, metavar="N", help="classes of the range in the spectra; %(default)s"
+    )
+    found.add_argument(
+        "--output", type=Path, metavar="DIR", help=f"folder of {', '.join(FILES)}; that of the run by default"
+    )
+    found.add_argument("--force", action="store_true", help=FORCE_HELP)
+    message_options(found, quiet=True)
+    return found
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.analysis.load_spectrum import load_spectrum
+    from vehicle.output.folder import write_text, write_whole
+    from vehicle.output.written_files import mark
+    from vehicle.records.formats import read_columns
+    from vehicle.rendering.load_plot import plot_loads
+
+    source = _time_file(options.run)
+    folder = _folder(options, source.parent)
+    if not 1 <= options.classes <= 10000:
+        raise ConfigurationError(f"--classes {options.classes}: must be 1 to 10000")
+    if not 1.0 <= options.slope < 1000.0:
+        raise ConfigurationError(f"--slope {options.slope:g}: must be at least 1, and below 1000")
+    record = read_columns(source)
+    names = _chosen(options.channels, record.units, source)
+    duration = float(record.time[-1] - record.time[0])
+    found = [
+        load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
+        for name in names
+    ]
+    about = (
+        f"{source.name}, {duration:g} s; rainflow counts of ASTM E1049; equivalent amplitude: one cycle a second of "
+        f"equal damage, slope {options.slope:g}"
+    )
+    folder.mkdir(parents=True, exist_ok=True)
+    mark(folder)
+    write_text(folder / FILES[0], _table(found, about))
+    write_text(folder / FILES[1], _spectra(found, about, options.classes))
+    write_whole(folder / FILES[2], lambda path: plot_loads(path, found, about))
+    if not options.quiet:
+        print(_report(found, about))
+        print(f"files: {folder}: {', '.join(FILES)}")
+
+
+def _time_file(run: Path) -> Path:
+    """The time histories of a run."""
+    if not run.is_dir():
+        return run
+    for name in ("time.npz", "time.csv"):
+        if (run / name).is_file():
+            return run / name
+    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file of its own")
+
+
+def _folder(options: argparse.Namespace, own: Path) -> Path:
+    """Where the files go; refused where they would replace others."""
+    from vehicle.output.written_files import written
+
+    folder: Path = options.output or own
+    if folder.exists() and not folder.is_dir():
+        raise ConfigurationError(f"--output {folder}: is a file; give a folder")
+    for name in FILES:
+        if (folder / name).exists() and not (options.force and name in written(folder)):
+            mend = "is of somebody else; give another --output" if options.force else "exists; give --force"
+            raise ConfigurationError(f"{folder / name}: {mend}")
+    return folder
+
+
+def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:
+    """Channels to count: those that are named, or all forces, torques and travels."""
+    if text is None:
+        loads = [name for name, unit in units.items() if unit in ("N", "N m") or name.startswith("suspension_travel_")]
+        if not loads:
+            raise ConfigurationError(
+                f"{source}: no channel in N or N m and no suspension travel; name channels with --channels, or record "
+                "loads: python -m vehicle shaker --channels loads"
+            )
+        return loads
+    names = [name.strip() for name in text.split(",")]
+    missing = next((name for name in names if name not in units), None)
+    if missing is not None:
+        raise ConfigurationError(f"--channels: {source} has no channel {missing!r}; it has {', '.join(units)}")
+    return list(dict.fromkeys(names))
+
+
+HEADS = ("minimum", "maximum", "mean", "rms", "cycles", "largest_range", "equivalent_amplitude")
+
+
+def _table(found: list[LoadSpectrum], about: str) -> str:
+    rows = [",".join([one.name, one.unit, *(f"{getattr(one, head):.9g}" for head in HEADS)]) for one in found]
+    return "\n".join([f"# {about}", ",".join(["channel", "unit", *HEADS]), *rows, ""])
+
+
+def _spectra(found: list[LoadSpectrum], about: str, classes: int) -> str:
+    """Range pairs: cycles in classes of equal width from zero to the largest range of each channel."""
+    lines = [f"# {about}", "channel,unit,range_above,range_up_to,cycles,cycles_of_this_range_or_more"]
+    for one in found:
+        edges, counts = one.classes(classes)
+        more = counts[::-1].cumsum()[::-1]
+        for number, count in enumerate(counts):
+            numbers = (edges[number], edges[number + 1], count, more[number])
+            lines.append(",".join([one.name, one.unit, *(f"{value:.9g}" for value in numbers)]))
+    return "\n".join([*lines, ""])
+
+
+def _report(found: list[LoadSpectrum], about: str) -> str:
+    strongest = sorted(found, key=lambda one: -one.equivalent_amplitude * (1.0 if one.unit != "m" else 1e-9))[:SHOWN]
+    heads = f"{'channel':<34}{'unit':>5}{'min':>11}{'max':>11}{'mean':>11}{'rms':>11}{'cycles':>10}{'equivalent':>12}"
+    rows = [
+        f"{one.name:<34}{one.unit:>5}{one.minimum:>11.5g}{one.maximum:>11.5g}{one.mean:>11.5g}{one.rms:>11.5g}"
+        f"{one.cycles:>10.6g}{one.equivalent_amplitude:>12.5g}"
+        for one in strongest
+    ]
+    left = len(found) - len(strongest)
+    return "\n".join([about, heads, *rows, *([f"and {left} more in {FILES[0]}"] if left else [])])
 
 
 def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
@@ -33,3 +176,6 @@ def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
                 f"{vehicle.load_channels[0]},{vehicle.load_channels[-1]}{nearest}"
             )
     return (*vehicle.channels, *(name for name in vehicle.load_channels if name in names))
+
+
+main = command(parser, _job)
