@@ -11,6 +11,7 @@ from vehicle.flexbody.superelement import Superelement, attached_nodes
 from vehicle.laws.kelvin import Kelvin
 from vehicle.laws.maxwell import Maxwell
 from vehicle.laws.series import in_series
+from vehicle.names import AXES
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.composition import PlacedConnection
 from vehicle.parameters.elements import Bushing, Hydromount
@@ -28,6 +29,10 @@ def _zeros() -> Vector:
     return np.zeros(3)
 
 
+def _rigid() -> Vector:
+    return np.full(3, np.inf)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ElementLaw:
     """f = -K r - B r' - f2 along each axis, with f2' = K2 r' - f2 / tau (Maxwell branch); torque = -K_rot angle.
@@ -40,6 +45,7 @@ class ElementLaw:
         rotational_stiffness: K_rot [N m/rad].
         averaged: True where the stiffness is too high for the explicit step and is averaged over three steps
             (Newmark with beta 1/4); False for the fourth-order average (beta 1/12).
+        local: stiffness of the attachment [N/m], in series with what is a table; (3,).
     """
 
     stiffness: Vector
@@ -48,6 +54,7 @@ class ElementLaw:
     branch_time: Vector = field(default_factory=_zeros)
     rotational_stiffness: float = 0.0
     averaged: bool = False
+    local: Vector = field(default_factory=_rigid)
 
 
 def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> ElementLaw | None:
@@ -81,7 +88,10 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
         time = parameters.maxwell_damping / parameters.maxwell_stiffness
         branch[:, 2] = parameters.maxwell_stiffness, time
     if local is not None:
-        for axis in range(3):
+        for axis, name in enumerate(AXES):
+            if getattr(parameters, f"table_{name}", None) is not None:
+                # Behind a table the spring of the attachment is in its points, and the damper stays beside both.
+                continue
             element: Kelvin | Maxwell
             if branch[0, axis] > 0.0:
                 # A dashpot beside the branch (Dz1, zero in the source) stays outside the series.
@@ -103,4 +113,5 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
         branch_stiffness=branch[0],
         branch_time=branch[1],
         rotational_stiffness=parameters.rotational_stiffness,
+        local=_rigid() if local is None else local,
     )

@@ -14,6 +14,7 @@ from vehicle.flexbody.attached_mass import with_attached_masses
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, attached_nodes
 from vehicle.laws.damper import actuator_parameters, damper_curve, pack
+from vehicle.names import AXES
 from vehicle.parameters.composition import (
     PlacedConnection,
     PlacedDamper,
@@ -22,6 +23,7 @@ from vehicle.parameters.composition import (
     PlacedSpring,
     PlacedWheel,
 )
+from vehicle.parameters.elements import ForceTable
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.vehicle import Vehicle
 
@@ -241,6 +243,8 @@ class _Builder:
             # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
             branch_damping = law.branch_stiffness * law.branch_time
             constants = np.concatenate([law.stiffness, law.damping, law.branch_stiffness, branch_damping])
+            for axis, local in zip(AXES, law.local, strict=True):
+                self._table(f"{name}/{axis}", getattr(connection.law, f"table_{axis}", None), float(local))
             self._numeric(f"law/{name}", [*constants, law.rotational_stiffness, float(law.averaged)])
         if on_body:
             self._node_shape(name, connection.at)
@@ -256,6 +260,7 @@ class _Builder:
                 self._node_shape(name, point)
         self.spec.add_equality(name=name, type=mujoco.mjtEq.mjEQ_TENDON, objtype=mujoco.mjtObj.mjOBJ_TENDON, name1=name)
         self._numeric(f"law/{name}", [spring.stiffness])
+        self._table(name, spring.table)
 
     def add_damper(self, placed: PlacedDamper) -> None:
         """Damper as a user actuator on its slide joint; the joint's friction row holds the set-valued part."""
@@ -267,6 +272,7 @@ class _Builder:
             name=placed.name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name
         )
         laws = pack(damper)
+        self._table(placed.name, damper.stop)
         for number, piece in enumerate(damper_curve(damper).clamped()):
             # Each steeper piece of the curve is a further friction row, which a joint cannot have: a tendon.
             tendon = self.spec.add_tendon(name=f"valve/{placed.name}" + (f"/{number}" if number else ""))
@@ -277,6 +283,12 @@ class _Builder:
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER
         actuator.biastype = mujoco.mjtBias.mjBIAS_USER
         actuator.biasprm = actuator_parameters(laws)
+
+    def _table(self, name: str, table: ForceTable | None, local: float = np.inf) -> None:
+        """Points of a law over displacement, behind a local stiffness [N/m]: in series displacements add up."""
+        if table is not None:
+            gives = [x + force / local for x, force in zip(table.displacement, table.force, strict=True)]
+            self._numeric(f"table/{name}", [*gives, *table.force])
 
     def add_place(self, output: PlacedOutput) -> None:
         """Site and acceleration sensor of a recorded place."""

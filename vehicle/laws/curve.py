@@ -10,10 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.compiler import jitable
 from vehicle.laws.law import Numbers
 
 Vector = npt.NDArray[np.float64]
@@ -58,6 +60,23 @@ class Curve:
         """dF/dx; at a knot that of the piece below it."""
         return np.asarray(self.slopes[np.searchsorted(self.knots, position)])
 
+    def energy(self, position: float) -> float:
+        """Integral of F from 0 to x: the elastic energy [J] of a spring, exact."""
+        corners = self.knots[(self.knots > min(position, 0.0)) & (self.knots < max(position, 0.0))]
+        ends = np.sort([0.0, position, *corners])
+        return float(np.sign(position) * np.sum(np.diff(ends) * self.force(0.5 * (ends[1:] + ends[:-1]))))
+
+    def position(self, force: float) -> float:
+        """x with F(x) = F: the middle of those that have it where the law is flat, but 0 where 0 is one of them."""
+        scale = 1e-9 * max(float(np.max(np.abs(self.force(self.knots)), initial=0.0)), 1.0)
+        if abs(float(self.force(0.0)) - force) <= scale:
+            return 0.0
+        rising = np.flatnonzero(self.slopes > 0.0)
+        found = (force - self.offsets[rising]) / self.slopes[rising]
+        edges = np.concatenate([[-np.inf], self.knots, [np.inf]])
+        inside = np.clip(found, edges[rising], edges[rising + 1])
+        return float(inside[np.argmin(np.abs(self.force(inside) - force))])
+
     @property
     def least_slope(self) -> float:
         """D, the smallest slope."""
@@ -75,3 +94,13 @@ class Curve:
         """Sum of the clamped lines at x = 0: what `shift` makes up to F(0)."""
         excess, middle, limit = self.clamped().T
         return float(np.sum(np.clip(-excess * middle, -limit, limit)))
+
+
+@jitable
+def curve_force(position: float, edges: Any, slopes: Any, offsets: Any) -> float:
+    """F(x), the scalar form; upper edges, slopes and offsets of the pieces, the last edge infinite."""
+    piece = 0
+    while position > edges[piece]:
+        piece += 1
+    force: float = slopes[piece] * position + offsets[piece]
+    return force

@@ -19,11 +19,30 @@ from vehicle.simulation.callbacks import compiled_rows, installed
 from vehicle.simulation.layout import numeric, places_of, wheels_of
 from vehicle.simulation.rows import Rows, joint_dampers
 from vehicle.simulation.static_trim import StaticTrim
+from vehicle.simulation.tables import curve_of
 
 Vector = npt.NDArray[np.float64]
 
 DIFFERENCE_STEP = 1e-6
 """Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Bend:
+    """A law over displacement that is linear between two displacements from the design position.
+
+    Attributes:
+        name: of its element.
+        row: its displacement over the velocity coordinates; (n,).
+        plate: input that it is on, -1 where there is none.
+        low, high: ends of the piece of the curve on which the car stands [m].
+    """
+
+    name: str
+    row: Vector
+    plate: int
+    low: float
+    high: float
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -35,6 +54,7 @@ class CarMatrices:
             outputs turn u'' into the acceleration channels.
         dampers: velocity coordinates of the damper joints; (d,).
         viscous: damping constants of the dampers [N s/m]; (d,).
+        bends: where the linear car ends.
         tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (w,).
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
@@ -46,6 +66,7 @@ class CarMatrices:
     system: LinearSystem
     dampers: npt.NDArray[np.intp]
     viscous: Vector
+    bends: tuple[Bend, ...] = ()
     tyre_stiffness: Vector
     tyre_damping: Vector
     body_rows: dict[str, Vector]
@@ -107,6 +128,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         ),
         dampers=dofs,
         viscous=viscous,
+        bends=_bends(rows, jacobian),
         tyre_stiffness=bushings.stiffness[e.tyres, 2],
         tyre_damping=bushings.damping[e.tyres, 2],
         body_rows=_body_rows(model, data),
@@ -116,6 +138,22 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         },
         modal=e.modes.velocities,
     )
+
+
+def _bends(rows: Rows, jacobian: Vector) -> tuple[Bend, ...]:
+    """Where the laws over displacement leave their tangents."""
+    found, e, t = [], rows.layout, rows.layout.tables
+    for index, (kind, element, axis, at) in enumerate(zip(t.kinds, t.elements, t.axes, t.at, strict=True)):
+        if kind == 0:
+            row, name = jacobian[e.bushings.rows[element, axis]], f"{rows.names[element]} along {AXES[axis]}"
+        else:
+            row = jacobian[e.springs.rows[element]] if kind == 1 else np.eye(rows.model.nv)[e.dampers.dofs[element]]
+            name = ("", "spring", "stop of damper")[kind] + f" {element + 1}"
+        edges = np.concatenate([[-np.inf], curve_of(t, index).knots, [np.inf]])
+        piece = int(np.searchsorted(edges[1:-1], at))
+        plate = list(e.tyres).index(element) if kind == 0 and axis == 2 and element in e.tyres else -1
+        found.append(Bend(name=name, row=row, plate=plate, low=edges[piece] - at, high=edges[piece + 1] - at))
+    return tuple(found)
 
 
 def _tangent_stiffness(rows: Rows, model: mujoco.MjModel) -> Vector:

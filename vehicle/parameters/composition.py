@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from vehicle.parameters.elements import Bushing, Damper, Hydromount
+from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.parts import Part
 
@@ -65,7 +65,7 @@ class PlacedConnection:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedSpring:
-    """A linear spring between points of two parts [N/m]."""
+    """A spring between points of two parts [N/m]; a table takes the place of its stiffness."""
 
     name: str
     parts: tuple[str, str]
@@ -74,6 +74,7 @@ class PlacedSpring:
     stiffness: float
     path: str
     shape: str
+    table: ForceTable | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -42,7 +42,7 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
         if following < f:
             raise ConfigurationError(f"{where}.force: found {following!r} N after {f!r} N, must not fall; {key} and "
                                      "force are positive in extension (rebound)")  # fmt: skip
-    if not positions[0] < 0.0 < positions[-1]:
+    if key == "velocity" and not positions[0] < 0.0 < positions[-1]:
         raise ConfigurationError(f"{where}.{key}: found {positions[0]!r} to {positions[-1]!r}, must lie on both sides "
                                  "of 0: compression (bump) is negative, extension (rebound) positive")  # fmt: skip
 

@@ -21,12 +21,30 @@ FRICTION_LAWS = ("coulomb", "stribeck")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class ForceTable:
+    """Force over displacement through points, both positive in extension; it goes on beyond them."""
+
+    displacement: tuple[float, ...] = quantity("m", "displacements, compression negative", at_least=-2.0, at_most=2.0)
+    force: tuple[float, ...] = quantity("N", "forces, compression negative", at_least=-1e7, at_most=1e7)
+
+    def __post_init__(self) -> None:
+        validate(self)
+        require_curve("ForceTable", "displacement", self.displacement, self.force)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Bushing:
-    """Linear bushing: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle."""
+    """Linear bushing: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle.
+
+    A table of an axis takes the place of its K: force over the displacement of the moving part, without load at F = 0.
+    """
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz", at_least=0.0, length=3, **STIFFEST)
     damping: Point = quantity("N s/m", "Dx, Dy, Dz", at_least=0.0, length=3, **STRONGEST)
     rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
+    table_x: ForceTable | None = None
+    table_y: ForceTable | None = None
+    table_z: ForceTable | None = None
 
     def __post_init__(self) -> None:
         validate(self)
@@ -52,11 +70,13 @@ class Hydromount:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MainSpring:
-    """Linear spring between the lower spring seat and the strut top, along its own line."""
+    """Spring between the lower spring seat and the strut top, along its own line; a table, over its extension from the
+    length without load, takes the place of its stiffness."""
 
     stiffness: float = quantity(
         "N/m", "stiffness", above=0.0, at_least=1e3, at_most=1e6, why="1e4 N/m in a micro car, 2e5 N/m in a van"
     )
+    table: ForceTable | None = None
 
     def __post_init__(self) -> None:
         validate(self)
@@ -91,6 +111,7 @@ class Damper:
 
     With the table law, D v is the line through points of velocity and force, positive in extension, which goes on
     beyond them; a gas force pushes the damper apart, and the preload of the springs balances it where the car stands.
+    The stop is a spring beside it, bump and rebound stop in one: force over the displacement from the design position.
     Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
     the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
@@ -111,6 +132,7 @@ class Damper:
     gas_force: float = quantity(
         "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
     )
+    stop: ForceTable | None = None
     friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(

@@ -36,6 +36,7 @@ def placed_spring(i: Instance, spring: Spring, side: str | None) -> PlacedSpring
             at=(i.point(spring.lower.at, side), i.point(spring.upper.at, side)),
             point=next((i.point_name(end.at, side) for end in ends if end.part == "body"), ""),
             stiffness=numbers.stiffness,
+            table=numbers.table,
             path=path,
             shape=spring.shape,
         )

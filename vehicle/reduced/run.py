@@ -113,7 +113,7 @@ def simulate_reduced(
             steps=(samples - 1) * every,
             wall_time=wall,
             warnings=watch.warnings(),
-            within_validity=watch.small_angles,
+            within_validity=watch.held,
             energies=None,
         ),
     )

@@ -1,7 +1,8 @@
 """Where the motion leaves what the matrices can say.
 
 The matrices are those of the design position. A part that turns by an angle a changes the direction of its forces by a
-and lengths by a^2/2; a tyre that lifts off would pull. Both are watched, and the run says so.
+and lengths by a^2/2; a tyre that lifts off would pull; a spring with a table, or a stop, is its tangent only on the
+piece on which the car stands. All are watched, and the run says so.
 """
 
 from __future__ import annotations
@@ -49,6 +50,14 @@ class ValidityWatch:
         self.tyres = Readout(
             model.outputs([f"tyre_{wheel}_force_z" for wheel in self.wheels]), factors, model.pairs, columns
         )
+        self.bends = model.matrices.bends
+        rows_of = [bend.row @ model.modal for bend in self.bends]
+        stretch = np.array(rows_of, dtype=complex).reshape(-1, len(model.poles))
+        height = np.array([-1.0 * (np.arange(len(self.wheels)) == bend.plate) for bend in self.bends])
+        height = height.reshape(-1, len(self.wheels))
+        stretches = Outputs(poles=stretch, height=height, velocity=np.zeros_like(height))
+        self.stretches = Readout(stretches, factors, model.pairs, columns)
+        self.left: dict[str, float] = {}
         self.static = np.array([tyre_load[wheel] for wheel in self.wheels])
         self.angle = np.zeros(len(self.bodies))
         self.load = self.static.copy()
@@ -61,10 +70,21 @@ class ValidityWatch:
         loads = self.tyres.at(states[seen], plates[seen], before[seen]) + self.static[:, None]
         self.load = np.minimum(self.load, np.min(loads, axis=1))
 
+        if self.bends:
+            for bend, values in zip(self.bends, self.stretches.at(states, plates, before), strict=True):
+                worst = float(max(bend.low - np.min(values), np.max(values) - bend.high))
+                if worst > 0.0:
+                    self.left[bend.name] = max(worst, self.left.get(bend.name, 0.0))
+
     @property
     def small_angles(self) -> bool:
-        """Whether the motion stayed within what the matrices hold for."""
+        """Whether all parts turned little enough."""
         return bool(np.max(self.angle) <= LARGEST_ANGLE)
+
+    @property
+    def held(self) -> bool:
+        """Whether the motion stayed within what the matrices hold for."""
+        return self.small_angles and not self.left
 
     def warnings(self) -> tuple[str, ...]:
         """A sentence for each way in which the motion left the validity of the matrices."""
@@ -74,6 +94,11 @@ class ValidityWatch:
             found.append(
                 f"{self.bodies[worst]} turned by {self.angle[worst]:.3f} rad; the reduced engine, which takes the car "
                 f"as linear but for its dampers, holds up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine"
+            )
+        for name, distance in self.left.items():
+            found.append(
+                f"{name} left the piece of its table on which the car stands by {1e3 * distance:.2g} mm; the reduced "
+                "engine knows that piece alone: use the MuJoCo engine"
             )
         for wheel, load in zip(self.wheels, self.load, strict=True):
             if load < 0.0:

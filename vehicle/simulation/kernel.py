@@ -32,58 +32,34 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.compiler import jitable
+from vehicle.laws.curve import curve_force
 from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import slope_at_rest
-from vehicle.simulation.records import Efc, Fields, Layout, State, Weights
+from vehicle.simulation.modal_rows import modal_rows
+from vehicle.simulation.records import Efc, Fields, Layout, State, Tables, Weights
 
 EMPTY_ROW = 1e-9
 """Impedance [kg] of a row without damping and stiffness: small against every mass, and not zero."""
 
 
 @jitable
-def modal_rows(d: Fields, efc: Efc, e: Layout, s: State) -> None:
-    """J -> J +- (R Phi_n, -[d]x), r -> r +- d, r' -> r' +- (R Phi_n q' + w x d) for the rows at flexible nodes."""
-    m = e.modes
-    modes, column, place = m.size, m.first_velocity, m.first_position
-    turn = d.xmat[m.body]
-    nodes, count = m.rows.shape[1], m.mode_shapes.shape[1]
-    t0, t1, t2, t3, t4 = turn[0], turn[1], turn[2], turn[3], turn[4]
-    t5, t6, t7, t8 = turn[5], turn[6], turn[7], turn[8]
-    moved, moving = s.deflection[0], s.deflection[1]
-    moved[:], moving[:] = 0.0, 0.0
-    # Deflections of all nodes in body axes, mode by mode: long loops without sums that wait for each other.
-    for k in range(modes):
-        q, v, shape = d.qpos[place + k], d.qvel[column + k], m.mode_shapes[k]
-        for j in range(count):
-            moved[j] += shape[j] * q
-            moving[j] += shape[j] * v
-    for node in range(nodes):
-        at = node * modes
-        r0, r1, r2 = m.rows[0, node], m.rows[1, node], m.rows[2, node]
-        x, y, z = moved[node], moved[nodes + node], moved[2 * nodes + node]
-        dx, dy, dz = t0 * x + t1 * y + t2 * z, t3 * x + t4 * y + t5 * z, t6 * x + t7 * y + t8 * z
-        efc.pos[r0] += dx
-        efc.pos[r1] += dy
-        efc.pos[r2] += dz
-        x, y, z = moving[node], moving[nodes + node], moving[2 * nodes + node]
-        vx, vy, vz = t0 * x + t1 * y + t2 * z, t3 * x + t4 * y + t5 * z, t6 * x + t7 * y + t8 * z
-        for k in range(m.turns.shape[0]):
-            dof = m.turns[k]
-            x, y, z = d.cdof[dof, 0], d.cdof[dof, 1], d.cdof[dof, 2]
-            x, y, z = y * dz - z * dy, z * dx - x * dz, x * dy - y * dx
-            efc.J[r0, dof] += x
-            efc.J[r1, dof] += y
-            efc.J[r2, dof] += z
-            turning = d.qvel[dof]
-            vx, vy, vz = vx + x * turning, vy + y * turning, vz + z * turning
-        efc.vel[r0] += vx
-        efc.vel[r1] += vy
-        efc.vel[r2] += vz
-        for k in range(modes):
-            x, y, z = m.node_shapes[0, at + k], m.node_shapes[1, at + k], m.node_shapes[2, at + k]
-            efc.J[r0, column + k] = t0 * x + t1 * y + t2 * z
-            efc.J[r1, column + k] = t3 * x + t4 * y + t5 * z
-            efc.J[r2, column + k] = t6 * x + t7 * y + t8 * z
+def bent(k: int, displacement: float, stiffness: float, t: Tables, s: State) -> float:
+    """What a curve has beside the tangent at its operating point, F(at + x) - F(at) - K x [N]."""
+    s.stretch[k] = t.at[k] + displacement
+    force: float = curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
+    force -= curve_force(t.at[k], t.edges[k], t.slopes[k], t.offsets[k])
+    return force - stiffness * displacement
+
+
+@jitable
+def stops(d: Fields, e: Layout, s: State) -> None:
+    """Forces of the stops of dampers on their joints, known with the positions; after the forces of the rows."""
+    t = e.tables
+    for k in range(t.kinds.shape[0]):
+        if t.kinds[k] == 2:
+            dof, place = e.dampers.dofs[t.elements[k]], e.dampers.places[t.elements[k]]
+            s.stretch[k] = d.qpos[place]
+            d.qfrc_applied[dof] -= curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
 
 
 @jitable
@@ -111,6 +87,9 @@ def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
             for k in range(modes):
                 efc.J[row, column + k] += along * own.shapes[spring, j * modes + k]
         s.explicit[row] = c.preload[row] - own.stiffness[spring] * (length - own.lengths[spring])
+        for k in range(e.tables.kinds.shape[0]):
+            if e.tables.kinds[k] == 1 and e.tables.elements[k] == spring:
+                s.explicit[row] -= bent(k, length - own.lengths[spring], own.stiffness[spring], e.tables, s)
         efc.D[row] = c.spring_impedance[spring]
         efc.aref[row] = 0.0
     for entry in range(own.dofs.shape[0]):
@@ -176,6 +155,11 @@ def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
             branch = past + c.average[n, i] * curvature
             elastic = b.stiffness[n, i] * s.residual[n, i]
             s.force[n, i] = c.preload[b.rows[n, i]] - elastic - b.damping[n, i] * rate - branch
+    t = e.tables
+    for k in range(t.kinds.shape[0]):
+        if t.kinds[k] == 0:
+            n, i = t.elements[k], t.axes[k]
+            s.force[n, i] -= bent(k, s.residual[n, i], b.stiffness[n, i], t, s)
     for tyre in range(e.tyres.shape[0]):
         for i in range(3):
             s.force[e.tyres[tyre], i] += c.inertial[tyre, i] * s.plate_acceleration[tyre, i]
@@ -278,6 +262,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     dampers(d, efc, e, c, s)
     generalised_forces(d, efc, e, s)
     rotations(d, e, c, s)
+    stops(d, e, s)
 
 
 @jitable

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.laws.damper import unpack
+from vehicle.names import AXES
 from vehicle.simulation.records import (
     Bushings,
     Dampers,
@@ -20,8 +21,10 @@ from vehicle.simulation.records import (
     Rotations,
     Springs,
     Table,
+    Tables,
     Vector,
 )
+from vehicle.simulation.tables import tables_through
 
 
 def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
@@ -98,6 +101,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             dofs=_spring_dofs(model, [ends[name] for name in springs]),
         ),
         dampers=_dampers(model, rows_of, int(first_rows[-1])),
+        tables=_tables(model, names, springs),
         modes=_modes(
             model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal
         ),
@@ -194,9 +198,22 @@ def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], f
         rows=rows_of([str(model.actuator(index).name) for index in own]),
         frictions=first + np.argsort(np.argsort(dofs)),
         dofs=dofs,
+        places=_whole([model.jnt_qposadr[joint] for joint in joints]),
         valves=_whole(valves, 2),
         pieces=np.reshape(laws, (-1, 3)).astype(float),
     )
+
+
+def _tables(model: mujoco.MjModel, bushings: Sequence[str], springs: Sequence[str]) -> Tables:
+    """The laws that are curves, without load."""
+    own = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
+    dampers = [str(model.actuator(index).name) for index in own]
+    names = [(f"{name}/{axis}", (0, index, place)) for index, name in enumerate(bushings)
+             for place, axis in enumerate(AXES)]  # fmt: skip
+    names += [(name, (1, index, 0)) for index, name in enumerate(springs)]
+    names += [(name, (2, index, 0)) for index, name in enumerate(dampers)]
+    read = [(numeric(model, f"table/{name}"), where) for name, where in names]
+    return tables_through([(points.reshape(2, -1), where) for points, where in read if points is not None])
 
 
 def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:

@@ -18,6 +18,7 @@ from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recording import Energies, Recording, Statistics
 from vehicle.simulation.rows import Rows, joint_dampers
 from vehicle.simulation.sampling import Order, Samples, Sources, keep_sample
+from vehicle.simulation.tables import curve_of
 
 Vector = npt.NDArray[np.float64]
 
@@ -179,8 +180,15 @@ class Recorder:
         elastic += 0.5 * np.sum(e.rotations.stiffness[:, None] * twist**2) - np.sum(
             preload[e.row_count :] * twist.ravel()
         )
-        extension = (preload[springs.rows] - state.explicit[springs.rows]) / springs.stiffness
+        lines = state.ends[1::2] - state.ends[::2]
+        extension = np.sqrt(np.sum(lines**2, axis=1)) - springs.lengths
         elastic += np.sum(0.5 * springs.stiffness * extension**2 - preload[springs.rows] * extension)
+        for k, (kind, element, axis) in enumerate(zip(e.tables.kinds, e.tables.elements, e.tables.axes, strict=True)):
+            curve, at, x = curve_of(e.tables, k), e.tables.at[k], state.stretch[k]
+            elastic += curve.energy(x) - curve.energy(at)
+            if kind < 2:
+                own = b.stiffness[element, axis] if kind == 0 else springs.stiffness[element]
+                elastic -= float(curve.force(at)) * (x - at) + 0.5 * own * (x - at) ** 2
         branch = self._branch_force(self.data.efc_force[None, :], state.branch_past[None])[0]
         present = b.branch_stiffness > 0.0
         elastic += 0.5 * np.sum(branch[present] ** 2 / b.branch_stiffness[present])

@@ -76,7 +76,7 @@ class Dampers(NamedTuple):
     Attributes:
         laws: records of `vehicle.laws.damper`; (w,).
         rows, frictions: equality and friction rows; (w,).
-        dofs: velocity coordinates; (w,).
+        dofs, places: velocity and position coordinates; (w,).
         valves: further friction rows, one for each steeper piece of a damper's curve, and which damper that is.
         pieces: their e [N s/m], m [m/s] and limit [N], as of `vehicle.laws.curve`; a row each.
     """
@@ -85,8 +85,28 @@ class Dampers(NamedTuple):
     rows: Index
     frictions: Index
     dofs: Index
+    places: Index
     valves: Indices
     pieces: Table
+
+
+class Tables(NamedTuple):
+    """The t laws over displacement that are curves (`vehicle.laws.curve`): F(at + x) - F(at) in place of K x.
+
+    Attributes:
+        kinds: 0 an axis of a bushing, 1 a spring, 2 the stop of a damper; (t,).
+        elements, axes: which one of its kind, and its axis; (t,).
+        at: displacement in the design position [m], with the tangent K there in the record of the element; (t,).
+        edges, slopes, offsets: upper edges (the last infinite), slopes and offsets of the pieces; (t, pieces).
+    """
+
+    kinds: Index
+    elements: Index
+    axes: Index
+    at: Vector
+    edges: Table
+    slopes: Table
+    offsets: Table
 
 
 class Modes(NamedTuple):
@@ -125,7 +145,7 @@ class Layout(NamedTuple):
     """The elements of a car in its rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, modes: see there.
+        bushings, rotations, springs, dampers, tables, modes: see there.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: positions among the bushings of those on a plate, in the order of the plates; (t,).
         reach: where rows with explicit forces are not zero: first row, number of rows (3 or 1), first column, end.
@@ -136,6 +156,7 @@ class Layout(NamedTuple):
     rotations: Rotations
     springs: Springs
     dampers: Dampers
+    tables: Tables
     modes: Modes
     joints: Indices
     tyres: Index
@@ -203,6 +224,7 @@ class State(NamedTuple):
         explicit: f0 of every row [N]; (rows,).
         force: f0 of the elements in their own axes; (n, 3). torque: of the rotations in world axes; (m, 3).
         ends, line: lower and upper ends of the main springs with their modal displacement, and their directions.
+        stretch: displacement of the laws that are curves; (t,).
         deflection: modal displacement and velocity of the nodes in body axes; (2, 3 g).
     """
 
@@ -219,6 +241,7 @@ class State(NamedTuple):
     torque: Table
     ends: Table
     line: Table
+    stretch: Vector
     deflection: Table
 
 

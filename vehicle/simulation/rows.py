@@ -12,6 +12,7 @@ from vehicle.simulation.kernel import EMPTY_ROW, damper_force, rewrite
 from vehicle.simulation.layout import element_names, read_layout
 from vehicle.simulation.records import Efc, Fields, Layout, State, Weights
 from vehicle.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
+from vehicle.simulation.tables import standing_on
 
 Vector = npt.NDArray[np.float64]
 
@@ -72,16 +73,18 @@ class Rows:
     """
 
     def __init__(self, model: mujoco.MjModel, preload: Vector | None = None) -> None:
-        self.model, self.names, self.layout = model, element_names(model), read_layout(model)
-        size = self.layout.row_count + 3 * len(self.layout.rotations.sites)
-        self.weights = weights(model, self.layout, np.zeros(size) if preload is None else preload)
+        self.model, self.names, layout = model, element_names(model), read_layout(model)
+        force = np.zeros(layout.row_count + 3 * len(layout.rotations.sites)) if preload is None else preload
+        self.layout = standing_on(layout, preload)
+        self.weights = weights(model, self.layout, force)
         self.state = _at_rest(self.layout)
 
     def anew(self, preload: Vector | None = None) -> Rows:
         """The same rows at rest with a state of their own, under these static forces; under the same by default."""
         other = copy.copy(self)
         if preload is not None:
-            other.weights = self.weights._replace(preload=preload)
+            other.layout = standing_on(self.layout, preload)
+            other.weights = weights(self.model, other.layout, preload)
         other.state = _at_rest(self.layout)
         return other
 
@@ -137,13 +140,21 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
         The weights.
     """
     b, h = layout.bushings, float(model.opt.timestep)
+    # A step that holds the steepest piece of a curve holds them all.
+    stiffness, springs = b.stiffness.copy(), layout.springs.stiffness.copy()
+    t = layout.tables
+    for kind, element, axis, steepest in zip(t.kinds, t.elements, t.axes, t.slopes.max(axis=1), strict=True):
+        if kind == 0:
+            stiffness[element, axis] = steepest
+        elif kind == 1:
+            springs[element] = steepest
     masses = _row_masses(model, layout)
-    averaged = np.where(b.averaged[:, None] > 0, average(b.stiffness * h**2 / masses), FOURTH_ORDER)
+    averaged = np.where(b.averaged[:, None] > 0, average(stiffness * h**2 / masses), FOURTH_ORDER)
     present = b.branch_time > 0.0
     tau = np.where(present, b.branch_time, 1.0)
     decay = np.where(present, np.exp(-h / tau), 0.0)
     # A branch may be as stiff as the sheet metal behind a mount; then its force is averaged over three steps too.
-    phase = (b.stiffness + b.branch_stiffness) * h**2 / masses
+    phase = (stiffness + b.branch_stiffness) * h**2 / masses
     branch_average = average(phase)
     # Exact response of the branch to a rate that is linear over the step: mean rate and its slope.
     gain = np.where(present, b.branch_stiffness * tau * -np.expm1(-h / tau), 0.0)
@@ -161,9 +172,9 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
         gain=gain,
         slope=slope,
         average=branch_average,
-        impedance=np.maximum(b.damping * h / 2 + averaged * b.stiffness * h**2 + branch, EMPTY_ROW),
-        inertial=averaged[layout.tyres] * b.stiffness[layout.tyres] * h**2,
-        spring_impedance=np.maximum(FOURTH_ORDER * layout.springs.stiffness * h**2, EMPTY_ROW),
+        impedance=np.maximum(b.damping * h / 2 + averaged * stiffness * h**2 + branch, EMPTY_ROW),
+        inertial=averaged[layout.tyres] * stiffness[layout.tyres] * h**2,
+        spring_impedance=np.maximum(FOURTH_ORDER * springs * h**2, EMPTY_ROW),
         damper_impedance=np.maximum(laws["viscous_damping"] * h / 2, EMPTY_ROW),
         valve_impedance=np.maximum(layout.dampers.pieces[:, 0] * h / 2, EMPTY_ROW),
     )
@@ -189,7 +200,7 @@ def _at_rest(layout: Layout) -> State:
     shapes |= dict.fromkeys(("plate_velocity", "plate_acceleration"), (tyres, 3))
     shapes |= {"last_time": (1,), "explicit": (layout.row_count,)}
     shapes |= {"torque": (len(layout.rotations.sites), 3), "ends": (2 * springs, 3), "line": (springs, 3)}
-    shapes |= {"deflection": (2, layout.modes.mode_shapes.shape[1])}
+    shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}
     state = State(**{name: np.zeros(shapes[name]) for name in State._fields})
     state.last_time[0] = -1.0
     return state

@@ -1,0 +1,166 @@
+"""Springs, bushings and stops as tables of force over displacement."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from tests.simulation.row_model import Stepper, add_damper, empty_spec
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError
+from vehicle.excitation.input_files import find_input
+from vehicle.excitation.signal_file import read_signal
+from vehicle.laws.curve import Curve
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.toml_file import read_table
+from vehicle.parameters.vehicle import vehicle_of
+
+# A bump stop: nothing up to 20 mm, then two rates; and a rebound stop.
+GIVES, FORCES = [-0.06, -0.04, -0.02, 0.03, 0.04], [-9000.0, -1000.0, 0.0, 0.0, 2000.0]
+MASS, SPEED = 40.0, 1.2
+
+
+def stop_force(x):
+    """The table by interpolation, and its outer lines beyond it."""
+    if x < GIVES[0]:
+        return FORCES[0] + 4e5 * (x - GIVES[0])
+    if x > GIVES[-1]:
+        return FORCES[-1] + 2e5 * (x - GIVES[-1])
+    return float(np.interp(x, GIVES, FORCES))
+
+
+def dropped(step, speed=SPEED, duration=0.12):
+    """Positions of a mass that flies into the stop, every 4 ms."""
+    spec = empty_spec(step)
+    body = spec.worldbody.add_body(name="mass")
+    body.explicitinertial = True
+    body.mass, body.inertia, body.ipos = MASS, [1.0] * 3, np.zeros(3)
+    add_damper(spec, body, [0.0, 1e5, 1e-9, 1e-9, 0.03, 3.5])
+    spec.add_numeric(name="table/damper_fr", data=[*GIVES, *FORCES])
+    run = Stepper(spec)
+    run.data.qvel[0] = -speed
+    return run.step(round(duration / step) + 1, run.position)[:: round(4e-3 / step), 0]
+
+
+def test_a_mass_is_thrown_back_by_a_bump_stop():
+    fine = dropped(1e-4)
+    # Turning point: where the area under the table is the kinetic energy.
+    deepest = min(fine)
+    depth = np.linspace(-0.1, 0.0, 2001)
+    work = [quad(stop_force, 0.0, x, points=[p for p in GIVES if x < p < 0.0] or None)[0] for x in depth]
+    expected = np.interp(-0.5 * MASS * SPEED**2, -np.array(work), depth)
+    assert deepest == pytest.approx(expected, rel=5e-3)  # sampled every 4 ms
+    # And the whole flight against quadrature in time, with second order.
+    steps, speeds = np.array([4e-3, 2e-3, 1e-3, 5e-4]), SPEED * np.linspace(0.9, 1.1, 7)
+    flights = [
+        solve_ivp(
+            lambda _, y: [y[1], -stop_force(y[0]) / MASS],
+            (0.0, 0.12),
+            [0.0, -speed],
+            t_eval=np.linspace(0.0, 0.12, 31),
+            rtol=1e-10,
+            atol=1e-13,
+            max_step=2e-4,
+        ).y[0]
+        for speed in speeds
+    ]
+    # Where in a step a corner is passed is chance: over several flights.
+    errors = [
+        np.mean([np.max(np.abs(dropped(step, speed) - flight)) for speed, flight in zip(speeds, flights, strict=True)])
+        for step in steps
+    ]
+    assert 1.6 < np.polyfit(np.log(steps), np.log(errors), 1)[0] < 2.5, errors
+    assert errors[-1] < 1e-3 * 0.06
+
+
+def test_the_energy_of_a_curve_is_its_area():
+    curve = Curve.through(GIVES, FORCES)
+    for x in (-0.09, -0.05, -0.03, 0.0, 0.01, 0.035, 0.05):
+        corners = [p for p in GIVES if min(x, 0.0) < p < max(x, 0.0)]
+        assert curve.energy(x) == pytest.approx(quad(stop_force, 0.0, x, points=corners or None)[0], abs=1e-9)
+    for force in (-9500.0, -3000.0, -10.0, 0.0, 500.0, 3000.0):
+        assert stop_force(curve.position(force)) == pytest.approx(force, abs=1e-9)
+
+
+FRONT = read_table(FOCUS_FILE)["front"]
+SPRING, TYRE = FRONT["main_spring"]["stiffness"], FRONT["bushings"]["tyre"]["stiffness"][2]
+
+
+def changed_car(change):
+    """The car with a change of its front axle."""
+    table = read_table(FOCUS_FILE)
+    change(table["front"])
+    return Car(vehicle_of(table, FOCUS_FILE.parent), folder=FOCUS_FILE.parent)
+
+
+def bent(front):
+    """A progressive spring, a tyre that does not pull, and stops."""
+    front["main_spring"]["table"] = {
+        "displacement": [-0.3, -0.1, 0.1],
+        "force": [-0.1 * SPRING - 0.2 * 1.5 * SPRING, -0.1 * SPRING, 0.1 * SPRING],
+    }
+    front["bushings"]["tyre"]["table_z"] = {"displacement": [-0.1, 0.0, 0.1], "force": [-0.1 * TYRE, 0.0, 0.0]}
+    front["damper"]["stop"] = {"displacement": [-0.05, -0.002, 0.002, 0.05], "force": [-9600.0, 0.0, 0.0, 9600.0]}
+
+
+@pytest.fixture(scope="module")
+def bump_piece():
+    """The shipped bump of 7.5 mm."""
+    return read_signal(find_input("bump_7p5mm.csv"))
+
+
+@pytest.fixture(scope="module")
+def bent_car():
+    return changed_car(bent)
+
+
+def test_the_car_stands_on_its_tables(bent_car, car):
+    static, model = bent_car.model.static, bent_car.model.model
+    assert static.residual < 1e-9
+    # Statics do not know of stiffness, but for the share of the ground that is left to hold it while the car settles.
+    assert list(static.tyre_load.values()) == pytest.approx(list(car.model.static.tyre_load.values()), rel=1e-3)
+    bend = {one.name: one for one in bent_car.matrices.bends}
+    load = static.tyre_load["fr"]
+    # The tyre stands at -load / K on the table, so that it leaves the ground after as much.
+    assert bend["bushing/tyre_fr along z"].high == pytest.approx(load / TYRE, rel=1e-9)
+    assert (bend["stop of damper 1"].low, bend["stop of damper 1"].high) == (-0.002, 0.002)
+    assert model.nu == car.model.model.nu
+
+
+def test_tables_of_a_line_are_the_linear_car(car, bump_piece):
+    def straight(front):
+        front["main_spring"]["table"] = {
+            "displacement": [-0.2, -0.1, 0.1],
+            "force": [x * SPRING for x in (-0.2, -0.1, 0.1)],
+        }
+        front["bushings"]["tyre"]["table_z"] = {"displacement": [-0.1, 0.1], "force": [-0.1 * TYRE, 0.1 * TYRE]}
+
+    one, other = changed_car(straight).run(bump_piece), car.run(bump_piece)
+    for name in ("seat_rail_acc_z", "tyre_fr_force_z", "damper_fr_velocity"):
+        np.testing.assert_allclose(one[name], other[name], rtol=0.0, atol=1e-7 * np.std(other[name]))
+
+
+def test_energy_balances_and_the_engines_say_where_they_end(bent_car, bump_piece):
+    run = bent_car.run(bump_piece, engine="auto")
+    assert run.recording.statistics.engine == "mujoco"
+    assert "stop of damper 1 left the piece of its table" in run.engine_reason
+    assert run.recording.statistics.energies.residual < 2e-3
+    small = type(bump_piece)(
+        time=bump_piece.time, displacement={name: 0.1 * z for name, z in bump_piece.displacement.items()}
+    )
+    exact, fast = bent_car.run(small), bent_car.run(small, engine="auto")
+    assert fast.recording.statistics.engine == "reduced"
+    difference = np.sqrt(np.mean((exact["tyre_fr_force_z"] - fast["tyre_fr_force_z"]) ** 2))
+    assert difference < 5e-3 * np.std(exact["tyre_fr_force_z"])
+
+
+def test_tables_that_cannot_be_are_refused_by_name():
+    def falling(front):
+        front["main_spring"]["table"] = {"displacement": [-0.2, 0.1], "force": [1.0, -1.0]}
+
+    def weak(front):
+        front["bushings"]["tyre"]["table_z"] = {"displacement": [-0.1, -0.09, 0.0], "force": [-100.0, -100.0, 0.0]}
+
+    with pytest.raises(ConfigurationError, match=r"^front\.main_spring\.table\.force: found -1\.0 N after 1\.0 N"):
+        changed_car(falling)
+    with pytest.raises(ConfigurationError, match="the table of bushing/tyre_fr: carries -100 N nearest to the -3557 N"):
+        _ = changed_car(weak).model
