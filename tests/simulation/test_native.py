@@ -13,6 +13,7 @@ import pytest
 from vehicle.car import Car
 from vehicle.errors import MissingPartError, SimulationError
 from vehicle.excitation.signal import Signal
+from vehicle.simulation import callbacks
 from vehicle.simulation.callbacks import SLOWER, compiled_rows, installed
 from vehicle.simulation.recording import Recording
 from vehicle.simulation.rows import Rows, prepare_model
@@ -137,6 +138,7 @@ def test_other_numbers_are_found_out_at_the_start(car: Car, monkeypatch: pytest.
         rows.weights = own
 
     monkeypatch.setattr(CompiledRows, "attach", wrong)
+    monkeypatch.setattr(callbacks, "PROVED", set())
     found = compiled_rows(rows)
     assert isinstance(found, str)
     assert found.startswith("compiled callbacks gave another ") and found.endswith(f"than the Python form; {SLOWER}")
@@ -218,3 +220,21 @@ def test_other_rows_than_those_compiled_for_lose_the_state(car: Car) -> None:
     with installed(rows, callback):
         mujoco.mj_forward(rows.model, data)
     assert np.all(np.isnan(data.qfrc_applied))
+
+
+def test_cars_of_one_structure_are_proved_once(car: Car, monkeypatch: pytest.MonkeyPatch) -> None:
+    proofs: list[Rows] = []
+
+    def count(rows: Rows, compiled: object) -> str:
+        proofs.append(rows)
+        return ""
+
+    monkeypatch.setattr(callbacks, "PROVED", set())
+    monkeypatch.setattr(callbacks, "_difference", count)
+    other = Car.load(None, ["damper.viscous=2000", "bushings.suspension_mount.stiffness.z=8e5"])
+    for one in (car, other, car):
+        assert not isinstance(compiled_rows(prepared(one)), str)
+    assert len(proofs) == 1
+    # Another law of the dampers, another path through the code.
+    assert not isinstance(compiled_rows(prepared(Car.load(None, ["damper.friction_law=stribeck"]))), str)
+    assert len(proofs) == 2
