@@ -17,6 +17,9 @@ PANELS = {
 }
 """Label of each panel to the names, the unit and the scale of its loads; a load is in the first that fits."""
 
+FEWEST = 0.25
+"""Cycles at which the pictures begin: half of the half cycle that a record may hold."""
+
 
 def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
     """Write the picture.
@@ -38,9 +41,10 @@ def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
             axis = figure.add_subplot(2 if len(panels) > 2 else 1, 2 if len(panels) > 1 else 1, number + 1)
             scale = PANELS[label][2]
             for colour, one in zip(COLOURS, own, strict=False):
-                axis.step(
-                    one.counted.exceeded(), scale * one.counted.ranges, where="post", color=colour, label=one.name
-                )
+                # The largest range is reached by every smaller number of cycles.
+                cycles, ranges = one.counted.exceeded(), scale * one.counted.ranges
+                axis.step([*cycles, FEWEST], [*ranges, ranges[-1]], where="post", color=colour, label=one.name)
             axis.set(xscale="log", xlabel="cycles", ylabel=label)
+            axis.set_xlim(left=FEWEST)
             axis.set_ylim(bottom=0.0)
             axis.legend()
