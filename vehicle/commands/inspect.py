@@ -54,6 +54,8 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
 
     values = channel.si_values
     known = np.abs(values[np.isfinite(values)]) if np.iscomplexobj(values) else values[np.isfinite(values)]
+    largest = float(np.abs(known).max()) if known.size else 0.0
+    level = 0.0 if known.size else None
     axis = {"rate_hz": channel.rate} if channel.kind == "time" else {"lines": channel.values.size}
     start = None if channel.axis is None or not channel.axis.size else float(channel.axis[0])
     return {
@@ -66,7 +68,7 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
         **axis,
         "samples": channel.values.size,
         "start_s" if channel.kind == "time" else "start_hz": start,
-        "rms": float(np.sqrt(np.mean(np.square(known, dtype=float)))) if known.size else None,
+        "rms": largest * float(np.sqrt(np.mean(np.square(known / largest)))) if largest else level,
         "min": float(known.min()) if known.size else None,
         "max": float(known.max()) if known.size else None,
         "place": channel.place,

@@ -13,6 +13,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.records.channel import Channel, Measurement, check_length, clock_step, uniform_axis
+from vehicle.records.matlab_elements import COMPRESSED, MATRIX, check_matrix
 from vehicle.records.reader import digest
 from vehicle.records.table import Vector
 from vehicle.records.units import find_ratio, find_unit
@@ -204,6 +205,16 @@ def _check_elements(path: Path) -> None:
             if kind >> 16:
                 raise DataError(f"{path}: byte {position} begins no element; the file was damaged; save it again")
             check_length(path, count, size - position - 8, f"element at byte {position}")
+            if kind not in (MATRIX, COMPRESSED):
+                raise DataError(f"{path}: byte {position} begins no matrix; the file was damaged; save it again")
+            body = file.read(count)
+            if kind == COMPRESSED:
+                try:
+                    body = zlib.decompress(body)
+                except zlib.error as error:
+                    raise DataError(f"{path}: element at byte {position}: {error}; save the file again") from None
+                body = body[8:]
+            check_matrix(path, body, order, f"element at byte {position}")
             position += 8 + count if kind == 15 else 8 + count + -count % 8
         if position != size and size - position > 7:
             raise DataError(f"{path}: the file ends within an element; it was cut off; save it again")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import zipfile
+import zlib
 from pathlib import Path
+from tokenize import TokenError
 
 import numpy as np
 
@@ -30,7 +32,18 @@ def read(path: Path, wanted: Wanted) -> Table:
             )
         with np.load(path, allow_pickle=False) as arrays:
             found = {name: arrays[name] for name in arrays.files}
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, NotImplementedError, RuntimeError) as error:
+    except (
+        OSError,
+        ValueError,
+        EOFError,
+        zipfile.BadZipFile,
+        NotImplementedError,
+        RuntimeError,
+        SyntaxError,
+        KeyError,
+        TokenError,
+        zlib.error,
+    ) as error:
         raise DataError(f"{path}: no file of arrays ({error}); give a time.npz of a run, or a CSV file") from None
     texts = [str(text) for text in np.atleast_1d(found.pop("units", np.array([], dtype=str)))]
     units = {"time": "s"} | dict(name_and_unit(text) for text in texts)

@@ -140,7 +140,10 @@ def _text(line: bytes) -> str:
 
 
 def _units(path: Path, where: str, lines: list[bytes]) -> Units:
-    numbers = [float(text) for text in _D_EXPONENT.sub(b"E", b" ".join(lines[1:])).split()[:2]] if lines else []
+    try:
+        numbers = [float(text) for text in _D_EXPONENT.sub(b"E", b" ".join(lines[1:])).split()[:2]]
+    except ValueError:
+        numbers = []
     if len(numbers) < 2 or min(numbers) <= 0.0:
         raise DataError(f"{path}: {where} tells no factors of length and force; export it again")
     return Units(length=numbers[0], force=numbers[1])

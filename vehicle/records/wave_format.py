@@ -27,17 +27,26 @@ def read(path: Path) -> Measurement:
             warnings.simplefilter("error")
             warnings.filterwarnings("ignore", message="Chunk .* not understood")
             rate, data = wavfile.read(path)
-    except (ValueError, TypeError, EOFError, OSError, struct.error, OverflowError, wavfile.WavFileWarning) as error:
+    except (
+        ValueError,
+        TypeError,
+        EOFError,
+        OSError,
+        struct.error,
+        OverflowError,
+        ZeroDivisionError,
+        wavfile.WavFileWarning,
+    ) as error:
         raise DataError(f"{path}: no WAV file that can be read ({error}); export it as uncompressed WAV") from None
     if data.size == 0 or rate <= 0:
         raise DataError(f"{path}: {data.size} samples at {rate} Hz; needed is a record")
+    if not np.isfinite(data).all():
+        raise DataError(f"{path}: holds numbers that are not finite; repair the record")
     values = data.reshape(len(data), -1).astype(np.float64)
     if data.dtype.kind == "u":
         values = (values - 128.0) / 128.0
     elif data.dtype.kind == "i":
         values /= -float(np.iinfo(data.dtype).min)
-    if not np.isfinite(values).all():
-        raise DataError(f"{path}: holds numbers that are not finite; repair the record")
     axis = uniform_axis(len(values), 1.0 / rate)
     remark = "no unit: shares of full scale; its value is given as --unit '12.5 mm', with the number"
     channels = tuple(
