@@ -127,7 +127,7 @@ def test_5_no_header(tmp_path):
 def test_5_unknown_and_missing_columns(tmp_path):
     assert refused_lines(tmp_path, ["time [s],displacement [m],force [N]", "0,0,0"]) == (
         ":1: unknown column 'force [N]'; found 'time [s]', 'displacement [m]', 'force [N]'; needed are "
-        f"{NEEDED}; remove the others"
+        f"{NEEDED}; remove the others, or say which one drives a plate: --channel fr=NAME"
     )
     assert refused_lines(tmp_path, ["zeit [s],weg [m]", "0,0"]).startswith(
         ":1: unknown column 'zeit [s]', 'weg [m]'; found"
@@ -245,10 +245,9 @@ def test_7_quantisation_of_a_measured_signal_is_no_acceleration(tmp_path):
 def test_9_acceleration_is_refused(tmp_path, header):
     message = refused_lines(tmp_path, [f"time [s],{header}", *rows()])
     assert message.startswith(
-        f":1:2: column {header!r} is an acceleration or a velocity; the plate needs a displacement. It is not "
-        "integrated here:"
+        f":1:2: column {header!r} is an acceleration or a velocity; the plate needs a displacement. Drift makes "
     )
-    assert message.endswith(f"record the filter in a '#' comment and give {NEEDED}")
+    assert message.endswith(f" --highpass 0.5; or give {NEEDED}") and "--channel fr='" in message
 
 
 def test_9_a_level_is_no_velocity(tmp_path):

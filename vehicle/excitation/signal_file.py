@@ -146,9 +146,10 @@ def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
         place = f"{header.where}:{index + 1}: column {cell!r}"
         if _OTHER_UNIT.fullmatch(unit or "") or _OTHER_QUANTITY.search(name):
             raise DataError(
-                f"{place} is an acceleration or a velocity; the plate needs a displacement. It is not integrated here: "
-                "drift makes double integration depend on a high-pass filter that only you can choose. Integrate it, "
-                f"record the filter in a '#' comment and give {NEEDED}"
+                f"{place} is an acceleration or a velocity; the plate needs a displacement. Drift makes "
+                "integration depend on a high-pass filter that only you can choose: name the column and the corner, as "
+                f"--channel {wheel}={name!r} --highpass 0.5; "
+                f"or give {NEEDED}"
             )
         key = keys.get(name.lower())
         if key is None:
@@ -164,7 +165,7 @@ def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
     if unknown:
         raise DataError(
             f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
-            "the others"
+            "the others, or say which one drives a plate: --channel fr=NAME"
         )
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"
