@@ -43,7 +43,7 @@ def test_velocity_answers_its_own_force(name, limit, g):
     for start in (0, len(CURVES[name][1]) - 1):
         for a in [*np.geomspace(1e-9, 3.0, 40), *-np.geomspace(1e-9, 3.0, 40)]:
             curve = pieces_of(name, g)
-            found, piece = solve_damper(a, g, limit, SMOOTHING, curve, start)
+            found, piece = solve_damper(a, g, limit, 0.5 * np.pi / SMOOTHING, curve, start)
             expected = brentq(lambda v, a=a: v + g * law(v) - a, -4.0, 4.0, xtol=1e-18, rtol=1e-14)
             assert found == pytest.approx(expected, rel=1e-9, abs=1e-16)
             assert damper_force(found, limit, SMOOTHING, curve, piece) == pytest.approx(-law(expected), rel=1e-8)
@@ -63,7 +63,7 @@ def test_dampers_with_laws_of_their_own_answer_each_other(count):
     for size in (1e-6, 1e-3, 0.05, 1.0):
         arriving, start = size * generator.standard_normal((2, count))
         velocity, force = start.copy(), np.zeros(count)
-        room, pieces = np.zeros((2, count)), np.zeros(count, dtype=int)
+        room, pieces = np.full((3, count), 0.5e-3 * np.pi), np.zeros(count, dtype=int)
         solve_dampers(count, arriving, gain, laws, curves, velocity, force, room, pieces)
         # v = a + G f, and f follows from v by each law, with the limit of the velocity that the step began with.
         np.testing.assert_allclose(velocity, arriving + gain @ force, rtol=1e-9, atol=1e-12)

@@ -36,7 +36,7 @@ ACCURACY = 1e-9
 
 
 @jitable
-def solve_damper(a: float, g: float, limit: float, smoothing: float, curve: Any, piece: int) -> tuple[float, int]:
+def solve_damper(a: float, g: float, limit: float, full: float, curve: Any, piece: int) -> tuple[float, int]:
     """Velocity v of a = v + g (clamp(c v, L) + s v + b), and the piece of the curve that it is on.
 
     With the piece s v + b known, v = (a - g b) k - g k clamp(c v, L), k = 1/(1 + g s). Beyond the edge of that piece,
@@ -46,11 +46,10 @@ def solve_damper(a: float, g: float, limit: float, smoothing: float, curve: Any,
         a: velocity without the forces of the step.
         g: own gain, above 0.
         limit: L.
-        smoothing: eps, with c = (2/pi) L eps: the friction is full at pi/(2 eps).
+        full: velocity pi/(2 eps) at which the friction is full, for c = (2/pi) L eps.
         curve: upper edge, s, b and k of every piece; (4, pieces).
         piece: to begin with.
     """
-    full = 0.5 * np.pi / smoothing
     while True:
         k = curve[3, piece]
         u, brake = (a - g * curve[2, piece]) * k, g * k * limit
@@ -87,10 +86,10 @@ def solve_dampers(
         curves: what the pieces of the curves have beside D v, as of `solve_damper`; (w, 4, pieces).
         velocity: at the beginning of the step, which sets the friction limits, and at its end; changed in place, (w,).
         force: of the last step and of this one [N], changed in place; (w,).
-        last: room; (2, w).
+        last: room for limits and last forces, and the velocities of full friction; (3, w).
         pieces: which of a curve each damper was on; changed in place, (w,).
     """
-    limit, before = last[0], last[1]
+    limit, before, full = last[0], last[1], last[2]
     for i in range(count):
         limit[i] = friction_limit(laws[i], velocity[i])
     for _ in range(TURNS):
@@ -100,8 +99,7 @@ def solve_dampers(
             for j in range(count):
                 if j != i:
                     own += gain[i, j] * force[j]
-            eps = laws[i]["smoothing"]
-            velocity[i], pieces[i] = solve_damper(own, gain[i, i], limit[i], eps, curves[i], pieces[i])
+            velocity[i], pieces[i] = solve_damper(own, gain[i, i], limit[i], full[i], curves[i], pieces[i])
         for i in range(count):
             before[i] = force[i]
             force[i] = damper_force(velocity[i], limit[i], laws[i]["smoothing"], curves[i], pieces[i])
@@ -168,7 +166,10 @@ def march(
     r0, r1, r2, r3, r4, r5, r6 = r[0], r[1], r[2], r[at], r[at + 1], r[at + 2], r[at + 3]
     sample, phase = first, 0  # phase: steps since the last sample
     velocity, arriving, u = velocities[first - 1].copy(), np.empty(count), np.empty(inputs)
-    room, pieces = np.empty((2, count)), np.zeros(count, dtype=np.int64)
+    room, pieces = np.empty((3, count)), np.zeros(count, dtype=np.int64)
+    for i in range(count):
+        # An idle damper has no smoothing, and no friction.
+        room[2, i] = 0.5 * np.pi / laws[i]["smoothing"] if laws[i]["smoothing"] > 0.0 else 1.0
     for step in range(plates.shape[0] - 1):
         u[0], u[1], u[2], u[3] = force[0], force[1], plates[step, 0], plates[step, 1]
         for k in range(2, count):
