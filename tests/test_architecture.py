@@ -47,6 +47,11 @@ ROOMS: dict[str, set[str]] = {
 }
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
 
+STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "laws", "linear", "lumped", "output"} | {
+    *("parameters", "records", "reduced", "rendering", "simulation", "sweeps", "threads", "tuning")
+}
+"""What `scenarios` imports of the package; the package imports nothing of `scenarios`."""
+
 HEAVY = {
     "mujoco": {"assembly", "simulation", "linear", "rendering"},
     "trimesh": {"shapes", "assembly"},
@@ -112,6 +117,22 @@ def test_imports_are_those_of_the_table():
     assert set(found) == set(ROOMS), "a new room needs its line in this table and in design"
     for unit, targets in found.items():
         assert targets == ROOMS[unit], f"{unit}: new {targets - ROOMS[unit]}, unused {ROOMS[unit] - targets}"
+
+
+def test_studies_stand_above_the_package():
+    studies = [path for path in sorted((ROOT / "scenarios").rglob("*.py")) if path.name != "__main__.py"]
+    assert len(studies) > 20, "the studies were not found"
+    found = {name.split(".")[1] for path in studies for name in modules_of(path) if name.startswith("vehicle.")}
+    assert found - EVERYWHERE == STUDIES, f"new {found - EVERYWHERE - STUDIES}, unused {STUDIES - found}"
+    below = {path for path in modules() if any(name.split(".")[0] == "scenarios" for name, _ in imported(path))}
+    assert not below
+
+
+def modules_of(path):
+    """Modules that a study imports, wherever the import stands."""
+    tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    named = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module]
+    return [*named, *(one.name for node in ast.walk(tree) if isinstance(node, ast.Import) for one in node.names)]
 
 
 def test_the_table_has_no_cycle():
