@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import numpy as np
 import pytest
 
 from vehicle.commands.kinematics import main
+from vehicle.parameters.shipped import FOCUS_FILE
 
 
 def test_rows_and_rates(capsys):
@@ -69,3 +71,13 @@ def test_refusals(arguments, message, capsys):
 def test_too_much_travel_is_no_position(capsys):
     assert main(["--ideal", "--travel=0:600:100"]) == 4
     assert "axle: " in capsys.readouterr().err
+
+
+def test_laws_that_the_equilibrium_does_not_know_are_refused(tmp_path, capsys):
+    text = FOCUS_FILE.read_text(encoding="utf-8").replace("[front.damper]\n", "[front.damper]\ngas_force = 250.0\n", 1)
+    folder = tmp_path / "car"
+    shutil.copytree(FOCUS_FILE.parent, folder)
+    (folder / "vehicle.toml").write_text(text, encoding="utf-8")
+    assert main(["--vehicle", str(folder / "vehicle.toml"), "--travel=0:5:5"]) == 2
+    assert "gas_force: kinematics with loads knows linear springs" in capsys.readouterr().err
+    assert main(["--vehicle", str(folder / "vehicle.toml"), "--travel=0:5:5", "--ideal"]) == 0

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
+from vehicle.simulation.layout import numeric
 
 Vector = npt.NDArray[np.float64]
 
@@ -91,7 +92,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     connect, tendon = mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_TENDON
     rows = np.cumsum([0, *(3 if kind == connect else 1 for kind in kinds)])
     names = [str(model.equality(index).name) for index in range(model.neq)]
-    laws = {name: _numeric(model, f"law/{name}") for name in names}
+    laws = {name: _law(model, name) for name in names}
     ends = {
         name: (int(model.eq_obj1id[index]), int(model.eq_obj2id[index]))
         for index, name in enumerate(names)
@@ -148,11 +149,10 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     )
 
 
-def _numeric(model: mujoco.MjModel, name: str) -> Vector:
-    """A custom numeric field of the model; empty where it does not exist."""
-    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, name)
-    start = model.numeric_adr[index] if index >= 0 else 0
-    return np.array(model.numeric_data[start : start + (model.numeric_size[index] if index >= 0 else 0)])
+def _law(model: mujoco.MjModel, name: str) -> Vector:
+    """Numbers of a law; empty where the connection is ideal."""
+    found = numeric(model, f"law/{name}")
+    return np.zeros(0) if found is None else found
 
 
 def _hanging_together(model: mujoco.MjModel, wheels: Sequence[int], ends: Sequence[tuple[int, int]]) -> set[int]:
