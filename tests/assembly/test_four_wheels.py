@@ -204,6 +204,8 @@ def rigid_road() -> dict[str, Any]:
     table = read_table(ROAD_CAR)
     table["body"] |= {"flexible": False, "attachment_flexibility": False, "inertia_variant": "improved"}
     del table["body"]["superelement"]
+    for name in ("rear_support_right", "rear_support_left"):
+        del table["hardpoints"][name]  # nodes of the flexible body
     return table
 
 

@@ -9,6 +9,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.parameters.composition import PlacedConnection, PlacedOutput
 from vehicle.parameters.elements import Bushing, Hydromount
 from vehicle.parameters.hardpoints import Point, require_point
+from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.toml_file import build, convert, nearest
 
 LAW = {"moving", "carrier", "at", "ground"}
@@ -35,13 +36,19 @@ def law_kind(table: Mapping[str, Any]) -> type[Bushing] | type[Hydromount]:
     return Hydromount if any(key.startswith("maxwell_") for key in table) else Bushing
 
 
-def _place(path: str, value: Any, points: Mapping[str, Point]) -> tuple[Point, str]:
-    """A point by its name or its coordinates, and its name."""
+def _place(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:
+    """Where an element is, by the name of a point or by coordinates, and the name of the point."""
+    name, value = path.partition(".")[2], table.get("at")
+    if not NAME_PATTERN.fullmatch(name):
+        raise ConfigurationError(f"{path}: found {name!r}, allowed are letters, digits, '_', '.', '-'")
+    if value is None:
+        raise ConfigurationError(f"{path}.at: missing; needed is the name of a point, or its coordinates [m]")
     if isinstance(value, str):
         if value not in points:
-            raise ConfigurationError(f"{path}: found {value!r}, no such point; the nearest is {nearest(value, points)}")
+            near = nearest(value, points)
+            raise ConfigurationError(f"{path}.at: found {value!r}, no such point; the nearest is {near}")
         return points[value], value
-    return own_point(path, value), path.split(".")[1]
+    return own_point(f"{path}.at", value), name
 
 
 def _known(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
@@ -69,7 +76,7 @@ def further_connection(name: str, value: Any, names: set[str], points: Mapping[s
     path = f"connection.{name}"
     table = convert(dict, value, path)
     law = {key: inner for key, inner in table.items() if key not in LAW}
-    at, point = _place(f"{path}.at", table.get("at", []), points)
+    at, point = _place(path, table, points)
     return PlacedConnection(
         name=name,
         moving=_known(path, table, "moving", names),
@@ -77,7 +84,7 @@ def further_connection(name: str, value: Any, names: set[str], points: Mapping[s
         at=at,
         point=point,
         law=build(law_kind(law), law, path) if law else None,
-        ground=bool(table.get("ground", False)),
+        ground=convert(bool, table.get("ground", False), f"{path}.ground"),
         path=path,
     )
 
@@ -93,5 +100,5 @@ def further_output(name: str, value: Any, names: set[str], points: Mapping[str, 
     for key in table:
         if key not in ("on", "at"):
             raise ConfigurationError(f"{path}.{key}: unknown parameter; needed are on and at")
-    at, point = _place(f"{path}.at", table.get("at", []), points)
+    at, point = _place(path, table, points)
     return PlacedOutput(name=name, on=_known(path, table, "on", names), at=at, point=point)

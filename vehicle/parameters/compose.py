@@ -24,8 +24,10 @@ from vehicle.parameters.composition import (
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.freedoms import freedoms
 from vehicle.parameters.hardpoints import Point
-from vehicle.parameters.instance import Instance
+from vehicle.parameters.instance import OWN, Instance
 from vehicle.parameters.parts import Part
+from vehicle.parameters.quantity import NAME_PATTERN
+from vehicle.parameters.references import require_aliases, require_points, require_ports, require_sound, require_taken
 from vehicle.parameters.springs import placed_spring, spring_kind
 from vehicle.parameters.template import read_template
 from vehicle.parameters.toml_file import convert, nearest
@@ -50,18 +52,24 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
             loop of joints; the message names table and template.
     """
     car: dict[str, Instance] = {}
-    for path, numbers in _instances(table, ""):
+    for path, numbers in _instances(table, "", ""):
         found = read_template(convert(str, numbers["template"], f"{path}.template"), numbers, folders)
         car[path] = Instance(name=path, numbers=numbers, template=found, others=car)
-    own = {name: own_point(f"hardpoints.{name}", value) for name, value in table.get("hardpoints", {}).items()}
-    points = {**own, **dict(itertools.chain.from_iterable(map(_points, car.values())))}
+    given = {key: convert(dict, table.get(key, {}), key) for key in ("hardpoints", "connection", "outputs", "alias")}
+    own = {name: own_point(f"hardpoints.{name}", value) for name, value in given["hardpoints"].items()}
+    points = dict(itertools.chain.from_iterable(map(_points, car.values())))
+    if twice := sorted(set(own) & set(points)):
+        raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; give it another one")
+    points = {**own, **points}
     for instance in car.values():
         instance.require_geometry()
+    names = {"body", "world", *(one.plate for one in _wheels(car))}
+    names |= {i.label(name, side) for i in car.values() for name in i.template.parts for side in i.sides()}
+    require_ports(car, names)
     parts, wheels = _parts(car), _wheels(car)
-    names = {"body", "world", *(part.name for part in parts), *(one.plate for one in wheels)}
     connections = [_connection(*one) for one in sorted(_elements(car, "connection"), key=lambda one: _rank(one[2]))]
     connections.sort(key=lambda one: one.law is None)
-    connections += [further_connection(name, one, names, points) for name, one in table.get("connection", {}).items()]
+    connections += [further_connection(name, one, names, points) for name, one in given["connection"].items()]
     springs = [placed_spring(*one) for one in _elements(car, "spring")]
     outputs = [
         PlacedOutput(
@@ -70,7 +78,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         for i in car.values()
         for _, e, side in sorted(_elements({i.name: i}, "output"), key=lambda one: _rank(one[2]))
     ]
-    outputs += [further_output(name, one, names, points) for name, one in table.get("outputs", {}).items()]
+    outputs += [further_output(name, one, names, points) for name, one in given["outputs"].items()]
     composed = Composition(
         parts=tuple(parts),
         connections=tuple(connections),
@@ -91,34 +99,48 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         kinds=_kinds(car, table),
         meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},
     )
-    _require_unique(composed)
+    require_sound(composed)
+    require_taken(car)
+    require_points(table)
+    require_aliases(table)
     return composed
 
 
-def _require_unique(car: Composition) -> None:
-    for group in (car.parts, car.connections, car.springs, car.dampers, car.outputs):
-        names = sorted(one.name for one in group)
-        for name, other in itertools.pairwise(names):
-            if name == other:
-                raise ConfigurationError(
-                    f"{name}: two elements have this name; rename one, or give its template a prefix"
-                )
+def _instances(table: Mapping[str, Any], prefix: str, inside: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Tables with a template, at any depth; outside of an instance every table holds one.
 
-
-def _instances(table: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Tables with a template, at any depth."""
+    Args:
+        table: to be looked through.
+        prefix: path of it.
+        inside: the same where it is an instance, or lies in one; empty elsewhere.
+    """
     for key, value in table.items():
-        if isinstance(value, Mapping):
-            if "template" in value:
-                yield prefix + key, value
-            elif not prefix and key not in KEPT and not any(True for _ in _instances(value, f"{key}.")):
-                raise ConfigurationError(
-                    f"{key}: unknown parameter; the nearest known name is {nearest(key, [*KEPT, *table])}. A table of "
-                    "its own needs template = NAME"
-                )
-            yield from _instances(value, f"{prefix}{key}.")
-        elif not prefix and key not in KEPT:
-            raise ConfigurationError(f"{key}: unknown parameter; the nearest known name is {nearest(key, KEPT)}")
+        place = f"{prefix}{key}"
+        if not prefix and key in KEPT:
+            continue
+        if isinstance(value, Mapping) and "template" in value:
+            if not NAME_PATTERN.fullmatch(key):
+                raise ConfigurationError(f"{place}: found {key!r}, allowed are letters, digits, '_', '.', '-'")
+            yield place, value
+            yield from _instances(value, f"{place}.", place)
+        elif inside:
+            yield from _instances(value, f"{place}.", inside) if isinstance(value, Mapping) else ()
+        elif isinstance(value, Mapping) and _holds(value):
+            yield from _instances(value, f"{place}.", "")
+        elif isinstance(value, Mapping) and set(value) & set(OWN):
+            raise ConfigurationError(f"{place}.template: missing; an instance needs template = NAME")
+        else:
+            near = nearest(key, [other for other in (table if prefix else (*KEPT, *table)) if other != key])
+            raise ConfigurationError(
+                f"{place}: unknown parameter; the nearest known name is {near}. A table of its own needs template "
+                "= NAME"
+            )
+
+
+def _holds(table: Mapping[str, Any]) -> bool:
+    """Whether a table holds an instance at any depth, or what lacks a template to be one."""
+    inner = [value for value in table.values() if isinstance(value, Mapping)]
+    return any(set(value) & {"template", *OWN} or _holds(value) for value in inner)
 
 
 def _points(instance: Instance) -> Iterator[tuple[str, Point]]:
@@ -170,6 +192,8 @@ def _parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
             if there[3] != parent:
                 raise ConfigurationError(f"{place}: {there[3]} holds it already; close a loop by a connection")
             there[4].append((joint, side))
+            if len(there[4]) > 1 and {"free", "fixed"} & {one.kind for one, _ in there[4]}:
+                raise ConfigurationError(f"{place}: it is {there[4][0][0].kind} already; a joint beside holds nothing")
     for i in car.values():
         for name, side in itertools.product(i.template.parts, i.sides()):
             if (side is not None or not i.template.mirrored) and i.label(name, side) not in held:

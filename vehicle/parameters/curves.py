@@ -5,9 +5,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, VehicleError
+
+if TYPE_CHECKING:
+    from vehicle.records.table import Header
 
 MOST_POINTS = 40
 """A row of the solver for each piece: more points than this only cost time."""
@@ -59,8 +62,8 @@ def with_curve_files(table: Mapping[str, Any], folder: Path, place: str = "") ->
         A copy, that needs no other file.
 
     Raises:
-        ConfigurationError: there is no such file, or the points are given twice.
-        DataError: it holds no such columns; the message names the place.
+        ConfigurationError: there is no such file, it holds no such columns, or the points are given twice; the message
+            names the place.
     """
     found: dict[str, Any] = {}
     for key, value in table.items():
@@ -72,23 +75,28 @@ def with_curve_files(table: Mapping[str, Any], folder: Path, place: str = "") ->
         elif not isinstance(value, str) or "force" in table:
             raise ConfigurationError(f"{path}: found {value!r}; needed is the name of a file, and no force beside it")
         else:
-            found |= _points(folder / value, path)
+            # What has a law of damping is a damper.
+            found |= _points(folder / value, path, "velocity" if "viscous_law" in table else "displacement")
     return found
 
 
-def _points(file: Path, path: str) -> dict[str, Any]:
+def _points(file: Path, path: str, key: str) -> dict[str, Any]:
     """The columns of a file by their keys."""
     # Parameters are known without numpy, which tables are read with.
     from vehicle.records.formats import read_table
-    from vehicle.records.table import Wanted, key_column
+    from vehicle.records.table import Wanted
 
-    needed = f"{' or '.join(map(repr, HEADS.values()))}, and 'force [N]'"
+    heads = {key: HEADS[key], "force": "force [N]"}
+    needed = " and ".join(map(repr, heads.values()))
+
+    def column(header: Header) -> int:
+        if missing := set(heads.values()) - set(header.cells):
+            raise ConfigurationError(f"{header.where}: no column {min(missing)!r}; found {header.found}, needed are "
+                                     f"{needed}")  # fmt: skip
+        return header.cells.index(HEADS[key])
+
     try:
-        table = read_table(file, Wanted(needed=needed, key=key_column("force [N]", needed)))
-    except ConfigurationError as error:
+        table = read_table(file, Wanted(needed=needed, key=column, remedy="repair or remove the row"))
+    except VehicleError as error:
         raise ConfigurationError(f"{path}: {error}") from None
-    key = next((key for key, head in HEADS.items() if head in table.header.cells), None)
-    if key is None:
-        raise ConfigurationError(f"{path}: {table.header.where}: found {table.header.found}; needed are {needed}")
-    columns = {key: HEADS[key], "force": "force [N]"}
-    return {name: table.values[:, table.header.cells.index(head)].tolist() for name, head in columns.items()}
+    return {name: table.values[:, table.header.cells.index(head)].tolist() for name, head in heads.items()}

@@ -29,6 +29,7 @@ class Instance:
         template: topology.
         others: all instances of the car by name.
         typed: parameter objects of the whole instance that are there already, by path.
+        taken: tables and points of a side that something took.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Instance:
     template: Template
     others: Mapping[str, Instance]
     typed: dict[str, Any] = field(default_factory=dict)
+    taken: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         # What the template has no place for is a slip of the pen.
@@ -47,12 +49,16 @@ class Instance:
             "ports": [*template.ports, "body"],
         }
         elements = [*(one.name for one in template.spring), *(one.name for one in template.damper)]
-        for where, table in (("", self.numbers), *((f"{side}.", self.numbers.get(side, {})) for side in SIDE_SIGN)):
+        sides = {f"{side}.": self.numbers.get(side, {}) for side in SIDE_SIGN}
+        for where, given in (("", self.numbers), *sides.items()):
+            table = convert(dict, given, f"{self.name}.{where}".rstrip("."))
+            own = OWN if not where else tuple(pools)
             for key, inner in table.items():
-                if key not in OWN and key not in elements and not (isinstance(inner, Mapping) and "template" in inner):
-                    self._unknown(f"{where}{key}", key, [*OWN, *elements])
+                instance = not where and isinstance(inner, Mapping) and "template" in inner
+                if key not in own and key not in elements and not instance:
+                    self._unknown(f"{where}{key}", key, [*own, *elements])
             for group, pool in pools.items():
-                for key in table.get(group, {}):
+                for key in convert(dict, table.get(group, {}), f"{self.name}.{where}{group}"):
                     if key not in pool:
                         self._unknown(f"{where}{group}.{key}", key, pool)
         for group in ("hardpoints", "parts"):
@@ -90,6 +96,7 @@ class Instance:
         path, tables = ".".join((self.name, *keys)), self._found(side, keys)
         if not tables:
             self.missing(".".join(keys), "it")
+        self.taken.add(f"{side}.{'.'.join(keys)}")
         if len(tables) > 1:
             return build(kind, {**tables[0], **tables[1]}, f"{self.name}.{side}.{'.'.join(keys)}")
         if path not in self.typed:
@@ -124,20 +131,37 @@ class Instance:
         name, _, own = ref.partition(":")
         if name in self.template.parts or name == "plate":
             return self.label(name, own or side)
-        bound = self.numbers.get("ports", {}).get(name, name)
+        bound = convert(str, self.numbers.get("ports", {}).get(name, name), f"{self.name}.ports.{name}")
         if bound == name and name in self.template.ports:
             self.missing(f"ports.{name}", self.template.ports[name])
         other, dot, inner = bound.rpartition(".")
-        return self.others[other].part(inner, own or side) if dot and other in self.others else str(bound)
+        if not dot or other not in self.others:
+            return str(bound)
+        return self.others[other].part(inner, (own or side) if self.others[other].template.mirrored else None)
 
-    def point(self, ref: str, side: str | None) -> Point:
-        """A point of the template on a side [m]; "other.name" of the file is the point of another instance."""
+    def point(self, ref: str, side: str | None, asked: tuple[str, ...] = ()) -> Point:
+        """A point of the template on a side [m]; "other.name" of the file is the point of another instance.
+
+        Args:
+            ref: name of the template, with its side where it has one.
+            side: "right" or "left"; None of what exists once.
+            asked: paths of the points that took this one.
+
+        Raises:
+            ConfigurationError: it is no point, or leads back to itself.
+        """
         name, _, own = ref.partition(":")
         own, path = own or side or "", f"{self.name}.hardpoints.{name}"
         given = self.numbers.get(own, {}).get("hardpoints", {}).get(name) if own in SIDE_SIGN else None
         if given is not None:
             point: Point = convert(Point, given, f"{self.name}.{own}.hardpoints.{name}")
             require_point(f"{self.name}.{own}.hardpoints.{name}", point, right=False)
+            if point[1] * SIDE_SIGN[own] < 0.0:
+                raise ConfigurationError(
+                    f"{self.name}.{own}.hardpoints.{name}: found y = {point[1]} m, which is on the other side; points "
+                    "of one side are where they really are, y > 0 on the right"
+                )
+            self.taken.add(f"{own}.hardpoints.{name}")
             return point
         value = self.numbers["hardpoints"][name]
         if isinstance(value, str):
@@ -146,7 +170,10 @@ class Instance:
                 raise ConfigurationError(
                     f"{path}: found {value!r}; needed are coordinates, or INSTANCE.POINT of another one"
                 )
-            return self.others[other].point(there, own or None)
+            if path in asked:
+                raise ConfigurationError(f"{path}: found {value!r}, which leads back to it; give one its coordinates")
+            there_side = (own or None) if self.others[other].template.mirrored else None
+            return self.others[other].point(there, there_side, (*asked, path))
         if path not in self.typed:
             right: Point = convert(Point, value, path)
             require_point(path, right, right=self.template.mirrored)

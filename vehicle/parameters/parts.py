@@ -51,6 +51,8 @@ class Part:
 
     def __post_init__(self) -> None:
         validate(self)
+        if self.between is not None and not self.between:
+            raise ConfigurationError("Part.between: found no hardpoint; give one or more, or leave it out")
         if self.inertia is None:
             return
         a, b, c = sorted(self.inertia)
@@ -58,4 +60,20 @@ class Part:
             raise ConfigurationError(
                 f"Part.inertia: found {list(self.inertia)} kg m2, the two smaller must add up to the largest at least "
                 f"(short by {c - a - b:.3g}); no mass distribution has such moments"
+            )
+        self._require_products(self.inertia)
+
+    def _require_products(self, moments: Point) -> None:
+        """The integrals of x x, x y, ... are a positive semidefinite matrix: none of its minors is negative."""
+        total = sum(moments)
+        if not any(self.products) or total == 0.0:
+            return
+        xx, yy, zz = ((0.5 * total - moment) / total for moment in moments)
+        xy, zx, yz = (product / total for product in self.products)
+        minors = (xx * yy - xy**2, xx * zz - zx**2, yy * zz - yz**2,
+                  xx * (yy * zz - yz**2) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx))  # fmt: skip
+        if min(minors) < -1e-12:
+            raise ConfigurationError(
+                f"Part.products: found {list(self.products)} kg m2, too large beside the moments {list(moments)} kg "
+                "m2; no mass distribution has such a tensor"
             )

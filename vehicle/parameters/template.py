@@ -17,16 +17,17 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.quantity import NAME_PATTERN
-from vehicle.parameters.toml_file import build, nearest, read_table
-from vehicle.parameters.topology import Connection, Damper, Joint, Output, RolePart, Spring, Template, Wheel
+from vehicle.parameters.template_file import LISTS, read_template_file
+from vehicle.parameters.toml_file import build, nearest
+from vehicle.parameters.topology import RolePart, Template, Wheel
 
 SHIPPED = Path(str(resources.files("vehicle"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
 """Parts of others that every template may name: the trimmed body, the ground, what the tyre of this side stands on."""
 
-_LISTS = {"joint": Joint, "connection": Connection, "spring": Spring, "damper": Damper, "output": Output}
 _POINTS, _PARTS = {"at", "along", "points", "center", "patch"}, {"child", "parent", "moving", "carrier", "part", "on"}
-_KEYS = {"mirrored", "use", "hardpoints", "ports", "parts", "wheel", "above", *_LISTS}
+_ON = {"damper": ("slide",), "spring": ("slide", "hinge")}
+"""Kinds of joints that these elements may be on."""
 
 
 def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) -> Template:
@@ -56,7 +57,7 @@ def _read_once(
             key: tuple(
                 build(kind, entry, f"{key}.{entry.get('name', position)}") for position, entry in enumerate(raw[key])
             )
-            for key, kind in _LISTS.items()
+            for key, kind in LISTS.items()
         }
         parts = {part: build(RolePart, table, f"parts.{part}") for part, table in raw["parts"].items()}
         wheel = None if raw["wheel"] is None else build(Wheel, raw["wheel"], "wheel")
@@ -78,48 +79,32 @@ def _merged(name: str, options: frozenset[str], places: tuple[Path, ...], above:
     """Tables of a template and of what it uses: what it always uses, its own, what it uses on request."""
     path = next((place / f"{name}.toml" for place in places if (place / f"{name}.toml").is_file()), None)
     if path is None or not NAME_PATTERN.fullmatch(name) or name in above:
-        known = ", ".join(sorted({file.stem for place in places for file in place.glob("*.toml")}))
+        known = sorted({file.stem for place in places for file in place.glob("*.toml")})
         reason = "uses itself" if name in above else "no such file beside the vehicle file nor in the package"
-        raise ConfigurationError(f"template {name!r}: {reason}; there are {known}")
-    table = read_table(path)
-    for key in table:
-        if key not in _KEYS:
-            raise ConfigurationError(f"{path.name}: {key}: unknown; the nearest known name is {nearest(key, _KEYS)}")
-    own = {
-        "mirrored": table.get("mirrored", False),
-        "wheel": table.get("wheel"),
-        **{key: dict(table.get(key, {})) for key in ("hardpoints", "ports", "parts")},
-        **{key: [_listed(entry) for entry in table.get(key, [])] for key in _LISTS},
-        "above": list(table.get("above", [])),
-    }
-    used = [(use, _merged(use["template"], options, places, (*above, name))) for use in _chosen(table, options, path)]
-    first = [_renamed(other, use) for use, other in used if "when" not in use]
+        raise ConfigurationError(
+            f"template {name!r}: {reason}; the nearest is {nearest(name, set(known) - {name})}, there are "
+            f"{', '.join(known)}"
+        )
+    own = read_template_file(path)
+    chosen = [use for use in own.pop("use") if use.get("when") is None or use["when"] in options]
+    used = [(use, _merged(use["template"], options, places, (*above, name))) for use in chosen]
     found: dict[str, Any] = {"mirrored": own["mirrored"], "wheel": None}
-    for one in [*first, own, *(_renamed(other, use) for use, other in used if "when" in use)]:
-        for key in ("hardpoints", "parts"):
-            twice = set(found.setdefault(key, {})) & set(one[key])
-            if twice:
-                raise ConfigurationError(f"{path.name}: {key}.{min(twice)}: comes twice; give what it uses a prefix")
-            found[key] |= one[key]
-        for key in (*_LISTS, "above"):
-            found[key] = [*found.get(key, []), *one[key]]
-        found["wheel"] = found["wheel"] or one["wheel"]
+    try:
+        first = [_renamed(other, use) for use, other in used if "when" not in use]
+        for one in [*first, own, *(_renamed(other, use) for use, other in used if "when" in use)]:
+            for key in ("hardpoints", "parts"):
+                twice = set(found.setdefault(key, {})) & set(one[key])
+                if twice:
+                    raise ConfigurationError(f"{key}.{min(twice)}: comes twice; give what it uses a prefix")
+                found[key] |= one[key]
+            for key in (*LISTS, "above"):
+                found[key] = [*found.get(key, []), *one[key]]
+            if found["wheel"] and one["wheel"]:
+                raise ConfigurationError("wheel: comes twice; a template has one wheel, on both sides")
+            found["wheel"] = found["wheel"] or one["wheel"]
+    except ConfigurationError as error:
+        raise ConfigurationError(f"{path.name}: {error}") from None
     return {**found, "ports": own["ports"]}
-
-
-def _chosen(table: Mapping[str, Any], options: frozenset[str], path: Path) -> list[dict[str, Any]]:
-    """What a template uses of others, with the options that the vehicle takes."""
-    for use in table.get("use", []):
-        if "template" not in use or set(use) - {"template", "prefix", "with", "when"}:
-            raise ConfigurationError(
-                f"{path.name}: use: needed is template, allowed are prefix, with, when; found {use}"
-            )
-    return [use for use in table.get("use", []) if use.get("when") is None or use["when"] in options]
-
-
-def _listed(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """One child is a list of one."""
-    return {**entry, "child": [entry["child"]]} if isinstance(entry.get("child"), str) else dict(entry)
 
 
 def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
@@ -135,7 +120,7 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
         raise ConfigurationError(
             f"use.with.{free[0]}: missing; {use['template']}.toml needs it ({table['ports'][free[0]]})"
         )
-    elements = [entry["name"] for key in _LISTS for entry in table[key] if "name" in entry]
+    elements = [entry["name"] for key in LISTS for entry in table[key] if "name" in entry]
     own = {name: prefix + name for name in (*table["parts"], *table["hardpoints"], *elements)}
 
     def turned(value: Any, key: str = "") -> Any:
@@ -151,7 +136,7 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
     return {
         **table,
         **{key: {own[name]: turned(value) for name, value in table[key].items()} for key in ("parts", "hardpoints")},
-        **{key: [turned(entry) for entry in table[key]] for key in _LISTS},
+        **{key: [turned(entry) for entry in table[key]] for key in LISTS},
         "above": turned(table["above"], "at"),
         "wheel": turned(table["wheel"]),
     }
@@ -160,7 +145,20 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
 def _check(template: Template, raw: Mapping[str, Any]) -> None:
     """Every name of a part, point and joint leads somewhere, and names are names."""
     parts = {*template.parts, *template.ports, *FREE_PORTS}
-    joints = {joint.name for joint in template.joint if joint.name is not None}
+    joints = {joint.name: joint.kind for joint in template.joint if joint.name is not None}
+    names = [joint.name for joint in template.joint if joint.name is not None]
+    for name in names:
+        if names.count(name) > 1:
+            raise ConfigurationError(f"joint.{name}: comes twice; a joint has a name of its own")
+    for key, kinds in _ON.items():
+        for element in getattr(template, key):
+            if joints.get(element.joint, kinds[0]) not in kinds:
+                raise ConfigurationError(
+                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]}, needed is a "
+                    f"{' or a '.join(kinds)}"
+                )
+
+    used: set[str] = set()
 
     def look(where: str, table: Mapping[str, Any]) -> None:
         for key, value in table.items():
@@ -188,11 +186,18 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                     )
                 if known is not None and side not in ("", "left", "right", "middle"):
                     raise ConfigurationError(f"{where}.{key}: found side {side!r}, allowed are left, right, middle")
+                if known is template.hardpoints:
+                    used.add(head)
 
-    for key in _LISTS:
+    for key in LISTS:
         for position, entry in enumerate(raw[key]):
             look(f"{key}.{entry.get('name', position)}", entry)
     for name, part in raw["parts"].items():
         look(f"parts.{name}", part)
     look("wheel", raw["wheel"] or {})
     look("above", {"at": [point for pair in raw["above"] for point in pair]})
+    if spare := [name for name in template.hardpoints if name not in used]:
+        raise ConfigurationError(
+            f"hardpoints.{spare[0]}: nothing of the template uses it; take it out, or put it into [hardpoints] of the "
+            "vehicle file"
+        )

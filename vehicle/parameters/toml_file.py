@@ -191,9 +191,7 @@ def convert(hint: Any, value: Any, path: str) -> Any:
     if origin is tuple:
         if not isinstance(value, list | tuple):
             raise ConfigurationError(f"{path}: found {value!r}, needed is a list")
-        if typing.get_args(hint)[0] is str:
-            return tuple(convert(str, item, path) for item in value)
-        return tuple(_number(item, path) for item in value)
+        return tuple(convert(typing.get_args(hint)[0], item, path) for item in value)
     if hint is float:
         return _number(value, path)
     if hint is str and not isinstance(value, str):

@@ -19,6 +19,8 @@ class RolePart:
 
     def __post_init__(self) -> None:
         validate(self)
+        if not self.points:
+            raise ConfigurationError("RolePart.points: found none; a part hangs on one point or more")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,6 +42,14 @@ class Joint:
             raise ConfigurationError(f"Joint.at: missing; a {self.kind} has a point")
         if self.kind in ("hinge", "slide", "cardan") and (self.along is None) == (self.axis is None):
             raise ConfigurationError(f"Joint.along: a {self.kind} needs two points in along, or its axis, one of them")
+        if self.along is not None and (len(self.along) != 2 or self.along[0] == self.along[1]):
+            raise ConfigurationError(f"Joint.along: found {list(self.along)}; needed are two different points")
+        if self.axis is not None and not any(self.axis):
+            raise ConfigurationError(f"Joint.axis: found {list(self.axis)}; an axis has a length above 0")
+        if self.kind == "free" and self.parent != "world":
+            raise ConfigurationError(f"Joint.parent: found {self.parent!r}; a free part has no parent")
+        if not self.child:
+            raise ConfigurationError("Joint.child: found none; a joint holds one part or more")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
