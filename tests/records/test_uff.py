@@ -136,7 +136,8 @@ TEXT = function(np.linspace(1.0, 2.0, 50))
         (GOOD.replace(b"58b     1", b"58b     3"), "byte order 3"),
         (GOOD.replace(b"\x00\x00\x80?", b"\x80?"), "no end behind its 200 bytes of data|holds"),
         (TEXT.replace(b"1.00000e+00", b"1.0x000e+00"), "holds what is no number"),
-        (b"    -1\n    15\n         1\n    -1\n", "no function .* its datasets: 1 of 15"),
+        (b"    -1\n    15\n         1\n    -1\n", r"dataset 15 at byte 0 is no such dataset \(node \[1\] with 0 coord"),
+        (b"    -1\n   161\n         1\n    -1\n", r"no function, mode shape or node .* its datasets: 161 \(1\)"),
     ],
 )
 def test_damaged_files_are_refused(tmp_path, data, message):

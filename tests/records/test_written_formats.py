@@ -1,5 +1,6 @@
 """A run in the formats of other programs: read back by this one and by the foreign libraries."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,13 @@ from vehicle.commands.inspect import main as inspect
 from vehicle.commands.shaker import main as shaker
 from vehicle.errors import DataError
 from vehicle.excitation.signal_file import read_signal
+from vehicle.records import hdf_format, matlab_format
 from vehicle.records.channel import Channel, uniform_axis
 from vehicle.records.formats import read_columns
 from vehicle.records.frf import read_frf
+from vehicle.records.geometry import Geometry
 from vehicle.records.reader import read_record
-from vehicle.records.uff_writer import Geometry, write
+from vehicle.records.uff_writer import write
 
 TIME = uniform_axis(2048, 1.0 / 2048.0)
 SINE = np.sin(2.0 * np.pi * 5.0 * TIME)
@@ -41,7 +44,7 @@ def test_a_universal_file_comes_back(tmp_path):
     write(path, channels(), "test", GEOMETRY)
     found = read_record(path)
     plate, response, coherence = found.channels
-    assert found.program == "vehicle-on-shaker" and "15 (1), 82 (1)" in found.notices[0]
+    assert found.program == "vehicle-on-shaker" and found.notices == ("2 nodes, 1 lines and elements",)
     assert (plate.name, plate.unit, plate.rate, plate.place, plate.direction) == ("plate", "m", 2048.0, "1", "+Z")
     np.testing.assert_array_equal(plate.values, 1e-3 * SINE)
     assert (response.name, response.si_unit, response.place, response.direction) == ("H", "(m/s2)/(m)", "2", "-Z")
@@ -72,6 +75,25 @@ def test_the_foreign_library_reads_it(tmp_path):
     np.testing.assert_array_equal(response["data"][:37], channels()[1].values[3:])
 
 
+@pytest.mark.parametrize("form", ["uff", "mat", "hdf5"])
+def test_frequencies_that_are_not_even_come_back(tmp_path, form):
+    """As those of a run: lines of 1/60 Hz, every third up to a frequency and every sixth above."""
+    lines = np.concatenate([np.arange(60, 120, 3), np.arange(120, 181, 6)]) / 60.0
+    given = tuple(replace(one, axis=lines, values=one.values[: lines.size]) for one in channels()[1:])
+    path = tmp_path / "ours"
+    if form == "hdf5":
+        pytest.importorskip("h5py")
+    {"uff": write, "mat": matlab_format.write, "hdf5": hdf_format.write}[form](path, given, "test")
+    for ours, found in zip(given, read_record(path).channels, strict=True):
+        start = 3 if form == "uff" else 0  # UFF knows no missing value
+        assert found.axis is not None and (found.kind, found.function) == ("frequency", ours.function)
+        np.testing.assert_allclose(found.axis, lines[start:], rtol=1e-5 if form == "uff" else 1e-15)
+        np.testing.assert_allclose(found.values, ours.values[start:], rtol=1e-11)
+    if form == "uff":
+        pyuff = pytest.importorskip("pyuff")
+        np.testing.assert_allclose(pyuff.UFF(str(path)).read_sets(2)["x"], lines[3:], rtol=1e-5)
+
+
 def test_a_run_is_written_in_all_formats(tmp_path, capsys):
     source = tmp_path / "short.csv"
     time = np.arange(4000) / 500.0
@@ -93,6 +115,8 @@ def test_a_run_is_written_in_all_formats(tmp_path, capsys):
             row = response.response[response.channels.index("knuckle_fr_acc_z")]
             defined = np.isfinite(row)
             np.testing.assert_allclose(one.values[np.isfinite(one.values)], row[defined], rtol=1e-7)
+            assert one.axis is not None
+            np.testing.assert_allclose(one.axis[np.isfinite(one.values)], response.frequency[defined], rtol=1e-5)
             assert one.si_unit == "(m/s2)/(m)" and f"{one.name} coherence" in found
     # What a run writes drives the next one.
     again = read_signal(output / "time.uff")

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from vehicle.tuning.frf_target import FLOOR, LEAST_COHERENCE, log_deviation, log_ratio
+from vehicle.analysis.frf_agreement import log_ratio
+from vehicle.tuning.frf_target import FLOOR, LEAST_COHERENCE, log_deviation
 
 
 def test_magnitude_and_phase_of_the_ratio():

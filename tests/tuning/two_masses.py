@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vehicle.tuning.frf_target import log_ratio
+from vehicle.analysis.frf_agreement import log_ratio
 
 FREQUENCY = np.linspace(1.0, 25.0, 60)
 TRUE = {"lower": 2.5e5, "upper": 3e4, "damping": 1500.0}

@@ -12,6 +12,7 @@ from vehicle.car import Run
 from vehicle.records import hdf_format, matlab_format, rpc_format, uff_writer
 from vehicle.records.channel import Channel, uniform_axis
 from vehicle.records.formats import FORMATS
+from vehicle.records.geometry import Geometry
 from vehicle.records.table import Record
 
 WRITERS = ("csv", "npz", "mat", "uff", "rpc", "h5")
@@ -79,7 +80,7 @@ def _point(name: str) -> dict[str, Any]:
     return {"place": f"plate_{match['wheel']}", "direction": "+Z"} if match else {}  # a damper acts between two places
 
 
-def geometry(run: Run) -> uff_writer.Geometry:
+def geometry(run: Run) -> Geometry:
     """Places of a car in its design position, and lines from each plate over the places of its wheel."""
     car = run.car.vehicle.composition
     points = {one.name: tuple(one.at) for one in car.outputs}
@@ -89,7 +90,7 @@ def geometry(run: Run) -> uff_writer.Geometry:
         own = [name for name in points if re.search(rf"_{wheel.name}(_|$)", name)]
         points[plate] = tuple(wheel.patch)
         lines.append([plate, *sorted(own, key=lambda name: points[name][2])])
-    return uff_writer.Geometry(points=points, lines=[line for line in lines if len(line) > 1])
+    return Geometry(points=points, lines=[line for line in lines if len(line) > 1])
 
 
 def writer(

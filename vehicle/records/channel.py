@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.records.clock import clock_of_rounded, is_uniform, longest_step
+from vehicle.records.geometry import Geometry, ModeShape
 from vehicle.records.table import Vector
 from vehicle.records.units import find_ratio
 
@@ -94,6 +95,8 @@ class Measurement:
         program: what wrote it; empty where the file does not tell.
         start: date and time of the first sample, as the file tells it.
         notices: what was accepted although it is unusual.
+        geometry: points and lines, where the file holds them.
+        shapes: mode shapes, where the file holds them.
     """
 
     path: Path
@@ -103,6 +106,8 @@ class Measurement:
     program: str = ""
     start: str = ""
     notices: tuple[str, ...] = field(default=())
+    geometry: Geometry = field(default_factory=Geometry)
+    shapes: tuple[ModeShape, ...] = ()
 
 
 def exact_rate(rate: float) -> float:
@@ -114,6 +119,13 @@ def exact_rate(rate: float) -> float:
 def uniform_axis(count: int, step: float, start: float = 0.0) -> Vector:
     """Times or frequencies start + i step, (count,)."""
     return start + np.arange(count, dtype=np.float64) * step
+
+
+def even_step(axis: Vector) -> float | None:
+    """Step of an axis, (n,), whose values lie within a hundredth of a step of even ones; None of any other."""
+    step = float(axis[-1] - axis[0]) / max(axis.size - 1, 1)
+    away = np.max(np.abs(axis - uniform_axis(axis.size, step, float(axis[0]))))
+    return step if away <= 1e-2 * abs(step) else None
 
 
 def clock_step(step: float, digits: int = 6) -> tuple[float, str]:

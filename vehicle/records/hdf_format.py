@@ -1,6 +1,7 @@
 """HDF5: MAT files of version 7.3, and arrays with their units as attributes.
 
-Written are one array a channel, with the attributes name, unit, kind, start, step, function, place, direction.
+Written are one array a channel, with the attributes name, unit, kind, start, step, function, place, direction, and
+under `axes` the frequencies that are not even.
 """
 
 from __future__ import annotations
@@ -11,9 +12,12 @@ from typing import Any
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.records.channel import Channel, Measurement, uniform_axis
+from vehicle.records.channel import Channel, Measurement, even_step, uniform_axis
 from vehicle.records.matlab_format import channels_of
 from vehicle.records.reader import digest, extra
+
+AXES = "axes"
+"""Group of the axes that are not even, under the names of their channels."""
 
 
 def read(path: Path) -> Measurement:
@@ -74,11 +78,16 @@ def _arrays(name: str, one: Any, h5py: Any) -> list[Channel]:
     """Channels of an array: its columns, where it has two axes."""
     if not isinstance(one, h5py.Dataset) or one.dtype.kind not in "fiuc" or one.ndim not in (1, 2) or one.size < 2:
         return []
+    if name.startswith(f"{AXES}/"):
+        return []
     values = np.asarray(one[()])
     values = values.astype(complex if values.dtype.kind == "c" else np.float64).reshape(len(values), -1)
     step, start = one.attrs.get("step"), float(one.attrs.get("start", 0.0))
     kind = _attribute(one, "kind")
     axis = uniform_axis(len(values), float(step), start) if step is not None and step > 0.0 and kind else None
+    own = one.file.get(f"{AXES}/{name}")
+    if isinstance(own, h5py.Dataset) and own.shape == (len(values),) and kind:
+        axis = np.asarray(own[()], dtype=np.float64)
     label = _attribute(one, "name") or name
     return [
         Channel(
@@ -125,4 +134,7 @@ def write(path: Path, channels: tuple[Channel, ...], about: str) -> None:
             if one.axis is not None:
                 array.attrs["kind"] = one.kind
                 array.attrs["start"] = float(one.axis[0])
-                array.attrs["step"] = float(one.axis[-1] - one.axis[0]) / max(one.axis.size - 1, 1)
+                step = even_step(one.axis)
+                array.attrs["step"] = 0.0 if step is None else step
+                if step is None:
+                    file.create_dataset(f"{AXES}/{number:04d}", data=one.axis)

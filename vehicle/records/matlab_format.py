@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.records.channel import Channel, Measurement, check_length, clock_step, uniform_axis
+from vehicle.records.channel import Channel, Measurement, check_length, clock_step, even_step, uniform_axis
 from vehicle.records.matlab_elements import COMPRESSED, MATRIX, check_matrix
 from vehicle.records.reader import digest
 from vehicle.records.table import Vector
@@ -184,6 +184,7 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
                 function=function or ("time history" if kind == "time" else "spectrum"),
                 place=place,
                 direction=_text(_field(record.get("function_record"), "direction")),
+                reference=_text(_field(record.get("function_record"), "reference")),
                 remark=remark,
             )
         )
@@ -239,14 +240,15 @@ def structures(channels: tuple[Channel, ...]) -> dict[str, Any]:
     for number, one in enumerate(channels, 1):
         plain = "".join(sign if sign.isascii() and sign.isalnum() else "_" for sign in one.name)[:50]
         name = plain if plain and plain[0].isalpha() else f"channel_{plain}"
-        step = float((one.axis[-1] - one.axis[0]) / (one.axis.size - 1)) if one.axis is not None else 0.0
+        step = even_step(one.axis) if one.axis is not None else 0.0
         quantity = "s" if one.kind == "time" else "Hz"
         found[name if name not in found else f"{name}_{number}"] = {
             "x_values": {
                 "start_value": float(one.axis[0]) if one.axis is not None else 0.0,
-                "increment": step,
+                "increment": 0.0 if step is None else step,
                 "number_of_values": float(one.values.size),
                 "quantity": {"label": quantity},
+                **({"values": one.axis} if step is None else {}),
             },
             "y_values": {"values": one.values, "quantity": {"label": one.unit}},
             "function_record": {
@@ -254,6 +256,7 @@ def structures(channels: tuple[Channel, ...]) -> dict[str, Any]:
                 "type": one.function,
                 "point": one.place,
                 "direction": one.direction,
+                "reference": one.reference,
             },
         }
     return found

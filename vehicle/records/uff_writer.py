@@ -1,16 +1,16 @@
-"""Universal files as they are written: units, nodes, lines, and a binary dataset 58 for each channel."""
+"""Universal files as they are written: units, nodes, lines, a dataset 58 for each channel, a 55 for each mode."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError
-from vehicle.records.channel import Channel, Values
+from vehicle.records.channel import Channel, Values, even_step
+from vehicle.records.geometry import Geometry, ModeShape
 from vehicle.records.units import find_unit
 
 FUNCTIONS = {"time history": 1, "frequency response": 4, "coherence": 6}
@@ -18,36 +18,31 @@ CODES = {"displacement": 8, "velocity": 11, "acceleration": 12, "force": 13, "pr
 AXES = {"X": 1, "Y": 2, "Z": 3}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Geometry:
-    """Where the places are.
+def write(
+    path: Path,
+    channels: Sequence[Channel],
+    about: str,
+    geometry: Geometry | None = None,
+    shapes: Sequence[ModeShape] = (),
+) -> None:
+    """Write datasets 151, 164 (SI), 15, 82, 58b in double precision, and 55.
 
-    Attributes:
-        points: place to its coordinates [m].
-        lines: each a sequence of places that are drawn connected.
-    """
-
-    points: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    lines: Sequence[Sequence[str]] = ()
-
-
-def write(path: Path, channels: tuple[Channel, ...], about: str, geometry: Geometry | None = None) -> None:
-    """Write datasets 151, 164 (SI), 15, 82 and 58b in double precision.
-
-    A frequency response keeps its longest run of lines that are defined: the format knows no missing value. Time and
-    frequency steps have six digits in this format.
+    A frequency response keeps its longest run of lines that are defined: the format knows no missing value. Steps, and
+    frequencies that are not even, have six digits in this format; functions over such frequencies are written as text.
 
     Args:
         path: the file.
         channels: time histories, frequency responses and coherences over uniform axes.
         about: what the record is.
         geometry: of the places.
+        shapes: modes, whose points are places.
 
     Raises:
-        DataError: a channel without an axis, or a time history with a missing value.
+        DataError: a channel without an axis, or a time history with a missing value or uneven times.
     """
     shape = geometry or Geometry()
     places = list(dict.fromkeys([*shape.points, *(one.place for one in channels if one.place)]))
+    places += [name for name in dict.fromkeys(point for one in shapes for point in one.points) if name not in places]
     nodes = {place: number for number, place in enumerate(places, 1)}
     blocks = [_header(about)]
     if shape.points:
@@ -61,6 +56,7 @@ def write(path: Path, channels: tuple[Channel, ...], about: str, geometry: Geome
         rows = ["".join(f"{node:10d}" for node in ends[n : n + 8]) for n in range(0, len(ends), 8)]
         blocks.append(_set(82, [f"{number:10d}{len(ends):10d}{11:10d}", f"{'-'.join(line)[:80]:<80}", *rows]))
     blocks += [_function(path, one, nodes) for one in channels]
+    blocks += [_shape(one, nodes) for one in shapes]
     path.write_bytes(b"".join(blocks))
 
 
@@ -90,9 +86,16 @@ def _direction(text: str) -> int:
 def _function(path: Path, one: Channel, nodes: Mapping[str, int]) -> bytes:
     """A channel as dataset 58b."""
     values, axis = _defined(path, one)
-    step = float(axis[-1] - axis[0]) / (axis.size - 1)
+    step = even_step(axis)
+    if step is None and one.kind == "time":
+        raise DataError(f"{path}: {one.name} has uneven times; resample it")
     double = "<c16" if np.iscomplexobj(values) else "<f8"
-    raw = values.astype(double).tobytes()
+    if step is None:
+        form, body = f"{58:6d}{'':74}", _uneven(axis, values)
+    else:
+        raw = values.astype(double).tobytes()
+        form = f"{58:6d}b{1:6d}{2:6d}{11:12d}{len(raw):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
+        body = raw + b"\n"
     upper, _, lower = one.unit.partition(")/") if one.unit.startswith("(") else (one.unit, "", "")
     node = nodes.get(one.place, 0)
     reference = one.reference[:-2] if one.reference[-2:-1] in ("+", "-") else one.reference
@@ -103,18 +106,60 @@ def _function(path: Path, one: Channel, nodes: Mapping[str, int]) -> bytes:
 
     rows = [
         "    -1",
-        f"{58:6d}b{1:6d}{2:6d}{11:12d}{len(raw):12d}{0:6d}{0:6d}{0:12d}{0:12d}",
+        form,
         f"{one.name[:80]:<80}",
         *[f"{'NONE':<80}"] * 4,
         f"{FUNCTIONS.get(one.function, 0):5d}{0:10d}{0:5d}{0:10d} {'NONE':<10}{node:10d}{_direction(one.direction):4d} "
         f"{'NONE':<10}{nodes.get(reference, 0):10d}{to:4d}",
-        f"{6 if double == '<c16' else 4:10d}{values.size:10d}{1:10d}{axis[0]:13.5e}{step:13.5e}{0.0:13.5e}",
+        f"{6 if double == '<c16' else 4:10d}{values.size:10d}"
+        + (f"{0:10d}{0.0:13.5e}{0.0:13.5e}" if step is None else f"{1:10d}{axis[0]:13.5e}{step:13.5e}")
+        + f"{0.0:13.5e}",
         item(17, "s", "Time") if one.kind == "time" else item(18, "Hz", "Frequency"),
         item(*_label(upper.lstrip("(")), one.name),
         item(*_label(lower.strip("()"))) if lower else item(0, "NONE"),
         item(0, "NONE"),
     ]
-    return ("\n".join(rows) + "\n").encode("ascii", "replace") + raw + b"\n    -1\n"
+    return ("\n".join(rows) + "\n").encode("ascii", "replace") + body + b"    -1\n"
+
+
+def _uneven(axis: NDArray[np.float64], values: Values) -> bytes:
+    """Rows of a frequency and its value, complex ones in a row each, real ones two in a row."""
+    parts = [
+        f"{x:13.5e}" + "".join(f"{number:20.11e}" for number in _parts(value))
+        for x, value in zip(axis, values, strict=True)
+    ]
+    if not np.iscomplexobj(values):
+        parts = ["".join(parts[n : n + 2]) for n in range(0, len(parts), 2)]
+    return ("\n".join(parts) + "\n").encode("ascii")
+
+
+def _parts(value: complex) -> tuple[float, ...]:
+    return (value.real, value.imag) if isinstance(value, complex) else (value,)
+
+
+def _shape(one: ModeShape, nodes: Mapping[str, int]) -> bytes:
+    """A mode as dataset 55; a complex one by its eigenvalue and Modal A, with Modal B = -s A."""
+    complex_one = one.is_complex
+    components = 6 if np.any(one.shape[:, 3:]) else 3
+    code = CODES.get(one.quantity, 8)
+    rows = [f"{text[:80] or 'NONE':<80}" for text in ("", "", "", one.name, f"{one.frequency:.6g} Hz")]
+    rows.append(
+        f"{1:10d}{3 if complex_one else 2:10d}{3 if components == 6 else 2:10d}{code:10d}{5 if complex_one else 2:10d}"
+        f"{components:10d}"
+    )
+    size = 2.0 * np.pi * one.frequency
+    if complex_one:
+        pole = size * complex(-one.damping_ratio, np.sqrt(max(1.0 - one.damping_ratio**2, 0.0)))
+        numbers = [part for value in (pole, one.modal_a, -pole * one.modal_a) for part in (value.real, value.imag)]
+    else:
+        numbers = [one.frequency, one.modal_mass, one.damping_ratio, 0.0]
+    rows.append(f"{2:10d}{len(numbers):10d}{1:10d}{one.number:10d}")
+    rows.append("".join(f"{number:13.5e}" for number in numbers))
+    for point, motion in zip(one.points, one.shape[:, :components], strict=True):
+        values = [part for value in motion for part in ((value.real, value.imag) if complex_one else (value.real,))]
+        rows.append(f"{nodes[point]:10d}")
+        rows += ["".join(f"{number:13.5e}" for number in values[n : n + 6]) for n in range(0, len(values), 6)]
+    return _set(55, rows)
 
 
 def _defined(path: Path, one: Channel) -> tuple[Values, NDArray[np.float64]]:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse, frequency_response
+from vehicle.analysis.frf_agreement import log_ratio
 from vehicle.analysis.local_rational import local_rational_response
 from vehicle.car import Car, Run
 from vehicle.errors import ConfigurationError, DataError
@@ -113,29 +114,6 @@ class FrfTarget:
         scaled = np.divide(logarithm, self.deviation, out=np.full(known.shape, np.nan + 0j), where=known)
         rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)
         return np.where(np.isfinite(rows), rows, 0.0)
-
-
-def log_ratio(measured: npt.ArrayLike, model: npt.ArrayLike) -> Complex:
-    """ln(H / Hm) = ln|H / Hm| + j arg(H / Hm), with the phase of the ratio between -pi and pi.
-
-    The phase is that of one FRF relative to the other, so that the turns both have in common drop out. It is not
-    unwrapped over frequency: one noisy point near pi would then add a whole turn to all points above it, and the sum of
-    squares would jump, whereas the square of the principal value is continuous everywhere.
-
-    Args:
-        measured: H.
-        model: Hm, same shape.
-
-    Returns:
-        The logarithm; NaN where either is undefined or zero.
-    """
-    top, bottom = np.asarray(measured, dtype=complex), np.asarray(model, dtype=complex)
-    fine = np.isfinite(top) & np.isfinite(bottom) & (top != 0.0) & (bottom != 0.0)
-    ratio = np.full(top.shape, complex(np.nan, np.nan))
-    np.divide(top, bottom, out=ratio, where=fine)
-    logarithm = np.full(top.shape, complex(np.nan, np.nan))
-    np.log(ratio, out=logarithm, where=fine)
-    return logarithm
 
 
 def log_deviation(coherence: npt.ArrayLike, averages: float) -> Vector:
