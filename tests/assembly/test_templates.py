@@ -97,9 +97,9 @@ def table() -> dict[str, Any]:
     w = 2.0 * np.pi * 5.0
     seat = {
         "template": "seat_occupant",
-        "hardpoints": {"cushion": [2.1, -0.37, 0.85]},
-        "parts": {"seat_frame": mass(FRAME), "occupant": mass(OCCUPANT)},
-        "bushings": {"cushion": {"stiffness": [1e5, 1e5, 4e4], "damping": [500.0] * 3, "rotational_stiffness": 5e3}},
+        "hardpoints": {"rail": [2.1, -0.37, 0.85]},
+        "parts": {"seat": mass(FRAME), "occupant": mass(OCCUPANT)},
+        "bushings": {"cushion": {"stiffness": [1e5, 1e5, 4e4], "damping": [500.0] * 3, "rotational_stiffness": 0.0}},
         "occupant_spring": {"stiffness": OCCUPANT * w**2, "damping": 2.0 * 0.475 * w * OCCUPANT},
     }
     body = {"mass": 1100.0, "cog": [1.9, 0.0, 0.9], "ixx_improved": 1350.0, "iyy": 6900.0, "izz": 5900.0}

@@ -125,11 +125,11 @@ def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[
         ConfigurationError: a path does not exist, or its value in the first row is none.
     """
     from vehicle.errors import ConfigurationError
+    from vehicle.parameters.base_car import vehicle_table
     from vehicle.parameters.paths import override
     from vehicle.parameters.shipped import FOCUS_FILE
-    from vehicle.parameters.toml_file import read_table as read_toml
 
-    table = override(read_toml(FOCUS_FILE if vehicle is None else vehicle), overrides)
+    table = override(vehicle_table(FOCUS_FILE if vehicle is None else vehicle), overrides)
     try:
         override(table, [f"{path}={value}" for path, value in zip(paths, row, strict=True)])
     except ConfigurationError as error:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -52,11 +52,11 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
             loop of joints; the message names table and template.
     """
     car: dict[str, Instance] = {}
-    for path, numbers in _instances(table, "", ""):
-        found = read_template(convert(str, numbers["template"], f"{path}.template"), numbers, folders)
-        car[path] = Instance(name=path, numbers=numbers, template=found, others=car)
     given = {key: convert(dict, table.get(key, {}), key) for key in ("hardpoints", "connection", "outputs", "alias")}
     own = {name: own_point(f"hardpoints.{name}", value) for name, value in given["hardpoints"].items()}
+    for path, numbers in _instances(table, "", ""):
+        found = read_template(convert(str, numbers["template"], f"{path}.template"), numbers, folders)
+        car[path] = Instance(name=path, numbers=numbers, template=found, others=car, given=own)
     points = dict(itertools.chain.from_iterable(map(_points, car.values())))
     if twice := sorted(set(own) & set(points)):
         raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; give it another one")
@@ -71,14 +71,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     connections.sort(key=lambda one: one.law is None)
     connections += [further_connection(name, one, names, points) for name, one in given["connection"].items()]
     springs = [placed_spring(*one) for one in _elements(car, "spring")]
-    outputs = [
-        PlacedOutput(
-            name=i.label(e.name, side), on=i.part(e.on, side), at=i.point(e.at, side), point=i.point_name(e.at, side)
-        )
-        for i in car.values()
-        for _, e, side in sorted(_elements({i.name: i}, "output"), key=lambda one: _rank(one[2]))
-    ]
-    outputs += [further_output(name, one, names, points) for name, one in given["outputs"].items()]
+    added = [further_output(name, one, names, points) for name, one in given["outputs"].items()]
     composed = Composition(
         parts=tuple(parts),
         connections=tuple(connections),
@@ -93,7 +86,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
             )
             for i, e, side in _elements(car, "damper")
         ),
-        outputs=tuple(outputs),
+        outputs=tuple(_outputs(car, added)),
         wheels=tuple(wheels),
         points=points,
         kinds=_kinds(car, table),
@@ -147,6 +140,18 @@ def _points(instance: Instance) -> Iterator[tuple[str, Point]]:
     for name, side in itertools.product(instance.template.hardpoints, instance.sides()):
         if side is not None or not instance.template.mirrored:
             yield instance.label(name, side), instance.point(name, side)
+
+
+def _outputs(car: Mapping[str, Instance], added: Sequence[PlacedOutput]) -> list[PlacedOutput]:
+    """Outputs of the templates, then those of the file; what the first instance names alone is before the file."""
+    found, firsts = list[PlacedOutput](), set[str]()
+    for i in car.values():
+        for _, e, side in sorted(_elements({i.name: i}, "output"), key=lambda one: _rank(one[2])):
+            name = e.name if e.first and e.name not in firsts else i.label(e.name, side)
+            firsts |= {e.name} if e.first else set()
+            on, at = i.part(e.on, side), i.point(e.at, side)
+            found.append(PlacedOutput(name=name, on=on, at=at, point=i.point_name(e.at, side)))
+    return [*found, *(one for one in added if one.name not in firsts)]
 
 
 def _rank(side: str | None) -> int:

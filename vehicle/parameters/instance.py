@@ -28,6 +28,7 @@ class Instance:
         numbers: the table.
         template: topology.
         others: all instances of the car by name.
+        given: hardpoints of the vehicle file by name [m].
         typed: parameter objects of the whole instance that are there already, by path.
         taken: tables and points of a side that something took.
     """
@@ -36,6 +37,7 @@ class Instance:
     numbers: Mapping[str, Any]
     template: Template
     others: Mapping[str, Instance]
+    given: Mapping[str, Point] = field(default_factory=dict)
     typed: dict[str, Any] = field(default_factory=dict)
     taken: set[str] = field(default_factory=set)
 
@@ -140,7 +142,7 @@ class Instance:
         return self.others[other].part(inner, (own or side) if self.others[other].template.mirrored else None)
 
     def point(self, ref: str, side: str | None, asked: tuple[str, ...] = ()) -> Point:
-        """A point of the template on a side [m]; "other.name" of the file is the point of another instance.
+        """A point on a side [m]: its coordinates, a hardpoint of the file, or "other.name", that of an instance.
 
         Args:
             ref: name of the template, with its side where it has one.
@@ -164,11 +166,13 @@ class Instance:
             self.taken.add(f"{own}.hardpoints.{name}")
             return point
         value = self.numbers["hardpoints"][name]
+        value = self.given.get(value, value) if isinstance(value, str) else value
         if isinstance(value, str):
             other, _, there = value.rpartition(".")
             if other not in self.others or there not in self.others[other].template.hardpoints:
                 raise ConfigurationError(
-                    f"{path}: found {value!r}; needed are coordinates, or INSTANCE.POINT of another one"
+                    f"{path}: found {value!r}; needed are coordinates, the name of a point of [hardpoints], or "
+                    "INSTANCE.POINT of another one"
                 )
             if path in asked:
                 raise ConfigurationError(f"{path}: found {value!r}, which leads back to it; give one its coordinates")

@@ -108,6 +108,8 @@ class Output:
     name: str
     on: str
     at: str
+    first: bool = False
+    """of the first instance it has this name alone, in place of an output of the vehicle file"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

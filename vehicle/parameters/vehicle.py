@@ -9,6 +9,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, CORNERS, acceleration_channels, wheel_channels
+from vehicle.parameters.base_car import vehicle_table
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.compose import compose
 from vehicle.parameters.composition import Composition
@@ -19,7 +20,7 @@ from vehicle.parameters.paths import override
 from vehicle.parameters.plausible import require_plausible
 from vehicle.parameters.quantity import field_quantity, quantity, validate
 from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
-from vehicle.parameters.toml_file import build, convert, read_table
+from vehicle.parameters.toml_file import build, convert
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -115,6 +116,11 @@ class Vehicle:
             if name not in known:
                 what = "channel" if len(known) >= len(self.channels) else "acceleration channel"
                 raise ConfigurationError(f"no {what} {name!r}; there are {', '.join(known)}")
+
+    @property
+    def seated(self) -> bool:
+        """Whether the place `seat` is a cushion: on a part of its own, not a point of the body."""
+        return any(output.name == "seat" and output.on != "body" for output in self.composition.outputs)
 
     @property
     def load_channels(self) -> tuple[str, ...]:
@@ -215,7 +221,7 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
     """
     file = FOCUS_FILE if path is None else vehicle_file(path)
     try:
-        return vehicle_of(override(read_table(file), overrides), file.parent)
+        return vehicle_of(override(vehicle_table(file), overrides), file.parent)
     except ConfigurationError as error:
         if path is None:
             raise

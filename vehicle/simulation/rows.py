@@ -44,12 +44,13 @@ def joint_dampers(model: mujoco.MjModel) -> Vector:
 
 
 def damping_factors(model: mujoco.MjModel) -> Vector:
-    """Factor 1 + K h2/12 of the damping inside joints, per velocity coordinate; (nv,).
+    """Factor 1 + w2 h2/12 of the damping inside joints, per velocity coordinate; (nv,).
 
     A centred damping is weaker by w2 h2/12 than the average of all else. That of a mode counts at its resonance, where
-    w2 = K, its mass being 1.
+    w2 = K / M, M being the diagonal of the mass matrix in the design position: 1 of a mode.
     """
-    return np.asarray(1.0 + FOURTH_ORDER * joint_springs(model) * model.opt.timestep**2)
+    squares = joint_springs(model) / model.dof_M0
+    return np.asarray(1.0 + FOURTH_ORDER * squares * model.opt.timestep**2)
 
 
 def joint_weights(model: mujoco.MjModel) -> Vector:

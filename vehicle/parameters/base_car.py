@@ -1,0 +1,49 @@
+"""The table of a vehicle file: its own, or laid over that of the car that it names as its base."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.parameters.shipped import VEHICLES, vehicle_file
+from vehicle.parameters.toml_file import convert, read_table
+
+
+def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
+    """Read a vehicle file; with `base = "focus_road"` it holds only what differs from that car.
+
+    Tables are laid over those of the base, key by key; one that names a template takes the place of the base's.
+
+    Args:
+        path: of the file, or the name of a shipped car.
+        above: files that build on it.
+
+    Raises:
+        ConfigurationError: the file or its base cannot be read, or a file builds on itself.
+    """
+    file = vehicle_file(path)
+    table = read_table(file)
+    if "base" not in table:
+        return table
+    name = convert(str, table.pop("base"), "base")
+    beside = file.parent / name
+    base = beside if beside.is_file() else vehicle_file(name)
+    if not base.is_file():
+        shipped = ", ".join(sorted(folder.name for folder in VEHICLES.iterdir() if folder.is_dir()))
+        raise ConfigurationError(
+            f"base: found {name!r}; needed is a shipped car ({shipped}) or a vehicle file beside this one"
+        )
+    if base.resolve() in (*above, file.resolve()):
+        raise ConfigurationError(f"base: {file} builds on itself; name another car")
+    return _over(vehicle_table(base, (*above, file.resolve())), table)
+
+
+def _over(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """A table laid over another one."""
+    found = dict(below)
+    for key, value in above.items():
+        both = isinstance(value, Mapping) and isinstance(below.get(key), Mapping)
+        found[key] = _over(below[key], value) if both and "template" not in value else value
+    return found
