@@ -7,6 +7,8 @@ from pathlib import Path
 
 from vehicle.excitation.band import LOWEST_FREQUENCY_HZ, SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER, UPPER_BAND_EDGE_HZ
 from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
+from vehicle.excitation.four_post import HIGHEST_HZ, LOWEST_HZ, ROAD_CLASS, SPEED_KMH, four_post
+from vehicle.excitation.four_post import SEED as FOUR_POST_SEED
 from vehicle.excitation.input_files import INPUT_FOLDER, find_input
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
@@ -23,6 +25,15 @@ SEED = 2006
 
 FRAME = "frame: z up, positive displacement lifts the plate; SI units; made by: python -m scenarios.inputs.make_inputs"
 
+
+FOUR_POST = {
+    "heave": "all four plates alike",
+    "pitch": "front plates against rear plates",
+    "roll": "right plates against left plates",
+    "warp": "plates of one diagonal against those of the other",
+    "four_plates": "four plates that move independently of each other, for FRFs to each",
+}
+"""Inputs of a four-post rig, and how their plates move."""
 
 QUICK_DURATION = 5.0
 """Length of the signals with --quick [s]."""
@@ -68,6 +79,19 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
                 f"{name}: x = A/2 (1 - cos(6 pi (t - {BUMP_START_S:g} s))), one period, peak height A = {height:.1e} m",
                 f"plus random noise, RMS {NOISE_RMS:.0e} m before and after the bump, constant velocity PSD "
                 f"{band}, seed {NOISE_SEED}, {signal.duration:g} s at 1000 Hz",
+                FRAME,
+            ],
+        )
+    for name, how in FOUR_POST.items():
+        signal = four_post(name)
+        inputs[name] = (
+            signal,
+            [
+                f"{name}: random displacement of {how}, constant velocity PSD",
+                f"RMS {1e3 * signal.rms('fr'):.3f} mm of each plate: class {ROAD_CLASS} of ISO 8608 at {SPEED_KMH:g} "
+                f"km/h, band {LOWEST_HZ:g} to {HIGHEST_HZ:g} Hz, seed {FOUR_POST_SEED}, {signal.duration:g} s at "
+                f"{1.0 / signal.timestep:g} Hz",
+                "begins and ends at rest (half cosine of 0.5 s at both ends)",
                 FRAME,
             ],
         )

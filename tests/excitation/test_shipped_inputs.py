@@ -6,13 +6,14 @@ import sys
 import numpy as np
 import pytest
 
-from scenarios.inputs.make_inputs import HEIGHTS, LEVELS
+from scenarios.inputs.make_inputs import FOUR_POST, HEIGHTS, LEVELS
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.bump import bump_shape
+from vehicle.excitation.four_post import MOTIONS, level_rms
 from vehicle.excitation.input_files import INPUT_FOLDER, find_input, shipped_inputs
 from vehicle.excitation.signal_file import read_signal
 
-NAMES = [f"{name}.csv" for name in (*LEVELS, *HEIGHTS)]
+NAMES = [f"{name}.csv" for name in (*LEVELS, *HEIGHTS, *FOUR_POST)]
 
 
 def test_the_script_makes_the_shipped_files_byte_for_byte(tmp_path):
@@ -46,6 +47,34 @@ def test_bump_inputs_hold_the_bump_and_the_noise(name, height):
     assert np.max(np.abs(noise)) < 2.5e-4  # 5 sigma: nothing else is in the file
 
 
+@pytest.mark.parametrize("name", MOTIONS)
+def test_four_post_inputs_are_one_noise_in_a_fixed_combination(name):
+    signal = read_signal(find_input(f"{name}.csv"))
+    assert signal.notices == () and signal.wheels == ("fr", "fl", "rr", "rl")
+    assert (signal.duration, signal.timestep) == (60.0, 4e-3)
+    for wheel, factor in MOTIONS[name].items():
+        np.testing.assert_array_equal(signal.displacement[wheel], factor * signal.displacement["fr"])
+        assert signal.rms(wheel) == pytest.approx(level_rms(), rel=1e-6)  # 7 digits
+    # The four combinations are orthogonal: together they are all that four plates can do.
+    table = np.array([list(factors.values()) for factors in MOTIONS.values()])
+    np.testing.assert_array_equal(table @ table.T, 4.0 * np.eye(4))
+
+
+def test_the_level_of_the_four_post_inputs_is_that_of_a_road_of_class_a():
+    """The velocity PSD of ISO 8608 in space, (2 pi n)^2 Gd(n) = 6.3e-6 m for class A, times V, over the band."""
+    velocity_psd = 6.3e-6 * 80.0 / 3.6
+    displacement = velocity_psd / (2.0 * np.pi) ** 2 * (1.0 / 0.5 - 1.0 / 40.0)
+    assert level_rms() == pytest.approx(np.sqrt(displacement), rel=0.002)  # the standard prints two digits
+
+
+def test_the_plates_of_four_plates_are_unrelated():
+    signal = read_signal(find_input("four_plates.csv"))
+    assert signal.notices == ()
+    related = np.corrcoef([signal.displacement[wheel] for wheel in signal.wheels])
+    # Few lines near 0.5 Hz hold most of the displacement: some 10 degrees of freedom, 1 / sqrt(10).
+    assert np.max(np.abs(related - np.eye(4))) < 0.4
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_files_are_small_and_say_what_they_are(name):
     path = INPUT_FOLDER / name
@@ -71,7 +100,8 @@ def test_a_miss_lists_the_names(tmp_path, monkeypatch):
         find_input("lov.csv")
     assert str(caught.value) == (
         "input 'lov.csv' not found: no such file, and none of that name is shipped. Did you mean low.csv? "
-        "Give the path of a CSV file or one of: bump_1p5mm.csv, bump_7p5mm.csv, high.csv, low.csv, mid.csv"
+        "Give the path of a CSV file or one of: bump_1p5mm.csv, bump_7p5mm.csv, four_plates.csv, heave.csv, high.csv, "
+        "low.csv, mid.csv, pitch.csv, roll.csv, warp.csv"
     )
     assert caught.value.exit_code == 2
 
