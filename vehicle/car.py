@@ -19,10 +19,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
-from vehicle.analysis.dependence import common_motions, what_moves
-from vehicle.analysis.frf import FrequencyResponse, frequency_responses
+from vehicle.analysis.dependence import what_moves
+from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.input_floor import rounding_step
-from vehicle.analysis.local_rational import local_rational_responses
+from vehicle.analysis.motion_response import MotionResponse, motion_responses
 from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import Signal
@@ -252,37 +252,43 @@ class Run:
             DataError: the record is too short, or no plate moves.
             DependentInputsError: one plate moves as the other some time before.
         """
+        moving = self.recording.excited
+        if moving and wheel is not None and wheel not in moving:
+            raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
+        found = self.frfs(channels, window=window)
+        asked = found[0].first if wheel is None else wheel
+        chosen = next(number for number, group in enumerate(found) if asked in group.motion)
+        note = what_moves([group.motion for group in found], chosen)
+        response = found[chosen].response
+        return dataclasses.replace(response, reasons=(*([note] if note else []), *response.reasons))
+
+    def frfs(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> tuple[MotionResponse, ...]:
+        """FRFs of acceleration channels to each plate that moves by itself, separated; arguments as of `frf`.
+
+        Returns:
+            One for each independent motion; plates that move together without a delay are one.
+
+        Raises:
+            DataError, DependentInputsError: as of `frf`.
+        """
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
-        responses = np.array([self.recording[name] for name in names])
-        step = self.recording.timestep
         moving = self.recording.excited
         if not moving:
             raise DataError(
                 f"{self.signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that "
                 "moves one"
             )
-        plates = tuple(f"plate_{one}_displacement" for one in moving)
-        inputs = np.array([self.recording[plate] for plate in plates])
-        notes, chosen = [], 0
-        if wheel is not None and wheel not in moving:
-            raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
-        if len(plates) > 1:
-            groups = common_motions(step, inputs, plates, FRF_BAND)
-            asked = moving.index(wheel or moving[0])
-            chosen = next(number for number, group in enumerate(groups) if asked in group)
-            notes.append(what_moves(plates, groups, chosen))
-            kept = [next(iter(group)) for group in groups]
-            inputs, plates, moving = inputs[kept], tuple(plates[i] for i in kept), tuple(moving[i] for i in kept)
-        if window is not None:
-            found = frequency_responses(
-                step, inputs, responses, window_s=window, band=FRF_BAND, input_names=plates, names=names
-            )[chosen]
-        else:
-            rounding = [rounding_step(self.signal.displacement[one]) for one in moving]
-            found = local_rational_responses(
-                step, inputs, responses, band=FRF_BAND, names=names, input_names=plates, rounding=rounding
-            )[chosen]
-        return dataclasses.replace(found, reasons=(*notes, *found.reasons))
+        plates = {one: f"plate_{one}_displacement" for one in moving}
+        return motion_responses(
+            self.recording.timestep,
+            {one: self.recording[plate] for one, plate in plates.items()},
+            np.array([self.recording[name] for name in names]),
+            labels=plates,
+            names=names,
+            band=FRF_BAND,
+            rounding={one: rounding_step(self.signal.displacement[one]) for one in moving},
+            window=window,
+        )
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
         """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""

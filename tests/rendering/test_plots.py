@@ -12,8 +12,10 @@ from matplotlib.figure import Figure
 
 from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.motion_response import MotionResponse
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.rendering.figure import wrapped_phase
+from vehicle.rendering.frf_plot import plot_frfs
 from vehicle.rendering.plots import plot_frf, plot_time
 from vehicle.rendering.recorded_run import excerpt_start, liveliest
 
@@ -159,6 +161,38 @@ def test_frf_plot_is_grey_where_the_input_tells_nothing_and_shows_the_random_err
     row = CHANNELS.index("knuckle_fr_acc_z")
     shown = np.abs(response.response[row][(response.frequency < 20.0) | (response.frequency > 30.0)])
     assert top == pytest.approx((1.0 + 1.96 * 0.05) * shown.max(), rel=1e-6)
+
+
+def test_frfs_to_several_plates_are_lines_that_name_them(long_run, response, tmp_path, figures):
+    factors = {"fr": 1.0, "fl": 0.3}
+    responses = [
+        MotionResponse(motion={wheel: 1.0}, response=dataclasses.replace(response, response=factor * response.response))
+        for wheel, factor in factors.items()
+    ]
+    plot_frfs(tmp_path / "frf.png", long_run, responses, "caption")
+    axes = every_axis(figures[0])
+    assert figures[0].get_suptitle() == "FRFs to each of 2 plates, which act at once"
+    assert [axis.get_title() for axis in axes[:3]] == [
+        "Seat rail, vertical",
+        "Engine, vertical",
+        "Wheel carrier right, vertical",
+    ]
+    lines = {line.get_label(): line for line in axes[0].get_lines()}
+    assert set(lines) == {"plate right", "plate left"}
+    row = CHANNELS.index("seat_rail_acc_z")
+    np.testing.assert_allclose(lines["plate left"].get_ydata(), 0.3 * np.abs(response.response[row]))
+    assert axes[6].get_ylabel() == "multiple coherence [-]"
+
+
+def test_a_common_motion_is_said_in_the_title(long_run, response, tmp_path, figures):
+    for left, words in ((1.0, "right, left"), (-1.0, "right (+1), left (-1)")):
+        plot_frfs(
+            tmp_path / "frf.png",
+            long_run,
+            [MotionResponse(motion={"fr": 1.0, "fl": left}, response=response)],
+            "",
+        )
+        assert figures[-1].get_suptitle() == f"FRFs to the common motion of plates {words}"
 
 
 def test_liveliest_stretch():

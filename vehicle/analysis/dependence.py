@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,9 +141,9 @@ def common_motions(
     return groups
 
 
-def motion_words(group: Mapping[int, float]) -> str:
-    """How the inputs of a group move: alike, or together with their factors."""
-    factors = list(group.values())[1:]
+def motion_words(motion: Mapping[Any, float]) -> str:
+    """How the inputs of a motion move: alike, or together with their factors."""
+    factors = list(motion.values())[1:]
     if all(abs(factor - 1.0) < ALIKE for factor in factors):
         return "alike"
     if len(factors) == 1:
@@ -150,21 +151,30 @@ def motion_words(group: Mapping[int, float]) -> str:
     return f"together, {', '.join(f'{factor:.4g}' for factor in factors)} times the first"
 
 
-def what_moves(names: Sequence[str], groups: Sequence[Mapping[int, float]], chosen: int) -> str:
-    """A sentence on plates that move at once, and what FRFs are to.
+def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None) -> str:
+    """A sentence on plates that move at once, and what FRFs are to; empty of one plate alone.
 
     Args:
-        names: of the plates.
-        groups: as of `common_motions`.
-        chosen: number of the group that the FRFs are to.
+        motions: that are independent of each other: wheel to its factor, 1 of the first.
+        chosen: number of the motion that the FRFs are to; None of FRFs to each.
     """
-    group, first = groups[chosen], names[next(iter(groups[chosen]))]
-    subject, every = ("both plates move", "both") if len(names) == 2 else (f"{len(names)} plates move", "all")
-    if len(group) == 1:
+    wheels = [wheel for motion in motions for wheel in motion]
+    if len(wheels) == 1:
+        return ""
+    subject, every = ("both plates move", "both") if len(wheels) == 2 else (f"{len(wheels)} plates move", "all")
+    if len(motions) > 1 and chosen is None:
+        subject += " independently of each other" if len(motions) == len(wheels) else ""
+        shared = [f"; {', '.join(motion)} move {motion_words(motion)}" for motion in motions if len(motion) > 1]
+        said = f"{subject}{''.join(shared)}: the FRFs are separated, to {', '.join(next(iter(m)) for m in motions)}"
+        return f"{said}; the coherence is that with {every}"
+    motion = motions[chosen or 0]
+    first = f"plate_{next(iter(motion))}_displacement"
+    if len(motion) == 1:
         return f"{subject}: the FRFs are those to {first} alone, the coherence is that with {every}"
-    if len(groups) > 1:
-        subject, every = f"{subject}, of them {', '.join(names[i] for i in group)}", "these"
-    together = motion_words(group)
+    if len(motions) > 1:
+        plates = ", ".join(f"plate_{wheel}_displacement" for wheel in motion)
+        subject, every = f"{subject}, of them {plates}", "these"
+    together = motion_words(motion)
     return f"{subject} {together}: the FRFs are those to " + (
         "their common motion" if together == "alike" else f"{first} while {every} do"
     )

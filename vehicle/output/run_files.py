@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from vehicle.analysis.comfort import settling
-from vehicle.analysis.dependence import DependentInputsError, common_motions
+from vehicle.analysis.dependence import DependentInputsError, common_motions, what_moves
 from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.motion_response import MotionResponse
 from vehicle.analysis.peaks import resonances
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
@@ -27,7 +28,8 @@ from vehicle.records.formats import FORMATS
 from vehicle.records.frf import write_frf
 from vehicle.records.table import Record
 from vehicle.records.text_format import write_table
-from vehicle.rendering.plots import plot_frf, plot_time
+from vehicle.rendering.frf_plot import plot_frfs
+from vehicle.rendering.plots import plot_time
 
 COMFORT_PLACES = ("seat_rail", "seat")
 PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
@@ -88,9 +90,9 @@ def write_run(
         VehicleError: a file cannot be made or written.
     """
     channels = run.car.vehicle.acceleration_channels
-    response, missing = _frf(run, DependentInputsError if road is None else DataError)
+    responses, missing = _frfs(run, DependentInputsError if road is None else DataError)
     files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
-    if response is not None:
+    if responses:
         files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
     if road is not None:
         files["psd"] = "psd.csv"
@@ -101,21 +103,25 @@ def write_run(
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME
     write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, frame))
-    if response is not None:
-        found = response
-        write_whole(folder / "frf.csv", lambda path: write_frf(path, found, channels, FRAME))
-        caption = _caption(run, found)
-        write_whole(folder / "frf.png", lambda path: plot_frf(path, run, found, caption))
+    if responses:
+        first, *others = responses
+        further, words = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
+        write_whole(
+            folder / "frf.csv",
+            lambda path: write_frf(path, first.response, channels, FRAME, further=further, words=words),
+        )
+        caption = _caption(run, first.response)
+        write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
     for one in dict.fromkeys(formats):
         if one != time_format:
             files[f"time_{one}"] = f"time.{one}"
-            write_whole(folder / f"time.{one}", writer(one, run, response, channels, FRAME))
+            write_whole(folder / f"time.{one}", writer(one, run, responses, channels, FRAME))
     write_whole(folder / "time.png", lambda path: plot_time(path, run))
     if video is not None:
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
         files["video"] = str(name)
-    summary = summarise(run, response, files)
+    summary = summarise(run, responses, files)
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing
@@ -133,12 +139,12 @@ def _write_psd(path: Path, run: Run) -> None:
     write_table(path, cells, [found.frequency[inside], *found.density[:, inside]], [method, f"frame: {FRAME}"])
 
 
-def _frf(run: Run, accepted: type[DataError]) -> tuple[FrequencyResponse | None, list[str]]:
+def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse], list[str]]:
     """FRFs of a run; none, and a notice, where they fail in a way that is accepted."""
     try:
-        return run.frf(), []
+        return run.frfs(), []
     except accepted as error:
-        return None, [f"no FRFs: {error}"]
+        return (), [f"no FRFs: {error}"]
 
 
 def save_last_state(error: SimulationError, output: Path) -> SimulationError:
@@ -167,12 +173,12 @@ def save_last_state(error: SimulationError, output: Path) -> SimulationError:
     return SimulationError(f"{error}; last good state (t = {float(state['time']):.3f} s): {path}")
 
 
-def summarise(run: Run, response: FrequencyResponse | None, files: dict[str, str]) -> dict[str, Any]:
+def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, str]) -> dict[str, Any]:
     """Content of `summary.json`.
 
     Args:
         run: finished run.
-        response: its FRFs of all acceleration channels; None where there are none.
+        responses: its FRFs of all acceleration channels to each motion of its plates; none where there are none.
         files: kind of file to its name.
 
     Returns:
@@ -180,13 +186,16 @@ def summarise(run: Run, response: FrequencyResponse | None, files: dict[str, str
     """
     statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
     energies, wheels = statistics.energies, run.car.vehicle.wheels
+    response, channels = (responses[0].response if responses else None), run.car.vehicle.acceleration_channels
+    said = what_moves([one.motion for one in responses]) if responses else ""
     body = rigid_body(run.car.vehicle.body)
     idle = idle_parameters(run.car.vehicle, run.car.overrides)
     notices = [
         *([body.report] if body.repaired else []),
         *idle,
         *run.signal.notices,
-        *(response.reasons if response else ()),
+        *([said] if said else []),
+        *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
         *_unsettled(run),
         *statistics.notices,
     ]
@@ -212,7 +221,7 @@ def summarise(run: Run, response: FrequencyResponse | None, files: dict[str, str
         "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "saturated_velocity": SATURATED_VELOCITY,
-        "peaks": _peaks(response, run.car.vehicle.acceleration_channels),
+        "peaks": _peaks(response, channels),
         "comfort": {place: _comfort(run, place) for place in COMFORT_PLACES},
         "static": {
             "tyre_load_n": static.tyre_load,
@@ -240,6 +249,11 @@ def summarise(run: Run, response: FrequencyResponse | None, files: dict[str, str
             "window": response.window,
             "resolution_hz": response.resolution_hz,
             **_degrees_of_freedom(response),
+            "to": [
+                {"plates": dict(one.motion), "columns": "<channel>" if not number else f"<channel>_to_{one.first}"}
+                | ({"peaks": _peaks(one.response, channels)} if number else {})
+                for number, one in enumerate(responses)
+            ],
         },
         "notices": notices,
         "files": files,

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.motion_response import MotionResponse
 from vehicle.car import Run
 from vehicle.records import hdf_format, matlab_format, rpc_format, uff_writer
 from vehicle.records.channel import Channel, uniform_axis
@@ -33,20 +34,20 @@ def time_channels(run: Run) -> tuple[Channel, ...]:
     )
 
 
-def response_channels(run: Run, response: FrequencyResponse, channels: Sequence[str]) -> tuple[Channel, ...]:
+def response_channels(responses: Sequence[MotionResponse], channels: Sequence[str]) -> tuple[Channel, ...]:
     """Each frequency response and beside it its coherence.
 
     Args:
-        run: tells the plate.
-        response: of its rows.
-        channels: names of the rows.
+        responses: to each plate that moves by itself.
+        channels: names of their rows.
     """
     found = []
-    for row, name in enumerate(channels):
-        about = _point(name) | {"reference": f"plate_{run.wheel}+Z"}
+    for one, (row, name) in product(responses, enumerate(channels)):
+        plate, response = f"plate_{one.first}", one.response
+        about = _point(name) | {"reference": f"{plate}+Z"}
         found.append(
             Channel(
-                name=f"{name} / plate_{run.wheel}",
+                name=f"{name} / {plate}",
                 values=response.response[row],
                 unit="(m/s2)/(m)",
                 axis=response.frequency,
@@ -57,7 +58,7 @@ def response_channels(run: Run, response: FrequencyResponse, channels: Sequence[
         )
         found.append(
             Channel(
-                name=f"{name} / plate_{run.wheel} coherence",
+                name=f"{name} / {plate} coherence",
                 values=response.coherence[row],
                 axis=response.frequency,
                 kind="frequency",
@@ -94,14 +95,14 @@ def geometry(run: Run) -> Geometry:
 
 
 def writer(
-    form: str, run: Run, response: FrequencyResponse | None, channels: Sequence[str], frame: str
+    form: str, run: Run, responses: Sequence[MotionResponse], channels: Sequence[str], frame: str
 ) -> Callable[[Path], None]:
     """What writes a run in a format.
 
     Args:
         form: of `WRITERS`.
         run: the run.
-        response: its FRFs; None where there are none.
+        responses: its FRFs; none where there are none.
         channels: names of their rows.
         frame: axes of the vectors, in words.
     """
@@ -112,7 +113,7 @@ def writer(
     about = f"{run.car.vehicle.name}; {frame}"
     if form == "rpc":
         return lambda path: rpc_format.write(path, histories, about)
-    everything = histories + (() if response is None else response_channels(run, response, channels))
+    everything = histories + response_channels(responses, channels)
     if form == "uff":
         return lambda path: uff_writer.write(path, everything, about, geometry(run))
     write = {"mat": matlab_format.write, "h5": hdf_format.write}[form]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -163,15 +163,33 @@ def _check_frequency(table: Table, frequency: Vector) -> None:
         raise DataError(f"{table.place(index)}: column {FREQUENCY!r} holds {frequency[index]:g}{after}")
 
 
-def write_frf(path: Path, response: FrequencyResponse, channels: Sequence[str], frame: str) -> None:
-    """Write magnitude [m/s2 per m], phase [deg], coherence and random error of every channel; empty where undefined."""
+def write_frf(
+    path: Path,
+    response: FrequencyResponse,
+    channels: Sequence[str],
+    frame: str,
+    *,
+    further: Mapping[str, FrequencyResponse] | None = None,
+    words: str = "",
+) -> None:
+    """Write magnitude [m/s2 per m], phase [deg], coherence and random error of every channel; empty where undefined.
+
+    Args:
+        path: the file.
+        response: rows of the channels.
+        channels: their names.
+        frame: axes of the vectors, in words.
+        further: FRFs to further plates, wheel to rows of the same channels: columns `<channel>_to_<wheel>_magnitude`.
+        words: what the FRFs are to, where that is more than one plate.
+    """
     heads, columns = [FREQUENCY], [response.frequency]
-    for row, channel in enumerate(channels):
-        heads += [channel + end for end in (*SUFFIXES, RANDOM_ERROR)]
-        values = response.response[row]
-        columns += [np.abs(values), np.degrees(np.angle(values)), response.coherence[row], response.random_error[row]]
+    for end, one in (("", response), *((f"_to_{wheel}", other) for wheel, other in (further or {}).items())):
+        for row, channel in enumerate(channels):
+            heads += [channel + end + suffix for suffix in (*SUFFIXES, RANDOM_ERROR)]
+            values = one.response[row]
+            columns += [np.abs(values), np.degrees(np.angle(values)), one.coherence[row], one.random_error[row]]
     about = (
         "acceleration over plate displacement, magnitude and its random error (one standard error) in m/s2 per m, "
         f"coherence without unit; {response.estimator}; frame: {frame}"
     )
-    write_table(path, heads, columns, [about])
+    write_table(path, heads, columns, [about, words] if words else [about])

@@ -20,6 +20,9 @@ COLOURS = ("#1f5fa8", "#d1495b", "#2e8b57", "#d98e04", "#6a4c93")
 INK = "#444444"
 """Colour of captions."""
 
+UNDRIVEN = "#ececec"
+"""Colour of a frequency band without an FRF."""
+
 FRF_BAND = (1.0, 50.0)
 FRF_TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
 """Frequency axis of an FRF [Hz]."""

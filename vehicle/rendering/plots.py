@@ -9,7 +9,7 @@ import numpy as np
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.names import side_of, wheel_words
-from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, shade, wrapped_phase
+from vehicle.rendering.figure import COLOURS, UNDRIVEN, frf_axes, saved_figure, shade, wrapped_phase
 from vehicle.rendering.recorded_run import RecordedRun, dampers_of, liveliest, wheels_of
 
 REGION = 1.96
@@ -24,10 +24,10 @@ DETAIL = 2.0
 LEGEND_ROOM = 0.22
 """Share of the height of a panel kept free for its legend."""
 
-UNDRIVEN, SLIPPING, SLIP_LIMIT, MAGNIFIED = "#ececec", "#f2b8b5", "#8c2f39", "#fff3c4"
+SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", "#8c2f39", "#fff3c4"
 
 
-def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption: str) -> None:
+def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption: str, title: str = "") -> None:
     """Write the FRF picture: magnitudes with the 95 % band of their random error, grey where the input tells nothing.
 
     Args:
@@ -35,6 +35,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
         run: the run; tells the excited wheel.
         response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
         caption: line under the picture: input, level, estimator.
+        title: what the FRFs are to, where that is not one plate.
     """
     rows = {name: row for row, name in enumerate(run.car.model.vehicle.acceleration_channels)}
     wheel, wheels = run.wheel, run.car.model.vehicle.wheels
@@ -53,7 +54,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
     inside = np.asarray(np.isfinite(response.response).any(axis=0))
     shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels]])
     with saved_figure(
-        path, (13.0, 8.6), f"FRFs to the plate under the {wheel_words(wheel, wheels)}", caption
+        path, (13.0, 8.6), title or f"FRFs to the plate under the {wheel_words(wheel, wheels)}", caption
     ) as figure:
         axes = figure.subplots(3, 2, sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9))
         for column, (title, labels) in enumerate(groups.items()):
