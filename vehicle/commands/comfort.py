@@ -5,11 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import Parser, command
 from vehicle.commands.options import command_parser, message_options, record_choice, record_options
 from vehicle.errors import ConfigurationError, DataError
+
+if TYPE_CHECKING:
+    from vehicle.records.table import Record
 
 
 def parser() -> Parser:
@@ -31,6 +37,12 @@ def parser() -> Parser:
         metavar="PLACE|AXIS=NAME",
         help="point of a run, as seat_rail in its time.csv or time.npz; columns x, y, z by default; or the channel of "
         'axis in any measurement file, as x="Seat X" (number, exact name, or pattern with *), for x, y and z',
+    )
+    found.add_argument(
+        "--rail",
+        metavar="PLACE|z=NAME",
+        help="what is below the seat, as seat_rail, or z=NAME in any measurement file: gives the SEAT value too, the "
+        "weighted z acceleration of --channel over that of the rail, both by the weighting of the seat [-]",
     )
     record_options(found, "", channel=False)
     found.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -63,56 +75,107 @@ def parser() -> Parser:
     return found
 
 
-def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
-    """Read, treat the offset as asked, and evaluate."""
+def _read(options: argparse.Namespace, picks: Sequence[str], judged: str = "xyz") -> Record:
+    """Acceleration of one point; mean and drift of the axes that are judged are refused where they matter.
+
+    Raises:
+        ConfigurationError: both a place and channels of axes.
+        DataError: as of `read_acceleration`, or an offset.
+    """
     import numpy as np
 
-    from vehicle.analysis.evaluation import (
-        AXES,
-        LARGEST_MEAN,
-        OFFSET_EFFECT,
-        application,
-        evaluate,
-        offset_effect,
-        offset_line,
-        without_offset,
-    )
+    from vehicle.analysis.evaluation import AXES, LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line
     from vehicle.records.acceleration import read_acceleration
 
-    application(options.place)
-    places = [text for text in options.picks if "=" not in text]
-    if len(places) > 1 or (places and len(options.picks) > 1):
+    places = [text for text in picks if "=" not in text]
+    if len(places) > 1 or (places and len(picks) > 1):
         raise ConfigurationError("--channel: give one PLACE, or x=NAME, y=NAME and z=NAME")
-    options.picks = [text for text in options.picks if "=" in text]
-    record = read_acceleration(options.input, places[0] if places else None, record_choice(options, ""))
-    xyz = np.array(list(record.channels.values()))
-    mean = xyz.mean(axis=1)
-    line = offset_line(xyz)
-    drift = line[:, -1] - line[:, 0]
+    own = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
+    record = read_acceleration(options.input, places[0] if places else None, record_choice(own, ""))
     if options.offset == "refuse":
-        effects = offset_effect(record.step, xyz, place=options.place)
-        for axis, effect, offset, change in zip(AXES, effects, mean, drift, strict=True):
-            if effect > OFFSET_EFFECT or abs(offset) > LARGEST_MEAN:
+        xyz = np.array(list(record.channels.values()))
+        line = offset_line(xyz)
+        ends = zip(
+            AXES,
+            offset_effect(record.step, xyz, place=options.place),
+            xyz.mean(axis=1),
+            line[:, -1] - line[:, 0],
+            strict=True,
+        )
+        for axis, effect, offset, change in ends:
+            if axis in judged and (effect > OFFSET_EFFECT or abs(offset) > LARGEST_MEAN):
                 raise DataError(
                     f"{options.input}: the mean of column {axis!r} is {offset:.4g} m/s2, its drift {change:.2g} m/s2; "
                     f"they change its weighted RMS or VDV by {100 * effect:.3g} %, allowed are "
                     f"{100 * OFFSET_EFFECT:g} % and a mean of {LARGEST_MEAN:g} m/s2; give --offset remove if it is a "
                     "sensor's offset or gravity, --offset keep if the record starts at rest and the mean is real"
                 )
+    return record
+
+
+def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
+    """Read, treat the offset as asked, and evaluate."""
+    import numpy as np
+
+    from vehicle.analysis.evaluation import AXES, application, evaluate, offset_line, without_offset
+
+    application(options.place)
+    if options.rail is not None and options.place not in ("seat", "seat_bs6841"):
+        raise ConfigurationError(f"--place {options.place}: --rail asks for the value of a seat; leave one of them out")
+    record = _read(options, options.picks)
+    xyz = np.array(list(record.channels.values()))
+    removed = options.offset == "remove"
     result = evaluate(
         record.step,
-        without_offset(xyz) if options.offset == "remove" else xyz,
+        without_offset(xyz) if removed else xyz,
         place=options.place,
         average=options.mtvv,
         skip=options.skip,
         from_rest=options.offset == "keep",
     )
+    line = offset_line(xyz)
     offset = {
-        "treatment": "removed" if options.offset == "remove" else "kept",
-        "mean": dict(zip(AXES, (float(value) for value in mean), strict=True)),
-        "drift": dict(zip(AXES, (float(value) for value in drift), strict=True)),
+        "treatment": "removed" if removed else "kept",
+        "mean": dict(zip(AXES, (float(value) for value in xyz.mean(axis=1)), strict=True)),
+        "drift": dict(zip(AXES, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
     }
-    return {"input": options.input, "offset": offset, **result, "notices": list(record.notices)}
+    found = {"input": options.input, "offset": offset, **result, "notices": list(record.notices)}
+    if options.rail is not None:
+        found["seat_value"] = _seat_value(options, record)
+    if options.rail is not None or "seat" in options.picks:
+        found["notices"] += _about_the_seat(Path(options.input))
+    return found
+
+
+def _seat_value(options: argparse.Namespace, seat: Record) -> dict[str, Any]:
+    """What the seat does to the vibration below it.
+
+    Raises:
+        ConfigurationError: `--rail` names another axis than z.
+    """
+    import numpy as np
+
+    from vehicle.analysis.evaluation import without_offset
+    from vehicle.analysis.seat_value import seat_value
+
+    axis, equals, name = options.rail.partition("=")
+    if equals and axis != "z":
+        raise ConfigurationError(f"--rail {options.rail}: the value of a seat is that of z; give z=NAME, or a place")
+    rail = _read(options, [f"{one}={name}" for one in "xyz"] if equals else [options.rail], judged="z")
+    both = np.array([seat.channels["z"], rail.channels["z"]])
+    both = without_offset(both) if options.offset == "remove" else both
+    return asdict(seat_value(seat.step, both[0], both[1], place=options.place, skip=options.skip))
+
+
+def _about_the_seat(file: Path) -> list[str]:
+    """What a run in the same folder says of its seat: that there is none."""
+    from vehicle.output.run_comfort import NO_SEAT
+
+    try:
+        summary = json.loads((file.parent / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return []
+    return [NO_SEAT] if isinstance(summary, dict) and NO_SEAT in summary.get("notices", ()) else []
 
 
 def _table(result: dict[str, Any]) -> str:
@@ -140,6 +203,9 @@ def _table(result: dict[str, Any]) -> str:
     if sums["health_weighted_rms"] is not None:
         lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
     lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
+    if "seat_value" in result:
+        ratio = result["seat_value"]
+        lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")
     return "\n".join(lines)
 
 

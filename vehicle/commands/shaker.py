@@ -251,12 +251,8 @@ def report(summary: dict[str, Any], output: Path) -> str:
         strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
         text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
         lines.append(f"resonances  {channel}: {text or 'none'} Hz")
-    comfort = summary["comfort"]["seat_rail"]
-    rms = comfort["rms_2_50_hz"]
-    weighted = comfort["iso2631"]["vector_sum"]["weighted_rms"]
+    lines += _comfort(summary)
     lines += [
-        f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz "
-        f"(x {rms['x']:.4f}, y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {weighted:.4f} m/s2",
         f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",
         f"solver      {summary['solver']['engine']}, step {1e3 * summary['solver']['timestep_s']:g} ms, "
         f"{summary['solver']['realtime_factor']:.1f} times real time{_balance(summary['solver'])}",
@@ -265,6 +261,28 @@ def report(summary: dict[str, Any], output: Path) -> str:
     lines += [f"note        {text}" for text in summary["notices"]]
     lines.append(f"files       {output}: {', '.join(summary['files'].values())}")
     return "\n".join(lines)
+
+
+def _comfort(summary: dict[str, Any]) -> list[str]:
+    """Comfort at the seat rail, and on the seat of a car that has one."""
+    lines, places = [], summary["comfort"]
+    if "seat_rail" in places:
+        rms = places["seat_rail"]["rms_2_50_hz"]
+        lines.append(
+            f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz (x {rms['x']:.4f}, "
+            f"y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {_weighted(places, 'seat_rail'):.4f} m/s2"
+        )
+    if (ratio := summary["seat_value"]) is not None:
+        lines.append(
+            f"            seat: ISO 2631-1 vector sum {_weighted(places, 'seat'):.4f} m/s2 (x, y by Wd, z by Wk); SEAT "
+            f"value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
+        )
+    return lines
+
+
+def _weighted(places: dict[str, Any], place: str) -> float:
+    found: float = places[place]["iso2631"]["vector_sum"]["weighted_rms"]
+    return found
 
 
 def _balance(solver: dict[str, Any]) -> str:

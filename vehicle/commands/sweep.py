@@ -96,7 +96,7 @@ def _job(options: argparse.Namespace) -> None:
     try:
         table = sweep(
             cases,
-            ComfortMeasure(skip=options.skip),
+            ComfortMeasure(skip=options.skip, seat=vehicle.seated),
             executor=make,
             folder=folder,
             retry_failed=options.retry_failed,

@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.analysis.comfort import settling
 from vehicle.analysis.dependence import DependentInputsError, common_motions, what_moves
-from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.motion_response import MotionResponse
 from vehicle.analysis.peaks import resonances
@@ -19,8 +17,8 @@ from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.names import AXES
 from vehicle.output.folder import write_json, write_text, write_whole
+from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.output.run_formats import writer
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
@@ -31,7 +29,6 @@ from vehicle.records.text_format import write_table
 from vehicle.rendering.frf_plot import plot_frfs
 from vehicle.rendering.plots import plot_time
 
-COMFORT_PLACES = ("seat_rail", "seat")
 PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
 """Length of a window [s] and highest frequency [Hz] of the densities of a run on a road."""
 
@@ -196,7 +193,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
         *run.signal.notices,
         *([said] if said else []),
         *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
-        *_unsettled(run),
+        *comfort_notices(run),
         *statistics.notices,
     ]
     return {
@@ -222,7 +219,8 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
         "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "saturated_velocity": SATURATED_VELOCITY,
         "peaks": _peaks(response, channels),
-        "comfort": {place: _comfort(run, place) for place in COMFORT_PLACES},
+        "comfort": comfort_values(run),
+        "seat_value": seat_values(run),
         "static": {
             "tyre_load_n": static.tyre_load,
             "rear_support_load_n": {
@@ -285,27 +283,6 @@ def _degrees_of_freedom(response: FrequencyResponse) -> dict[str, Any]:
         "degrees_of_freedom": float(np.median(known)),
         "degrees_of_freedom_range": [float(known.min()), float(known.max())],
     }
-
-
-def _comfort(run: Run, place: str) -> dict[str, Any]:
-    """Comfort values of a place: the source's unfiltered RMS, and ISO 2631-1."""
-    value = run.comfort(place)
-    xyz = np.array([run[f"{place}_acc_{axis}"] for axis in AXES])
-    return {
-        "rms_2_50_hz": {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall},
-        "iso2631": evaluate(run.recording.timestep, xyz, from_rest=True),
-    }
-
-
-def _unsettled(run: Run) -> list[str]:
-    """A sentence for each axis of the seat rail whose level changes along the record by more than chance."""
-    xyz = np.array([run[f"seat_rail_acc_{axis}"] for axis in AXES])
-    return [
-        f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
-        f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
-        for axis, part in zip(AXES, settling(run.recording.timestep, xyz), strict=True)
-        if not part.settled
-    ]
 
 
 def _caption(run: Run, response: FrequencyResponse) -> str:
