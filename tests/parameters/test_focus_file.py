@@ -1,4 +1,4 @@
-"""The file of the Focus: a unit and a source behind every value, the units of the classes, round trips, overrides."""
+"""Files of the cars: a unit and a source behind every value; of the Focus printed numbers, round trips, overrides."""
 
 from __future__ import annotations
 
@@ -11,18 +11,20 @@ import pytest
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.paths import override, paths
-from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.shipped import CARS, FOCUS_FILE, vehicle_file
 from vehicle.parameters.toml_file import as_table, read_table, write_text
 from vehicle.parameters.vehicle import load_vehicle, vehicle_of
 
 LINE = re.compile(r"^(?P<name>[a-z_0-9]+) = (?P<value>.+?)\s+# \[(?P<unit>[^]]+)\] (?P<source>.+)$")
-SOURCE = re.compile(r"\b(section|appendix|equation|table|figure)\b|^(assumed|fitted)\b|\bassumed\b|measured car", re.I)
+SOURCE = re.compile(
+    r"\b(section|appendix|equation|table|figure|Chrono)\b|^(assumed|fitted)\b|\bassumed\b|measured car", re.I
+)
 
 
-def value_lines():
+def value_lines(file=FOCUS_FILE):
     """(dotted path, unit, source) of every line with a value."""
     found, table = [], ""
-    for text in FOCUS_FILE.read_text(encoding="utf-8").splitlines():
+    for text in file.read_text(encoding="utf-8").splitlines():
         if text.startswith("[alias]"):
             break
         if text.startswith("["):
@@ -34,18 +36,20 @@ def value_lines():
     return found
 
 
-def test_every_value_has_a_unit_and_a_source():
-    lines = value_lines()
-    # The file has some 145 values; an empty or half-read file would pass everything else.
+@pytest.mark.parametrize("name", CARS)
+def test_every_value_has_a_unit_and_a_source(name):
+    lines = value_lines(vehicle_file(name))
+    # Each file has 145 values or more; an empty or half-read file would pass everything else.
     assert len(lines) > 130
     without = [path for path, _, source in lines if not SOURCE.search(source)]
     assert without == []
     assert len({path for path, _, _ in lines}) == len(lines)
 
 
-def test_the_units_are_those_of_the_classes():
-    car = load_vehicle()
-    lines = value_lines()
+@pytest.mark.parametrize("name", CARS)
+def test_the_units_are_those_of_the_classes(name):
+    car = load_vehicle(name)
+    lines = value_lines(vehicle_file(name))
     values = [path.removesuffix(".on").removesuffix(".at") for path in paths(car.table)]
     assert [path for path, _, _ in lines] == [
         *dict.fromkeys(one for one in values if one[-2:] not in (".x", ".y", ".z"))
@@ -55,8 +59,9 @@ def test_the_units_are_those_of_the_classes():
     assert wrong == {}
 
 
-def test_assumed_numbers_say_why():
-    for path, _, source in value_lines():
+@pytest.mark.parametrize("name", CARS)
+def test_assumed_numbers_say_why(name):
+    for path, _, source in value_lines(vehicle_file(name)):
         for word in ("assumed", "fitted"):
             if source.startswith(word):
                 reason = source.removeprefix(word).lstrip(": ")

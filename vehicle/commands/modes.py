@@ -78,7 +78,8 @@ def report(found: dict[str, Any]) -> str:
     if found["growing"]:
         lines.append(f"this car does not stand: {', '.join(found['growing'])} grows by itself (negative damping above)")
     free = found["free_body"]
-    lines.append("free trimmed body")
+    if free["frequency_hz"]:
+        lines.append("free trimmed body")
     for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):
         lines.append(f"{frequency:8.3f}           {name}")
     return "\n".join(lines)

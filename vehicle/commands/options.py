@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vehicle.commands.command_line import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS, ENGINES
-from vehicle.parameters.shipped import vehicle_file
+from vehicle.parameters.shipped import CARS, vehicle_file
 
 if TYPE_CHECKING:
     from vehicle.records.choice import Choice
@@ -31,7 +31,7 @@ def command_parser(name: str, description: str) -> Parser:
     return Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
 
 
-VEHICLE_HELP = "vehicle file, or the name of a shipped car: focus_road; the car of source 1 by default"
+VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of source 1 by default"
 
 
 def vehicle_options(parser: argparse.ArgumentParser) -> None:

@@ -5,13 +5,25 @@ from __future__ import annotations
 from importlib import resources
 from pathlib import Path
 
+from vehicle.errors import ConfigurationError
+
 VEHICLES = Path(str(resources.files("vehicle"))) / "vehicles"
 FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
 """The Ford-Focus-like car of source 1."""
 
+CARS = tuple(sorted(folder.parent.name for folder in VEHICLES.glob("*/vehicle.toml")))
+"""Names of all cars."""
+
 
 def vehicle_file(path: Path | str) -> Path:
-    """The file of a car: the path as given, or that of the shipped car of this name."""
+    """The file of a car: the path as given, or that of the shipped car of this name.
+
+    Raises:
+        ConfigurationError: a name that is neither.
+    """
     path = Path(path)
-    shipped = VEHICLES / path / "vehicle.toml"
-    return shipped if not path.suffix and not path.exists() and shipped.is_file() else path
+    if path.suffix or path.exists() or path.name != str(path):
+        return path
+    if path.name not in CARS:
+        raise ConfigurationError(f"{path}: no such file, and no shipped car; these are {', '.join(CARS)}")
+    return VEHICLES / path / "vehicle.toml"
