@@ -123,7 +123,8 @@ def test_the_record_of_a_damper_is_its_law(word):
     limit = 65.0 + falling
     assert [friction_limit(record, one) for one in v] == pytest.approx(limit + np.zeros(3), rel=1e-14)
     smooth = limit * 2.0 / np.pi * np.arctan(damper.smoothing * v)
-    knee = damper.viscous * v + np.clip((15000.0 - damper.viscous) * v, -0.02 * 12750.0, 0.02 * 12750.0)
+    assert damper.viscous == 2250.0
+    knee = 2250.0 * v + np.clip(12750.0 * v, -0.02 * 12750.0, 0.02 * 12750.0)
     assert damper_law(damper).force(v) == pytest.approx(knee + smooth, rel=1e-13)
 
 

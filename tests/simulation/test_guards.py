@@ -102,4 +102,6 @@ def test_friction_off_is_a_car_too():
     # The viscous damper alone: what the comparison with the matrices calls "friction off".
     run = Car.load(None, ["damper.coulomb_friction=0"]).run(SHORT)
     force, velocity = run["damper_fr_force"], run["damper_fr_velocity"]
-    np.testing.assert_allclose(force, run.car.vehicle.damper.viscous * velocity, atol=1e-3 * np.max(np.abs(force)))
+    viscous = run.car.vehicle.damper.viscous
+    assert viscous is not None
+    np.testing.assert_allclose(force, viscous * velocity, atol=1e-3 * np.max(np.abs(force)))

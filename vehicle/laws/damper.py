@@ -52,8 +52,9 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
             damper.smoothing,
             damper.coulomb_friction,
             damper.static_friction,
-            damper.stribeck_velocity,
-            damper.stribeck_exponent,
+            # 1 stands for a number of a law that is not chosen.
+            damper.stribeck_velocity or 1.0,
+            damper.stribeck_exponent or 1.0,
             rest,
             rest - curve.at_rest(),
             FRICTION_LAWS.index(damper.friction_law),
@@ -67,12 +68,13 @@ def damper_curve(damper: Damper) -> Curve:
     """Force over velocity without friction and gas."""
     if damper.viscous_law == "table":
         return Curve.through(damper.velocity, damper.force)
+    high, low, knee = (one or 0.0 for one in (damper.viscous, damper.degressive_viscous, damper.degressive_velocity))
     if damper.viscous_law == "linear":
-        return Curve.line(damper.viscous)
-    knee, excess = damper.degressive_velocity, damper.degressive_viscous - damper.viscous
+        return Curve.line(high)
+    excess = low - high
     return Curve(
         knots=np.array([-knee, knee]),
-        slopes=np.array([damper.viscous, damper.degressive_viscous, damper.viscous]),
+        slopes=np.array([high, low, high]),
         offsets=np.array([-excess * knee, 0.0, excess * knee]),
     )
 

@@ -19,6 +19,13 @@ TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/
 FRICTION_LAWS = ("coulomb", "stribeck")
 """Words of the friction laws; each is a file of `vehicle.laws`."""
 
+NUMBERS = {
+    "linear": {"viscous": "N s/m"},
+    "degressive": {"viscous": "N s/m", "degressive_viscous": "N s/m", "degressive_velocity": "m/s"},
+    "stribeck": {"stribeck_friction": "N", "stribeck_velocity": "m/s", "stribeck_exponent": "-"},
+}
+"""Numbers of a damper that a law alone needs, with their units."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ForceTable:
@@ -115,14 +122,17 @@ class Damper:
     Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
     the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
+    Numbers of a law that is not chosen may be left out.
     """
 
-    viscous: float = quantity("N s/m", "D, damping constant", at_least=0.0, **STRONGEST)
+    viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
     viscous_law: str = quantity("-", "law of the damping", choices=("linear", "degressive", "table"))
-    degressive_viscous: float = quantity(
-        "N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0, **STRONGEST
+    degressive_viscous: float | None = quantity(
+        "N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0, default=None, **STRONGEST
     )
-    degressive_velocity: float = quantity("m/s", "Vdeg, where the degressive law turns flatter", above=0.0, **MOVING)
+    degressive_velocity: float | None = quantity(
+        "m/s", "Vdeg, where the degressive law turns flatter", above=0.0, default=None, **MOVING
+    )
     velocity: tuple[float, ...] = quantity(
         "m/s", "velocities of the table law, bump negative", default=(), at_least=-10.0, at_most=10.0
     )
@@ -143,15 +153,23 @@ class Damper:
         at_most=1e8,
         why="friction is full at a few times 1/eps; beyond 1e9 the integration drowns in round-off",
     )
-    stribeck_friction: float = quantity("N", "Fs, friction at rest of the Stribeck law", at_least=0.0, **RUBBED)
-    stribeck_velocity: float = quantity("m/s", "vs, critical velocity of the Stribeck law", above=0.0, **MOVING)
-    stribeck_exponent: float = quantity(
-        "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual"
+    stribeck_friction: float | None = quantity(
+        "N", "Fs, friction at rest of the Stribeck law", at_least=0.0, default=None, **RUBBED
+    )
+    stribeck_velocity: float | None = quantity(
+        "m/s", "vs, critical velocity of the Stribeck law", above=0.0, default=None, **MOVING
+    )
+    stribeck_exponent: float | None = quantity(
+        "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual", default=None
     )
     slip_velocity: float = quantity("m/s", "velocity above which the damper counts as slipping", above=0.0, **MOVING)
 
     def __post_init__(self) -> None:
         validate(self)
+        for key, law in (("viscous_law", self.viscous_law), ("friction_law", self.friction_law)):
+            for name, unit in NUMBERS.get(law, {}).items():
+                if getattr(self, name) is None:
+                    raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs it [{unit}]")
         if self.static_friction < self.coulomb_friction:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
@@ -159,7 +177,7 @@ class Damper:
             )
         if self.viscous_law == "table":
             require_curve("Damper", "velocity", self.velocity, self.force)
-        if self.viscous_law == "degressive" and self.degressive_viscous < self.viscous:
+        if self.viscous_law == "degressive" and (self.degressive_viscous or 0.0) < (self.viscous or 0.0):
             raise ConfigurationError(
                 f"Damper.degressive_viscous: found {self.degressive_viscous!r} N s/m, must be at least "
                 f"viscous ({self.viscous!r} N s/m)"
@@ -168,4 +186,4 @@ class Damper:
     @property
     def static_friction(self) -> float:
         """Friction limit at rest [N]: Fs, but for the Coulomb law, which has one limit."""
-        return self.coulomb_friction if self.friction_law == "coulomb" else self.stribeck_friction
+        return (self.stribeck_friction or 0.0) if self.friction_law == "stribeck" else self.coulomb_friction
