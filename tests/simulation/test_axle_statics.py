@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import fsolve
-from scipy.spatial.transform import Rotation
 
+from tests.simulation.strut import camber_and_toe, strut_geometry
 from vehicle.errors import SimulationError
 from vehicle.simulation.axle_statics import AxleStatics
 
@@ -17,39 +16,6 @@ def axle(car, *, ideal=False):
     return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal)
 
 
-def strut_geometry(points, height):
-    """Position and turn of the right wheel of an ideal MacPherson strut: six lengths and lines, no bodies.
-
-    The arm keeps the lower ball on a circle (two lengths), the rod the outer tie point on a sphere, and the strut top
-    lies on the line through the damper that turns with the knuckle.
-    """
-    p = {name: np.array(points[f"{name}_fr"]) for name in (
-        "wheel_center", "lower_ball", "arm_front", "arm_rear", "strut_top", "damper_bottom", "tie_outer", "tie_inner"
-    )}  # fmt: skip
-    center, line = p["wheel_center"], p["strut_top"] - p["damper_bottom"]
-    across = np.linalg.svd(line[None])[2][1:]
-
-    def gaps(x):
-        turned = Rotation.from_rotvec(x[3:])
-
-        def now(name):
-            return center + x[:3] + turned.apply(p[name] - center)
-
-        lengths = [
-            np.linalg.norm(now(moving) - p[fixed]) - np.linalg.norm(p[moving] - p[fixed])
-            for moving, fixed in (("lower_ball", "arm_front"), ("lower_ball", "arm_rear"), ("tie_outer", "tie_inner"))
-        ]
-        beside = across @ turned.inv().apply(p["strut_top"] - now("damper_bottom"))
-        return [*lengths, *beside, x[2] - height]
-
-    x = np.zeros(6)
-    for part in np.linspace(0.1, 1.0, 10):
-        height_now, height = height, part * height
-        x = fsolve(gaps, x, xtol=1e-13)
-        height = height_now
-    return x[:3], Rotation.from_rotvec(x[3:]).as_matrix()
-
-
 @pytest.mark.parametrize("travel", [-0.06, -0.02, 0.03, 0.06])
 def test_ideal_kinematics_of_the_strut(car, travel):
     # Asked for: 1e-3 mm and 1e-4 degree.
@@ -57,8 +23,7 @@ def test_ideal_kinematics_of_the_strut(car, travel):
     moved, turn = strut_geometry(car.vehicle.points, travel)
     assert pose.wheel_travel_m == pytest.approx(travel, abs=1e-9)
     assert (pose.longitudinal_m, pose.lateral_m) == pytest.approx(tuple(moved[:2]), abs=1e-6)
-    assert pose.camber_deg == pytest.approx(-np.degrees(np.arcsin(turn[2, 1])), abs=1e-4)
-    assert pose.toe_deg == pytest.approx(np.degrees(np.arctan2(turn[0, 1], turn[1, 1])) * -1.0, abs=1e-4)
+    assert (pose.camber_deg, pose.toe_deg) == pytest.approx(camber_and_toe(turn), abs=1e-4)
     assert abs(pose.camber_deg) > 0.1 and abs(pose.lateral_m) > 1e-4
     for name in ("lateral_m", "longitudinal_m", "camber_deg", "toe_deg", "strut_length_m"):
         assert getattr(other, name) == pytest.approx(getattr(pose, name), abs=1e-8), name

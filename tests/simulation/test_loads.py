@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import pytest
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.bump import bump_shape
+from vehicle.excitation.iso_road import CLASSES, IsoRoad, Side, drive
 from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.names import AXES
 
@@ -84,6 +87,27 @@ def test_ground_forces_move_the_car(bumped):
     assert size > 1e-5
     # The two sums are those of the solver: left is what joints in closed loops give way within a step.
     np.testing.assert_allclose(found, expected, atol=2e-3 * size)
+
+
+def test_plates_carry_and_move_a_car_on_the_road():
+    """Sum of the plate forces = m (g + a): summed twice over time, that of a class C road moves the centre of mass."""
+    car = Car.load(Path("focus_road"))
+    wheels: dict[str, tuple[float, Side]] = {
+        "fr": (0.0, "right"), "fl": (0.0, "left"), "rr": (2.615, "right"), "rl": (2.615, "left")
+    }  # fmt: skip
+    road = IsoRoad(level=CLASSES["C"], seed=1, track=1.49)
+    signal = drive(road, speed=80.0 / 3.6, wheels=wheels, duration=0.6, rate=1000.0)
+    run = car.run(signal, channels=(*car.vehicle.channels, *car.vehicle.load_channels))
+    parts = list(car.matrices.body_masses)
+    mass, centre = centres(run, parts)
+    plates = forces_on(run, parts)
+    expected = centre - centre[0]
+    weight = np.array([0.0, 0.0, mass * car.vehicle.gravity])
+    found = moved_by(plates - weight, mass, 1e-3)[at_poses(run)]
+    assert np.all(np.max(np.abs(expected), axis=0) > 1e-5)
+    np.testing.assert_allclose(found, expected, atol=1e-4 * np.max(np.abs(expected)))
+    named = sum(run[f"tyre_{wheel}_force_z"] for wheel in car.vehicle.wheels)
+    np.testing.assert_allclose(plates[:, 2], named, rtol=1e-12)
 
 
 def test_forces_move_the_body(bumped):

@@ -131,7 +131,8 @@ class AxleStatics:
         if np.max(np.abs(gaps)) > 1e-7:
             raise SimulationError(
                 f"axle: its joints leave a gap of {1e3 * np.max(np.abs(gaps)):.3g} mm at wheel travels "
-                f"{[round(1e3 * value, 3) for value in travel]} mm; the linkage cannot reach it"
+                f"{[round(1e3 * value, 3) for value in travel]} mm, which the linkage cannot reach: ask for less travel"
+                + (", or let its bushings give way (without --ideal)" if self.ideal else "")
             )
         # K dq + B' lambda = f: lambda opposes the force, and the load is its negative.
         loads_now = -reactions[-len(self.wheels) :]
