@@ -147,6 +147,10 @@ def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join([lines[0], "|" + "---|" * len(columns), *lines[1:]])
 
 
+OWN_COLUMNS = ("name", "found", "within", "why")
+"""Of a table on data of the user."""
+
+
 def claim_table(rows: Sequence[Mapping[str, Any]]) -> str:
     """The rows as a Markdown table."""
     columns = ("name", "published", "ours", "deviation", "within", "status", "source", "interval", "why")
@@ -163,6 +167,7 @@ class Findings:
         unjudged: statements that short signals cannot judge: name, and why; None where they judge all.
         notes: paragraphs below the table.
         data: further numbers for `results.json`, under their own keys.
+        own_data: whether they are about data of the user, of which nothing is published: the rows say what was found.
     """
 
     title: str
@@ -170,16 +175,21 @@ class Findings:
     unjudged: Mapping[str, str] | None = field(default_factory=dict)
     notes: Sequence[str] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
+    own_data: bool = False
 
     def write(self, folder: Path) -> str:
         """Write `results.md` and `results.json`, without the rows that are not judged; returns the line to print."""
         left = self.unjudged or {}
         rows = [asdict(claim) for claim in self.claims if claim.name not in left]
-        counts = headline(rows)
+        counts, legend, table = headline(rows), [LEGEND], claim_table(rows)
+        if self.own_data:
+            rows = [{"name": r["name"], "found": r["ours"], "within": r["within"], "why": r["why"]} for r in rows]
+            counts, legend = f"{sum(row['within'] for row in rows)} of {len(rows)} checks hold", []
+            table = markdown(OWN_COLUMNS, [[_cell(name, row[name]) for name in OWN_COLUMNS] for row in rows])
         notes = [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
         write_text(
             folder / "results.md",
-            "\n\n".join([f"# {self.title}", f"{counts}.", LEGEND, claim_table(rows), *notes]) + "\n",
+            "\n\n".join([f"# {self.title}", f"{counts}.", *legend, table, *notes]) + "\n",
         )
         open_rows = {} if self.unjudged is None else {"not_judged": dict(left)}
         content = {"title": self.title, "rows": rows, "notes": notes, **open_rows, **self.data}

@@ -30,12 +30,13 @@ ROOMS: dict[str, set[str]] = {
     "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation"},
     "analysis": set(),
     "lumped": {"parameters", "laws", "linear"},
-    "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes"},
+    "comparison": {"analysis", "car", "linear", "records"},
+    "rendering": {"comparison", "simulation", "analysis", "assembly", "parameters", "shapes"},
     "car": {"analysis", "excitation", "flexbody", "linear", "parameters", "reduced", "simulation"},
-    "output": {"analysis", "car", "excitation", "flexbody", "parameters", "records", "rendering"},
+    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
-    "commands": {"analysis", "assembly", "car", "excitation", "output", "parameters"}
+    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "output", "parameters"}
     | {"records", "rendering", "simulation", "sweeps"},
     "threads": set(),
     "compiler": set(),

@@ -1,10 +1,11 @@
 """What the authors of source 1 did by hand, automatic: parameters fitted to FRFs and bump records (section 3.2).
 
 python -m scenarios.tuning [--output DIR] [--quick] [--jobs N] [--vehicle FILE.toml] [--force]
-python -m scenarios.tuning --frf measured_low.csv --level low --frf measured_high.csv --level my_signal.csv
+python -m scenarios.tuning --frf measured_low.uff --level low --frf measured_high.csv --level my_signal.csv
+    [--record my_bump.mf4 --signal my_bump.csv]... [--map knuckle_fr_acc_z="Dof 12 +Z"]...
     [--fit damper.viscous=500:5000:1500]... [--channel NAME]... [--band 3:45] [--spacing 0.3] [--window 4]
 
-Without --frf: data of a hidden car with 3 % noise, from the authors' starting values.
+Without --frf and --record: data of a hidden car with 3 % noise, from the authors' starting values.
 """
 
 from __future__ import annotations
@@ -32,12 +33,14 @@ from scenarios.tuning.data import (
     TEXT,
     Measurement,
     make_measurements,
-    own_measurements,
     parse_parameters,
 )
 from scenarios.tuning.figures import correlation_figure, level_figure, parameter_figure, record_figure
+from scenarios.tuning.own_data import check_parameters, own_measurements
 from vehicle.car import Car, Run
 from vehicle.commands.command_line import ProgressLine
+from vehicle.commands.compare import mapping_options
+from vehicle.commands.options import record_options
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range
@@ -150,23 +153,26 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
 
 
 def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    """Fit parameters to FRFs of files."""
+    """Fit parameters to FRFs and time histories of files."""
     tuning = Tuning(runs)
     parameters: Sequence[Range] = parse_parameters(options.fit, tuning.vehicle)
-    measurements = own_measurements(options)
+    check_parameters(tuple(parameters), tuning.vehicle)
+    measurements = own_measurements(options, runs.car())
     if not options.fit:
         stuck = all(isinstance(one.target, FrfTarget) and one.target.signal is None for one in measurements)
         parameters = [one for one in AUTHORS if not stuck or one.path not in SLIDING]
     result = tuning.fit("fit", parameters, [one.target for one in measurements])
     final = None if options.quick else tuning.finish(result, measurements, None)
     result = result if final is None else final.result
-    _draw(folder, tuning, result, measurements, "own file")
+    files = [path.name for path in (*options.frf, *options.record)]
+    _draw(folder, tuning, result, measurements, ", ".join(files))
     parameter_figure(folder / "parameters.png", {"fit": result}, {})
     return Findings(
-        title=f"Parameters fitted to {', '.join(path.name for path in options.frf)}",
+        title=f"Parameters fitted to {', '.join(files)}",
         claims=own_claims(result, final),
         notes=fit_notes("The fit", result, final),
         data={"all": fit_numbers(result)},
+        own_data=True,
     )
 
 
@@ -185,7 +191,14 @@ def _draw(folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequ
 
 def add_options(found: argparse.ArgumentParser) -> None:
     """Options of this study alone."""
-    found.add_argument("--frf", type=Path, action="append", default=[], metavar="FILE.csv", help="own FRFs; repeatable")
+    found.add_argument(
+        "--frf",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="own FRFs, or accelerations beside the plate, in any format of `inspect`; repeatable",
+    )
     found.add_argument(
         "--level",
         action="append",
@@ -194,6 +207,28 @@ def add_options(found: argparse.ArgumentParser) -> None:
         help="one for each --frf: low takes the linear car with stuck dampers; else the displacement signal that the "
         "FRFs were measured with",
     )
+    found.add_argument(
+        "--record",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="own time histories, of a bump or of anything else, in any format of `inspect`; repeatable",
+    )
+    found.add_argument(
+        "--signal",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="one for each --record: the displacement of the plate, which begins with the record",
+    )
+    found.add_argument("--delay", type=float, default=0.0, metavar="S", help="the records began this long after it [s]")
+    found.add_argument("--stretch", metavar="FROM:TO", help="part of the signals that counts for --record [s]")
+    found.add_argument(
+        "--lowpass", type=float, default=100.0, metavar="HZ", help="records are compared below it; %(default)g Hz"
+    )
+    mapping_options(found)
+    record_options(found, "", channel=False)
     found.add_argument("--fit", action="append", default=[], metavar=TEXT, help="parameter; by default the authors'")
     found.add_argument("--channel", action="append", default=[], metavar="NAME", help=f"default: {', '.join(CHANNELS)}")
     found.add_argument("--band", default=f"{BAND[0]:g}:{BAND[1]:g}", metavar="LOW:HIGH", help="fitted frequencies [Hz]")
@@ -208,10 +243,13 @@ LONGEST_STEP = 5e-4
 def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     step = f"solver.timestep={min(LONGEST_STEP, runs.car().vehicle.solver.timestep)!r}"
     runs = CarRuns(vehicle=runs.vehicle, overrides=(*runs.overrides, step), engine=runs.engine, jobs=runs.jobs)
-    if options.frf:
+    if options.frf or options.record:
         return own_study(runs, folder, options)
-    if options.level or options.fit or options.channel:
-        raise ConfigurationError("--level, --fit and --channel belong to --frf; give a file of FRFs")
+    if options.level or options.fit or options.channel or options.mapping or options.signal:
+        raise ConfigurationError(
+            "--level, --signal, --map, --fit and --channel belong to --frf or --record; give a file of FRFs or of time "
+            "histories"
+        )
     return study(runs, folder, quick=options.quick)
 
 

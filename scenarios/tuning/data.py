@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -193,45 +192,3 @@ def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...
         start = values[2] if len(values) > 2 else begin
         found.append(Range(path=path, low=values[0], high=values[1], start=start))
     return tuple(found)
-
-
-STUCK = "low"
-"""Level at which the dampers stay stuck, so that the car is linear."""
-
-
-def own_measurements(options: argparse.Namespace) -> list[Measurement]:
-    """Targets of the options --frf and --level.
-
-    Raises:
-        ConfigurationError: not one level for each file, a band that is none, or a signal that does not exist.
-        DataError: a file holds bad data.
-    """
-    if len(options.frf) != len(options.level):
-        raise ConfigurationError(
-            f"found {len(options.frf)} --frf and {len(options.level)} --level; each file of FRFs needs its level: "
-            f"{STUCK!r}, or the displacement signal it was measured with"
-        )
-    band = _band(options.band)
-    channels = tuple(options.channel) or CHANNELS
-    found = []
-    for file, level in zip(options.frf, options.level, strict=True):
-        name = level if "." in level else f"{level}.csv"
-        signal = read_signal(find_input(name))
-        target = FrfTarget(
-            name=file.stem,
-            data=read_frf(file).select(channels, band=band, spacing=options.spacing),
-            signal=None if level == STUCK else signal,
-            window=options.window,
-        )
-        found.append(Measurement(target=target, signal=signal))
-    return found
-
-
-def _band(text: str) -> tuple[float, float]:
-    try:
-        low, high = (float(part) for part in text.split(":"))
-    except ValueError:
-        low, high = 1.0, 0.0
-    if not 0.0 < low < high:
-        raise ConfigurationError(f"--band {text}: needed is LOW:HIGH in Hz, as in 3:45")
-    return low, high

@@ -19,8 +19,8 @@ from vehicle.tuning.result import TuningResult
 DATA, START, FITTED = "#9a9a9a", COLOURS[3], COLOURS[0]
 """Light, dotted and dashed: where data and fit agree, both are still seen."""
 
-SHOWN = (4.98, 5.7)
-"""Stretch of the bump records that is drawn [s]."""
+SHOWN = 0.72
+"""Longest stretch of a record that is drawn, around its liveliest moment [s]."""
 
 SHORT = {"stiffness": "K", "suspension_mount": "mount", "torque_arm_engine": "bottom mount, engine"}
 
@@ -60,12 +60,11 @@ def record_figure(path: Path, targets: Sequence[RecordTarget], start: Car, fitte
     """Write data, start and fit of the records, a column for each; `source` says what the data are."""
     count = max(len(target.record.channels) for target in targets)
     note = (
-        f"Data: {source}; right strut over the bump (it begins at 5 s), no averages. Start and fitted: reduced "
-        f"engine on the same signal. All through the low-pass filter of the fit ({targets[0].lowpass:g} Hz)."
+        f"Data: {source}; no averages. Start and fitted: reduced engine on the same signal. All through the low-pass "
+        f"filter of the fit ({targets[0].lowpass:g} Hz); the liveliest stretch of what counts."
     )
-    with figure_file(
-        path, (6.5 * len(targets) + 1.0, 2.4 * count + 1.2), "Bump records before and after", note
-    ) as figure:
+    size = (6.5 * len(targets) + 1.0, 2.4 * count + 1.2)
+    with figure_file(path, size, "Records before and after", note) as figure:
         axes = rows_of(figure, count, len(targets))
         for target, column in zip(targets, axes.T, strict=True):
             time = target.record.time[target.kept]
@@ -75,9 +74,20 @@ def record_figure(path: Path, targets: Sequence[RecordTarget], start: Car, fitte
                 axis.plot(time, measured[row], color=DATA, linewidth=2.0, label="data")
                 axis.plot(time, before[row], color=START, linestyle=":", linewidth=1.4, label="start")
                 axis.plot(time, after[row], color=FITTED, linestyle="--", label="fitted")
-                axis.set(xlim=SHOWN, ylabel=f"{channel}\n[{channel_units([channel])[channel]}]")
+                axis.set(xlim=_shown(time, measured), ylabel=f"{channel}\n[{channel_units([channel])[channel]}]")
             column[0].set_title(target.name)
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper right", ncols=3)
+
+
+def _shown(time: npt.NDArray[np.float64], measured: npt.NDArray[np.float64]) -> tuple[float, float]:
+    """The stretch of `SHOWN` with the largest mean square over all channels, each by its own; the whole if shorter."""
+    count = int(SHOWN / (time[1] - time[0]))
+    if count >= time.size:
+        return float(time[0]), float(time[-1])
+    power = np.mean(measured**2 / np.mean(measured**2, axis=1, keepdims=True), axis=0)
+    total = np.concatenate([[0.0], np.cumsum(power)])
+    first = int(np.argmax(total[count:] - total[:-count]))
+    return float(time[first]), float(time[first + count - 1])
 
 
 def short_name(path: str) -> str:

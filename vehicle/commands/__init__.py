@@ -1,6 +1,6 @@
 """Commands, one file each; what they print is printed here and nowhere else in the package."""
 
-COMMANDS = ("shaker", "modes", "sweep", "comfort", "mjcf", "kinematics", "road", "inspect", "loads")
+COMMANDS = ("shaker", "modes", "sweep", "comfort", "mjcf", "kinematics", "road", "inspect", "loads", "compare")
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 
 OLDER = COMMANDS[:5]

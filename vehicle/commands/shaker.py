@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.compare import measured_beside, measured_options
 from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
     command_parser,
@@ -66,6 +67,7 @@ def parser() -> Parser:
     )
     found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower")
     found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
+    measured_options(found)
     found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
     found.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
     found.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
@@ -129,6 +131,7 @@ def _job(options: argparse.Namespace) -> None:
         signal = drive.signal()
     _check_signal(options, signal)
     channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)
+    measured = measured_beside(options, channels or car.vehicle.channels)
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
     car.check(engine)
     if options.road is None:
@@ -163,6 +166,7 @@ def _job(options: argparse.Namespace) -> None:
             engine_reason=reason,
             road=road,
             video=None if video_name is None else (video_name, make_film),
+            measured=measured,
         )
     if not options.quiet:
         print(report(summary, output))

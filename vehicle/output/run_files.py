@@ -14,9 +14,12 @@ from vehicle.analysis.motion_response import MotionResponse
 from vehicle.analysis.peaks import resonances
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
+from vehicle.comparison.comparison import comparison_of
+from vehicle.comparison.simulated import of_run
 from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
+from vehicle.output.comparison_files import write_comparison
 from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.output.run_formats import writer
@@ -24,6 +27,7 @@ from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
 from vehicle.records.formats import FORMATS
 from vehicle.records.frf import write_frf
+from vehicle.records.measured import Measured
 from vehicle.records.table import Record
 from vehicle.records.text_format import write_table
 from vehicle.rendering.frf_plot import plot_frfs
@@ -68,6 +72,7 @@ def write_run(
     engine_reason: str = "",
     road: Mapping[str, object] | None = None,
     video: tuple[Path, Callable[[Path], None]] | None = None,
+    measured: Measured | None = None,
 ) -> dict[str, Any]:
     """Write all files of a finished run.
 
@@ -79,6 +84,7 @@ def write_run(
         engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
         road: what the summary says of the road; on one, FRFs that cannot be had are left out with a notice.
         video: name of the film, or a path of its own, and what writes it.
+        measured: a measurement that is put beside the run.
 
     Returns:
         The content of `summary.json`.
@@ -118,7 +124,12 @@ def write_run(
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
         files["video"] = str(name)
+    comparison = None
+    if measured is not None:
+        comparison = comparison_of(measured, of_run(run))
+        files |= write_comparison(folder, comparison)
     summary = summarise(run, responses, files)
+    summary["measured"] = comparison and {"file": comparison.measured, "table": comparison.summary()["table"]}
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing

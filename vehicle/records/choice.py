@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.records.channel import Channel, Measurement
 from vehicle.records.clock import longest_step, without_rounding
 from vehicle.records.table import Vector
-from vehicle.records.units import allowed_units, find_unit
+from vehicle.records.units import allowed_units, find_ratio, find_unit
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,7 +48,7 @@ class Choice:
         if self.first is not None and self.last is not None and self.first >= self.last:
             raise ConfigurationError(f"--from {self.first:g} --to {self.last:g}: the excerpt must end after it begins")
         for unit in self.units.values():
-            if find_unit(unit) is None:
+            if find_ratio(unit) is None:
                 raise ConfigurationError(f"--unit {unit}: not known; allowed are {allowed_units()}")
 
     @property
@@ -95,29 +95,40 @@ def pairs(option: str, texts: Sequence[str], role: str) -> dict[str, str]:
     return found
 
 
-def pick(measurement: Measurement, wanted: str) -> int:
-    """Index of the one channel that a number, an exact name or a pattern means.
+def pick(
+    measurement: Measurement,
+    wanted: str,
+    *,
+    option: str = "--channel",
+    allowed: Callable[[Channel], bool] = lambda channel: True,
+) -> int:
+    """Index of the one channel that a number, an exact name, a pattern, or a place with its direction means.
 
     Args:
         measurement: the file.
-        wanted: what the user gave.
+        wanted: what the user gave; `12+Z` and `Dof 12 +Z` are the channel at node 12 in that direction.
+        option: for messages.
+        allowed: which channels are asked for; the others keep their numbers.
 
     Raises:
         DataError: it hits none or several; all channels are listed.
     """
-    channels = measurement.channels
-    found = [index for index, one in enumerate(channels) if one.name == wanted]
-    if not found and wanted.isdecimal() and 1 <= int(wanted) <= len(channels):
+    channels = [(index, one) for index, one in enumerate(measurement.channels) if allowed(one)]
+    found = [index for index, one in channels if one.name == wanted]
+    if not found and wanted.isdecimal() and int(wanted) - 1 in dict(channels):
         return int(wanted) - 1
     if not found:
-        found = [n for n, one in enumerate(channels) if fnmatch.fnmatchcase(one.name.lower(), wanted.lower())]
+        found = [index for index, one in channels if fnmatch.fnmatchcase(one.name.lower(), wanted.lower())]
+    if not found:
+        point = "".join(wanted.lower().removeprefix("dof").split())
+        found = [index for index, one in channels if one.direction and (one.place + one.direction).lower() == point]
     if len(found) == 1:
         return found[0]
     hits = f"hits {len(found)} channels ({', '.join(str(n + 1) for n in found[:8])})" if found else "hits no channel"
-    listed = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(channels[:40], 1))
+    listed = ", ".join(f"{index + 1} {one.name!r} [{one.unit}]" for index, one in channels[:40])
     more = f" and {len(channels) - 40} more" if len(channels) > 40 else ""
     raise DataError(
-        f"{measurement.path}: --channel {wanted!r} {hits}; give a number, an exact name, or a pattern with * that hits "
+        f"{measurement.path}: {option} {wanted!r} {hits}; give a number, an exact name, or a pattern with * that hits "
         f"one of: {listed}{more}"
     )
 

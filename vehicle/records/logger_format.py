@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.records.channel import Channel, Measurement
-from vehicle.records.frf import FREQUENCY, SUFFIXES, read_frf
+from vehicle.records.frf import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
+from vehicle.records.spectrum_columns import joined
 from vehicle.records.table import Header, Vector, Wanted
 from vehicle.records.text import Text, read_text
 from vehicle.records.text_format import careful, decimal_points, fast
@@ -106,6 +109,8 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
         for index, name in enumerate(names)
         if index != key or axis is None
     )
+    if kind == "frequency":
+        channels = joined(channels)
     program = next((line.strip(" \t#;,") for line in lines[:start] if line.strip(" \t#;,")), "") if start > 1 else ""
     return Measurement(
         path=path, format=form, channels=channels, sha256=text.sha256, program=program[:80], notices=tuple(notices)
@@ -115,7 +120,7 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
 def _responses(path: Path, sha256: str) -> Measurement:
     """The `frf.csv` of a run: frequency responses and their coherences."""
     found = read_frf(path)
-    about = {"axis": found.frequency, "kind": "frequency"}
+    about: dict[str, Any] = {"axis": found.frequency, "kind": "frequency"}
     channels = []
     for row, name in enumerate(found.channels):
         channels.append(
@@ -124,10 +129,13 @@ def _responses(path: Path, sha256: str) -> Measurement:
                 values=found.response[row],
                 unit="(m/s2)/m",
                 function="frequency response",
-                **about,  # type: ignore[arg-type]
+                **about,
             )
         )
-        channels.append(Channel(name=f"{name}_coherence", values=found.coherence[row], function="coherence", **about))  # type: ignore[arg-type]
+        channels.append(Channel(name=f"{name}_coherence", values=found.coherence[row], function="coherence", **about))
+        if np.isfinite(found.random_error[row]).any():
+            error = Channel(name=name + RANDOM_ERROR, values=found.random_error[row], unit="(m/s2)/m", **about)
+            channels.append(replace(error, function="random error"))
     return Measurement(path=path, format="csv", channels=tuple(channels), sha256=sha256)
 
 

@@ -1,0 +1,239 @@
+"""`python -m vehicle compare RUN_OR_INPUT --measured FILE`: a measurement beside a run, worst first."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.options import (
+    command_parser,
+    engine_option,
+    message_options,
+    output_options,
+    record_options,
+    vehicle_options,
+)
+from vehicle.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from vehicle.car import Car
+    from vehicle.comparison.simulated import Simulated
+    from vehicle.records.channel import Measurement
+    from vehicle.records.choice import Choice
+    from vehicle.records.measured import Measured
+
+OUTPUT = Path("runs/compare")
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser("compare", "Compare a measurement with a run: responses, time histories, or mode shapes.")
+    found.add_argument(
+        "run",
+        nargs="?",
+        metavar="RUN_OR_INPUT",
+        help="folder of a run; or an input, as low.csv, which is put on the shaker; not needed for mode shapes",
+    )
+    measured_options(found, required=True)
+    found.add_argument(
+        "--delay", type=float, default=0.0, metavar="S", help="the measurement began this long after the run [s]; 0"
+    )
+    found.add_argument(
+        "--window",
+        type=float,
+        metavar="S",
+        help="length of the Hann windows that the measured responses were averaged over [s]; the simulated ones are "
+        "then estimated alike; by default a local rational model of the whole record",
+    )
+    found.add_argument(
+        "--bands",
+        default="1,2,4,8,16,32,50",
+        metavar="HZ,HZ,...",
+        help="edges of the bands of the table [Hz]; %(default)s",
+    )
+    found.add_argument(
+        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers, for modes"
+    )
+    record_options(found, "", channel=False)
+    vehicle_options(found)
+    engine_option(found, "auto")
+    output_options(found, OUTPUT)
+    found.add_argument("--json", action="store_true", help="print the content of compare.json")
+    message_options(found, quiet=True)
+    return found
+
+
+def measured_options(parser: argparse.ArgumentParser, *, required: bool = False) -> None:
+    """Add --measured, --map and --turn: which measurement, and which of its channels is which.
+
+    Args:
+        parser: of the command.
+        required: whether it is nothing without a measurement.
+    """
+    parser.add_argument(
+        "--measured",
+        type=Path,
+        required=required,
+        metavar="FILE",
+        help="measurement file of any format of `inspect`, with responses, time histories, or mode shapes (UFF 55)",
+    )
+    mapping_options(parser)
+
+
+def mapping_options(parser: argparse.ArgumentParser) -> None:
+    """Add --map and --turn: which channels of a measurement are which."""
+    parser.add_argument(
+        "--map",
+        dest="mapping",
+        action="append",
+        default=[],
+        metavar="CHANNEL=NAME",
+        help='channel of the model and the one that measured it, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
+        "pattern with *, or place and direction; for mode shapes PLACE=NODE; by default equal names, and for modes "
+        "nodes at the places of the car; may be repeated",
+    )
+    parser.add_argument(
+        "--turn",
+        dest="turned",
+        action="append",
+        default=[],
+        metavar="CHANNEL",
+        help="this channel was measured in the other direction; may be repeated",
+    )
+
+
+def measured_choice(options: argparse.Namespace) -> Choice:
+    """What the options ask of the measurement.
+
+    Raises:
+        ConfigurationError: a channel twice, an unknown unit, a number out of range.
+    """
+    from vehicle.records.choice import Choice, pairs
+
+    channels = pairs("--map", options.mapping, "")
+    if "" in channels:
+        raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
+    units = pairs("--unit", options.units, "") if hasattr(options, "delay") else {}
+    own = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass")}
+    return Choice(channels=channels, units=units, **(own if hasattr(options, "delay") else {}))
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.comparison.comparison import comparison_of
+    from vehicle.comparison.frf_comparison import edges_of
+    from vehicle.output.comparison_files import write_comparison
+    from vehicle.output.folder import check_output, output_folder
+    from vehicle.records.reader import read_record
+
+    edges = edges_of(options.bands)
+    choice = measured_choice(options)
+    measurement = read_record(options.measured)
+    check_output(options.output, force=options.force, protect=(options.measured,))
+    if measurement.shapes and not measurement.channels:
+        summary, said = _modes(options, measurement, choice)
+    else:
+        if options.run is None:
+            raise ConfigurationError("needed is RUN_OR_INPUT: the folder of a run, or an input as low.csv")
+        simulated, known = _simulated(options, measurement, choice)
+        measured = _measured(options, known, choice, measurement)
+        comparison = comparison_of(measured, simulated, edges=edges, delay=options.delay, window=options.window)
+        with output_folder(options.output, force=options.force, protect=(options.measured,)) as folder:
+            write_comparison(folder, comparison)
+        summary, said = comparison.summary(), comparison.text()
+    if options.json:
+        print(json.dumps(summary, indent=2, allow_nan=False))
+    elif not options.quiet:
+        print(f"{said}\nfiles: {options.output}")
+
+
+def _measured(
+    options: argparse.Namespace, known: tuple[str, ...], choice: Choice, measurement: Measurement | None = None
+) -> Measured:
+    from vehicle.records.measured import read_measured
+
+    window = getattr(options, "window", None)
+    return read_measured(options.measured, known, choice, turned=options.turned, window=window, measurement=measurement)
+
+
+def measured_beside(options: argparse.Namespace, known: tuple[str, ...]) -> Measured | None:
+    """The measurement that a run shall stand beside, read before the run; None where none is asked for.
+
+    Args:
+        options: with those of `measured_options`.
+        known: names of the channels of the run.
+    """
+    if options.measured is None:
+        if options.mapping or options.turned:
+            raise ConfigurationError("--map and --turn belong to --measured FILE")
+        return None
+    return _measured(options, known, measured_choice(options))
+
+
+def _simulated(
+    options: argparse.Namespace, measurement: Measurement, choice: Choice
+) -> tuple[Simulated, tuple[str, ...]]:
+    """The run, made where an input is given, and the names of its channels."""
+    from vehicle.comparison.simulated import of_folder, of_run
+
+    folder = Path(options.run)
+    if folder.is_dir():
+        found = of_folder(folder)
+        return found, tuple(found.record.channels)
+    from vehicle.car import Car
+    from vehicle.excitation.input_files import find_input
+    from vehicle.excitation.signal_file import read_signal
+
+    car = Car.load(options.vehicle, options.overrides)
+    known = (*car.vehicle.channels, *car.vehicle.load_channels)
+    signal = read_signal(find_input(options.run))
+    asked = _measured(options, known, choice, measurement)  # refused before anything is simulated
+    loads = {*(asked.record.channels if asked.record else ())} - set(car.vehicle.channels)
+    run = car.run(
+        signal,
+        ProgressLine("simulation", enabled=not options.quiet),
+        engine=options.engine,
+        channels=(*car.vehicle.channels, *sorted(loads)) if loads else None,
+    )
+    return of_run(run), known
+
+
+def _modes(options: argparse.Namespace, measurement: Measurement, choice: Choice) -> tuple[dict[str, Any], str]:
+    """Mode shapes beside those of the car."""
+    from vehicle.comparison.mode_comparison import compare_modes
+    from vehicle.output.folder import output_folder, write_json, write_whole
+    from vehicle.rendering.comparison_plot import plot_mac
+
+    found = compare_modes(_car(options), measurement, dict(choice.channels), options.damper)
+    name = measurement.path.name
+    summary = found.summary(name)
+    caption = (
+        f"{name} at {len(found.points)} points of the car, dampers {options.damper}; rows and columns by frequency"
+    )
+    rows, columns = ([one.frequency for one in those] for those in (found.measured, found.simulated))
+    tables = (
+        ("measured (rows), simulated (columns)", found.mac, rows, columns),
+        ("AutoMAC of the measured modes", found.measured_auto, rows, rows),
+        ("AutoMAC of the simulated modes", found.simulated_auto, columns, columns),
+    )
+    with output_folder(options.output, force=options.force, protect=(options.measured,)) as folder:
+        write_json(folder / "compare.json", summary)
+        write_whole(folder / "mac.png", lambda path: plot_mac(path, tables, caption))
+    return summary, found.text(name)
+
+
+def _car(options: argparse.Namespace) -> Car:
+    """The car of a run, or of the options."""
+    from vehicle.car import Car
+
+    file = options.vehicle
+    if file is None and options.run is not None and Path(options.run).is_dir():
+        file = Path(options.run) / "vehicle.toml"
+        if not file.is_file():
+            raise ConfigurationError(f"{options.run}: holds no vehicle.toml; give the folder of a run, or --vehicle")
+    return Car.load(file, options.overrides)
+
+
+main = command(parser, _job)

@@ -1,0 +1,1 @@
+"""Measured beside simulated: frequency responses, time histories, mode shapes."""
