@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import copy
+from argparse import Namespace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -54,7 +54,7 @@ def equal_axles(folder: Path) -> Car:
 @pytest.fixture(scope="module")
 def over_a_hump(tmp_path_factory) -> Run:
     car = equal_axles(tmp_path_factory.mktemp("ride"))
-    options = SimpleNamespace(**(dict.fromkeys(ROAD_NUMBERS) | {"speed": 3.6 * SPEED}))
+    options = Namespace(**(dict.fromkeys(ROAD_NUMBERS) | {"speed": 3.6 * SPEED}))
     places = {wheel: (behind, side) for wheel, behind, side in road_drive("C", options, car.vehicle).wheels}
     assert {wheel: behind for wheel, (behind, _) in places.items()} == pytest.approx(
         {"fr": 0.0, "fl": 0.0, "rr": WHEELBASE, "rl": WHEELBASE}
