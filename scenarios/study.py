@@ -32,6 +32,7 @@ STUDIES = {
     "quarter_car": "Quarter-car models with friction, engine, degressive damper and inclined strut.",
     "half_car_rider": "Half car with seat and rider over a bump.",
     "damper_choice": "Choice of dampers for road holding.",
+    "kinematics": "Axles of all cars over wheel travel and under load, and with one point moved.",
     "published": "Every published result of the complete car beside ours.",
 }
 """Name of a study, `python -m scenarios.NAME`, and what it does."""

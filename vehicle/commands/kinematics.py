@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from vehicle.simulation.axle_statics import AxleStatics, WheelPose
 
 MOST_POSITIONS = 2001
-SMALL = 1e-3
-"""Travel [m] to both sides over which the rates in the design position are taken."""
 
 
 def parser() -> Parser:
@@ -61,6 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.car import Car
+    from vehicle.simulation.axle_curves import design_slopes, travel_curve
 
     travels = _travels(options.travel)
     load = np.array([*_vector("--force", options.force), *_vector("--moment", options.moment)])
@@ -68,22 +67,15 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError("--ideal: ideal joints do not yield to --force or --moment; leave one of them out")
     car = Car.load(options.vehicle, options.overrides)
     statics = axle_statics(car, options.axle, ideal=options.ideal)
-    other = -1.0 if options.opposite else 1.0
-    loads = np.array([load, other * load])
-    rates = [statics.solve([z, other * z], loads)[0] for z in (-SMALL, SMALL)]
-    # From the design position outwards, so that every solution begins at its neighbour.
-    found = {}
-    for part in ([z for z in travels[::-1] if z < 0.0], [z for z in travels if z >= 0.0]):
-        for z in part:
-            found[z] = statics.solve([z, other * z], loads)[0]
-    poses = [found[z] for z in travels]
+    rates = design_slopes(statics, opposite=options.opposite, load=load)
+    poses = travel_curve(statics, travels, opposite=options.opposite, load=load)
     if options.output is not None:
         _write(options, car.vehicle.name, poses)
     if options.json:
         rows = [{k: None if math.isnan(v) else v for k, v in dataclasses.asdict(pose).items()} for pose in poses]
-        print(json.dumps({"axle": options.axle, "rates": _rates(*rates), "rows": rows}, indent=2, allow_nan=False))
+        print(json.dumps({"axle": options.axle, "rates": rates, "rows": rows}, indent=2, allow_nan=False))
     else:
-        print(_report(options, poses, _rates(*rates)))
+        print(_report(options, poses, rates))
 
 
 def axle_statics(car: Any, name: str, *, ideal: bool) -> AxleStatics:
@@ -149,19 +141,6 @@ def _vector(option: str, entries: list[str]) -> list[float]:
             raise ConfigurationError(f"{option} {entry!r}: needed is AXIS=VALUE with x, y or z and a number, as x=1000")
         found[axis] = value
     return list(found.values())
-
-
-def _rates(down: WheelPose, up: WheelPose) -> dict[str, float | None]:
-    """Slopes over the wheel travel in the design position, by central differences over 1 mm."""
-    slope = {
-        name: (getattr(up, name) - getattr(down, name)) / (2.0 * SMALL)
-        for name in ("load_n", "camber_deg", "toe_deg", "lateral_m", "patch_lateral_m", "strut_length_m")
-    }
-    names = {"load_n": "wheel_rate_n_per_m", "strut_length_m": "spring_ratio"}
-    return {
-        names.get(name, f"{name.removesuffix('_m')}_per_m"): None if math.isnan(value) else value
-        for name, value in slope.items()
-    }
 
 
 HEADS = {

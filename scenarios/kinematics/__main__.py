@@ -1,0 +1,116 @@
+"""Kinematics and compliance of the axles of all cars beside each other, and of axles with one point moved.
+
+python -m scenarios.kinematics [--output DIR] [--quick] [--vehicle FILE]... [--point PATH] [--shift MM]
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from scenarios.claims import Findings
+from scenarios.kinematics.axles import POINT, Axle, Moved, axles_of, moved_axles
+from scenarios.kinematics.claims import axle_table, claims
+from scenarios.kinematics.figures import compliance_figure, moved_figure, travel_figure
+from scenarios.study import Study, study_parser
+from vehicle.car import Car
+from vehicle.errors import ConfigurationError
+from vehicle.parameters.shipped import CARS, vehicle_file
+
+REACH = 60
+"""Wheel travel to both sides [mm]."""
+
+
+def study(files: Sequence[Path], folder: Path, options: argparse.Namespace) -> Findings:
+    """Measure all axles, draw them into the folder, and say what was found."""
+    step = 20 if options.quick else 4
+    travels = [1e-3 * z for z in range(-REACH, REACH + 1, step)]
+    shift = 1e-3 * options.shift
+    moved = moved_axles(files, options.point, shift, travels)
+    axles = axles_of([Car.load(file) for file in files], travels)
+    travel_figure(folder / "travel.png", axles)
+    compliance_figure(folder / "compliance.png", axles)
+    moved_figure(folder / "point_moved.png", moved, options.point)
+    return Findings(
+        title="Kinematics and compliance of axles",
+        claims=claims(axles, moved),
+        notes=[axle_table(axles), *findings(axles), *(sentence(one, options.point) for one in moved)],
+        data={
+            "axles": {axle.label: {"equal": axle.slopes, "opposite": axle.rolling} for axle in axles},
+            "moved": {one.label: {"gain_deg_per_m2": one.gain, "neutral_m": one.neutral} for one in moved},
+        },
+    )
+
+
+def findings(axles: Sequence[Axle]) -> list[str]:
+    """What the table says, in words."""
+
+    def each(say: str, value: Callable[[Axle], float]) -> str:
+        ranked = sorted(axles, key=lambda axle: -abs(value(axle)))
+        return ", ".join(f"{axle.label} {value(axle):{say}}" for axle in ranked)
+
+    def slope(name: str) -> Callable[[Axle], float]:
+        # Rounded, so that what is nothing has no sign.
+        return lambda axle: round(0.1 * float(axle.slopes[name] or 0.0), 3) + 0.0
+
+    def rate(axle: Axle) -> float:
+        return float(axle.slopes["wheel_rate_n_per_m"] or math.nan)
+
+    return [
+        f"Camber over equal travel [deg per 100 mm]: {each('+.2f', slope('camber_deg_per_m'))}.",
+        f"Toe-in over equal travel [deg per 100 mm]: {each('+.2f', slope('toe_deg_per_m'))}.",
+        "What bushings add by their twist to the wheel rate that the spring alone makes with ideal joints, or take from "
+        f"it by yielding: {each('+.0%', lambda axle: rate(axle) / axle.from_spring - 1.0)}.",
+        "Wheel rate over opposite travel, times that over equal travel: "
+        f"{each('.2f', lambda axle: float(axle.rolling['wheel_rate_n_per_m'] or math.nan) / rate(axle))}.",
+        "Toe-in of the outer wheel in a bend, under 1 kN towards the middle of the bend [deg]: "
+        f"{each('+.3f', lambda axle: -axle.across.toe_deg)}; negative understeers in front and oversteers behind.",
+    ]
+
+
+def sentence(one: Moved, point: str) -> str:
+    """What moving the point does, in words."""
+    middle = one.toe_slopes[len(one.shifts) // 2]
+    text = (
+        f"{one.label}: {point} higher by 10 mm changes the slope of toe-in by {1e-3 * one.gain:+.2f} deg per 100 mm, "
+        f"from {0.1 * middle:+.2f}"
+    )
+    if not math.isfinite(one.neutral):
+        return f"{text}."
+    return f"{text}; by this slope toe would not change over small travel with it moved by {1e3 * one.neutral:+.0f} mm."
+
+
+def load(options: argparse.Namespace) -> list[Path]:
+    """The files of the cars; what is wrong with the options is refused before the folder is made."""
+    if not 0.1 <= options.shift <= 100.0:
+        raise ConfigurationError(f"--shift {options.shift:g}: allowed are 0.1 to 100 mm")
+    return options.vehicle or [vehicle_file(name) for name in CARS]
+
+
+def parser() -> argparse.ArgumentParser:
+    """The options of the study."""
+    found = study_parser("kinematics", quick="few points on the curves", jobs="; this study is one process")
+    found.add_argument(
+        "--vehicle",
+        type=vehicle_file,
+        action="append",
+        metavar="FILE.toml",
+        help=f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; all of these by default; may be repeated",
+    )
+    found.add_argument(
+        "--point", default=POINT, metavar="PATH", help="coordinate that is moved; %(default)s by default"
+    )
+    found.add_argument(
+        "--shift", type=float, default=10.0, metavar="MM", help="by how much [mm]; %(default)s by default"
+    )
+    return found
+
+
+main = Study(parser=parser(), load=load, study=study)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

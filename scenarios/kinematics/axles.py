@@ -1,0 +1,154 @@
+"""Axles on the rig: curves over travel, slopes, compliance; the same with one point moved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.car import Car
+from vehicle.commands.kinematics import axle_statics
+from vehicle.errors import ConfigurationError
+from vehicle.parameters.paths import value_of
+from vehicle.simulation.axle_curves import SMALL, design_slopes, travel_curve
+from vehicle.simulation.axle_statics import WheelPose
+
+FORCE = 1000.0
+"""Force at each contact point for compliance [N]."""
+
+POINT = "front.hardpoints.tie_inner.z"
+"""Coordinate that is moved where none is asked for."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Axle:
+    """An axle of a car as measured on the rig.
+
+    Attributes:
+        label: car and table.
+        template: what it is.
+        equal, opposite: poses of the right wheel over equal and opposite travel.
+        slopes, rolling: slopes in the design position for these.
+        from_spring: wheel rate of the spring alone, k i^2 + F di/dz with ideal joints [N/m].
+        across, along: pose under a force to the right and to the rear on both wheels.
+    """
+
+    label: str
+    template: str
+    equal: list[WheelPose]
+    opposite: list[WheelPose]
+    slopes: dict[str, float | None]
+    rolling: dict[str, float | None]
+    from_spring: float
+    across: WheelPose
+    along: WheelPose
+
+
+def measured(car: Car, name: str, travels: Sequence[float]) -> Axle:
+    """All curves of an axle of a car; its table by name, travels of the right wheel [m]."""
+    statics = axle_statics(car, name, ideal=False)
+    pushed = [statics.solve([0.0, 0.0], np.array([force] * 2))[0] for force in FORCE * np.eye(6)[[1, 0]]]
+    ideal = axle_statics(car, name, ideal=True)
+    length = {z: ideal.solve([z, z])[0].strut_length_m for z in (-SMALL, 0.0, SMALL)}
+    ratio = (length[SMALL] - length[-SMALL]) / (2.0 * SMALL)
+    bend = (length[SMALL] - 2.0 * length[0.0] + length[-SMALL]) / SMALL**2
+    spring = statics.parts.springs[0]
+    return Axle(
+        label=f"{car.vehicle.name}, {name}",
+        template=str(car.vehicle.table[name]["template"]),
+        equal=travel_curve(statics, travels),
+        opposite=travel_curve(statics, travels, opposite=True),
+        slopes=design_slopes(statics),
+        rolling=design_slopes(statics, opposite=True),
+        # Virtual work: the load of the wheel is the pull of the spring times dL/dz.
+        from_spring=spring.stiffness * ratio**2 - spring.preload * bend,
+        across=pushed[0],
+        along=pushed[1],
+    )
+
+
+def axles_of(cars: Sequence[Car], travels: Sequence[float]) -> list[Axle]:
+    """Every axle with wheels; one whose table another car has too is measured once."""
+    found, seen = [], []
+    for car in cars:
+        for name in dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels):
+            if car.vehicle.table[name] not in seen:
+                seen.append(car.vehicle.table[name])
+                found.append(measured(car, name, travels))
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Moved:
+    """An axle with one coordinate of a point moved.
+
+    Attributes:
+        label: car.
+        shifts: of the coordinate [m], ascending, 0 in the middle.
+        curves: poses over equal travel for each.
+        toe_slopes: dtoe/dz in the design position for each [deg/m].
+        closed_form: d(toe slope)/d(shift) [deg/m2]; nan where the point is not the height of a tie rod's inner end.
+    """
+
+    label: str
+    shifts: tuple[float, ...]
+    curves: list[list[WheelPose]]
+    toe_slopes: tuple[float, ...]
+    closed_form: float
+
+    @property
+    def gain(self) -> float:
+        """Change of the toe slope with the shift [deg/m2]."""
+        return (self.toe_slopes[-1] - self.toe_slopes[0]) / (self.shifts[-1] - self.shifts[0])
+
+    @property
+    def neutral(self) -> float:
+        """Shift with which toe does not change over small travel [m]."""
+        return -self.toe_slopes[len(self.shifts) // 2] / self.gain
+
+
+def bump_steer_gain(car: Car, axle: str, path: str) -> float:
+    """What a higher inner end of the tie rod does to the slope of toe [deg/m2].
+
+    The rod keeps its length: with the inner end higher by d, its outer end, which rises by dz, must give way by
+    d dz / s, s = (O - I) . (k x (O - A)): the knuckle turns about its steering axis k through the lower ball A.
+    """
+    own = {wheel.axle: wheel.name for wheel in car.vehicle.composition.wheels if wheel.side > 0.0}[axle]
+    names = ("tie_outer", "tie_inner", "lower_ball", "strut_top")
+    if path != f"{axle}.hardpoints.tie_inner.z" or any(f"{name}_{own}" not in car.vehicle.points for name in names):
+        return math.nan
+    outer, inner, ball, top = (np.array(car.vehicle.points[f"{name}_{own}"]) for name in names)
+    axis = (top - ball) / np.linalg.norm(top - ball)
+    return float(np.degrees(axis[2] / ((outer - inner) @ np.cross(axis, outer - ball))))
+
+
+def moved_axles(files: Sequence[Path], path: str, shift: float, travels: Sequence[float]) -> list[Moved]:
+    """The axles of those cars that have a point, with its coordinate lower, as it is and higher."""
+    axle, found, seen = path.partition(".")[0], [], []
+    shifts = (-shift, 0.0, shift)
+    for file in files:
+        car = Car.load(file)
+        if axle not in car.vehicle.table or car.vehicle.table[axle] in seen:
+            continue
+        seen.append(car.vehicle.table[axle])
+        try:
+            old = value_of(car.vehicle, path)
+        except ConfigurationError:
+            continue
+        cars = [car if not step else Car.load(file, [f"{path}={old + step!r}"]) for step in shifts]
+        statics = [axle_statics(one, axle, ideal=False) for one in cars]
+        found.append(
+            Moved(
+                label=car.vehicle.name,
+                shifts=shifts,
+                curves=[travel_curve(one, travels) for one in statics],
+                toe_slopes=tuple(float(design_slopes(one)["toe_deg_per_m"] or 0.0) for one in statics),
+                closed_form=bump_steer_gain(car, axle, path),
+            )
+        )
+    if not found:
+        raise ConfigurationError(f"--point {path}: no car has it; give the coordinate of a hardpoint, as {POINT}")
+    return found

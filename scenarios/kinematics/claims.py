@@ -1,0 +1,69 @@
+"""What theory says of axles, beside what the rig finds, and the table of their numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from scenarios.claims import OWN_CHECK, Claim, markdown
+from scenarios.kinematics.axles import Axle, Moved
+
+COMPLIANCES = {
+    "lateral [mm/kN], lateral force": ("across", "patch_lateral_m", 1e3),
+    "toe-in [deg/kN], lateral force": ("across", "toe_deg", 1.0),
+    "longitudinal [mm/kN], braking force": ("along", "patch_longitudinal_m", 1e3),
+    "toe-in [deg/kN], braking force": ("along", "toe_deg", 1.0),
+}
+"""Label of a compliance of the right wheel to the direction of the force, the quantity and its scale."""
+
+TWISTED = 5e-3
+"""Toe and camber [deg] of an axle that swings about its pivots: bushings of both sides yield alike."""
+
+LEVER_ERROR = 0.1
+"""What the closed form of bump steer leaves out, as a share: the steering axis tilts and the outer end rises less."""
+
+
+def claims(axles: Sequence[Axle], moved: Sequence[Moved]) -> list[Claim]:
+    """What theory says of these axles, and what the rig finds."""
+    rows = []
+    for axle in axles:
+        if axle.template == "twist_beam":
+            most = max(max(abs(pose.camber_deg), abs(pose.toe_deg)) for pose in axle.equal)
+            why = f"it swings about the line through its pivots; {TWISTED:g} deg for the bushings"
+            name = f"{axle.label}: camber and toe over equal travel"
+            rows.append(OWN_CHECK.statement(name, "none", f"at most {most:.1e} deg", most <= TWISTED, why))
+        equal, rolling = (1e-3 * float(one["wheel_rate_n_per_m"] or 0.0) for one in (axle.slopes, axle.rolling))
+        rows.append(
+            OWN_CHECK.statement(
+                f"{axle.label}: wheel rate over opposite travel",
+                "above that over equal travel",
+                f"{rolling:.1f} against {equal:.1f} N/mm",
+                rolling > equal,
+                "an anti-roll bar or a beam twists over opposite travel alone",
+            )
+        )
+    for one in moved:
+        if math.isfinite(one.closed_form):
+            why = f"a rod of fixed length about the steering axis; {100 * LEVER_ERROR:g} % for what it leaves out"
+            name = f"{one.label}: toe slope for a higher inner end of the tie rod [deg/m2]"
+            rows.append(OWN_CHECK.number(name, one.closed_form, one.gain, LEVER_ERROR * abs(one.closed_form), why))
+    return rows
+
+
+def axle_table(axles: Sequence[Axle]) -> str:
+    """Slopes and compliances of every axle."""
+    heads = ("camber", "toe-in", "patch, lateral", "spring ratio", "wheel rate", "of it the spring", "opposite travel")
+    units = ("[deg/100 mm]", "[deg/100 mm]", "[mm/100 mm]", "[-]", "[N/mm]", "[N/mm]", "[N/mm]")
+    columns = ["axle", "template", *(f"{head} {unit}" for head, unit in zip(heads, units, strict=True))]
+    rows = []
+    for axle in axles:
+        slope = {name: float(value or 0.0) for name, value in axle.slopes.items()}
+        cells = [0.1 * slope["camber_deg_per_m"], 0.1 * slope["toe_deg_per_m"], 100.0 * slope["patch_lateral_per_m"]]
+        cells += [slope["spring_ratio"], 1e-3 * slope["wheel_rate_n_per_m"], 1e-3 * axle.from_spring]
+        cells += [1e-3 * float(axle.rolling["wheel_rate_n_per_m"] or 0.0)]
+        pushed = [scale * getattr(getattr(axle, way), name) for way, name, scale in COMPLIANCES.values()]
+        rows.append([axle.label, axle.template, *(f"{round(cell, 6) + 0.0:.3g}" for cell in (*cells, *pushed))])
+    return (
+        "Slopes in the design position, equal travel, wheel on the right; compliance under 1 kN to the right or to "
+        + (f"the rear on both wheels at the ground:\n\n{markdown([*columns, *COMPLIANCES], rows)}")
+    )
