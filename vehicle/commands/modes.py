@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+from pathlib import Path
 from typing import Any
 
 from vehicle.commands.command_line import Parser, command
 from vehicle.commands.options import command_parser, message_options, vehicle_options
+from vehicle.errors import ConfigurationError
 
 
 def parser() -> Parser:
@@ -16,6 +18,14 @@ def parser() -> Parser:
     vehicle_options(found)
     found.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers")
     found.add_argument("--json", action="store_true", help="print JSON")
+    found.add_argument(
+        "--uff",
+        type=Path,
+        metavar="FILE.uff",
+        help="write the places of the car, lines between them and the complex mode shapes as a universal file "
+        "(datasets 15, 82 and 55), for Testlab, ME'scope or `python -m vehicle compare`",
+    )
+    found.add_argument("--force", action="store_true", help="replace FILE.uff")
     message_options(found)
     return found
 
@@ -23,8 +33,15 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.car import Car
 
+    if options.uff is not None and options.uff.exists() and not (options.force and options.uff.suffix == ".uff"):
+        raise ConfigurationError(f"--uff {options.uff}: exists; give --force to replace a .uff file, or another name")
     car = Car.load(options.vehicle, options.overrides)
     found = modes_table(car, options.damper)
+    if options.uff is not None:
+        from vehicle.output.folder import write_whole
+        from vehicle.output.mode_file import write_modes
+
+        write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
     print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
 
 

@@ -142,8 +142,23 @@ def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> Matrix:
     return found
 
 
+def _near(car: Geometry, nodes: Mapping[str, Sequence[float]]) -> dict[str, str]:
+    """Places to the nodes that lie there; places that share a point only where as many nodes do, in order."""
+    at, labels = np.array(list(nodes.values())).reshape(-1, 3), list(nodes)
+    points = np.array(list(car.points.values())).reshape(-1, 3)
+    found = {}
+    for place, point in car.points.items():
+        here = [labels[n] for n in np.flatnonzero(np.linalg.norm(at - np.array(point), axis=1) <= NEAR)]
+        sharing = [
+            name for name, other in zip(car.points, points, strict=True) if np.linalg.norm(other - point) <= NEAR
+        ]
+        if here and len(here) == len(sharing):
+            found[place] = here[sharing.index(place)]
+    return found
+
+
 def points_of(car: Car) -> Geometry:
-    """Places of a car in its design position, and lines over those of each wheel."""
+    """Places of a car in its design position."""
     return Geometry(points={one.name: tuple(one.at) for one in car.vehicle.composition.outputs})
 
 
@@ -176,13 +191,8 @@ def compare_modes(
         raise ConfigurationError(f"--map {unknown}=...: the car has no such place; it has {', '.join(geometry.points)}")
     moved = {point for one in measurement.shapes for point in one.points}
     found = {place: wanted.lower().removeprefix("dof").strip() for place, wanted in mapping.items()}
-    if not found and known:
-        labels = [label for label in known if label in moved]
-        at = np.array([known[label] for label in labels]).reshape(-1, 3)
-        for place, point in geometry.points.items():
-            distance = np.linalg.norm(at - np.array(point), axis=1) if labels else np.array([])
-            if distance.size and distance.min() <= NEAR:
-                found[place] = labels[int(np.argmin(distance))]
+    if not found:
+        found = _near(geometry, {label: at for label, at in known.items() if label in moved})
     missing = next((node for node in found.values() if node not in moved), None)
     if missing is not None:
         raise DataError(

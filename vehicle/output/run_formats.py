@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.analysis.motion_response import MotionResponse
-from vehicle.car import Run
+from vehicle.car import Car, Run
 from vehicle.records import hdf_format, matlab_format, rpc_format, uff_writer
 from vehicle.records.channel import Channel, uniform_axis
 from vehicle.records.formats import FORMATS
@@ -81,9 +81,9 @@ def _point(name: str) -> dict[str, Any]:
     return {"place": f"plate_{match['wheel']}", "direction": "+Z"} if match else {}  # a damper acts between two places
 
 
-def geometry(run: Run) -> Geometry:
+def geometry(of: Car) -> Geometry:
     """Places of a car in its design position, and lines from each plate over the places of its wheel."""
-    car = run.car.vehicle.composition
+    car = of.vehicle.composition
     points = {one.name: tuple(one.at) for one in car.outputs}
     lines = []
     for wheel in car.wheels:
@@ -115,6 +115,6 @@ def writer(
         return lambda path: rpc_format.write(path, histories, about)
     everything = histories + response_channels(responses, channels)
     if form == "uff":
-        return lambda path: uff_writer.write(path, everything, about, geometry(run))
+        return lambda path: uff_writer.write(path, everything, about, geometry(run.car))
     write = {"mat": matlab_format.write, "h5": hdf_format.write}[form]
     return lambda path: write(path, everything, about)
