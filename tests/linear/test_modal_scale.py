@@ -21,6 +21,7 @@ def test_modal_a_is_the_slope_of_the_dynamic_stiffness(car):
         step = 1e-5 * size
         up, down = (mode.shape @ stiffness(system, pole + side * step) @ mode.shape for side in (1.0, -1.0))
         assert modal_a(system, pole, mode.shape) == pytest.approx((up - down) / (2.0 * step), rel=1e-6)
+        assert mode.modal_a == pytest.approx(modal_a(system, pole, mode.shape), rel=1e-9)
         # A mode is a motion that the dynamic stiffness balances: it is the pole of D that was taken.
         balance = abs(mode.shape @ stiffness(system, pole) @ mode.shape)
         assert balance < 1e-6 * abs(mode.shape @ (pole**2 * system.mass) @ mode.shape)

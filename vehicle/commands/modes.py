@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import command_parser, message_options, vehicle_options
+from vehicle.commands.options import FORCE_HELP, command_parser, message_options, vehicle_options
 from vehicle.errors import ConfigurationError
 
 
@@ -25,7 +25,7 @@ def parser() -> Parser:
         help="write the places of the car, lines between them and the complex mode shapes as a universal file "
         "(datasets 15, 82 and 55), for Testlab, ME'scope or `python -m vehicle compare`",
     )
-    found.add_argument("--force", action="store_true", help="replace FILE.uff")
+    found.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(found)
     return found
 
@@ -33,8 +33,11 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.car import Car
 
-    if options.uff is not None and options.uff.exists() and not (options.force and options.uff.suffix == ".uff"):
-        raise ConfigurationError(f"--uff {options.uff}: exists; give --force to replace a .uff file, or another name")
+    if options.uff is not None and options.uff.exists():
+        own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.open("rb").read(500)
+        if not (options.force and own):
+            mend = "is of somebody else; give another name" if options.force else "exists; give --force"
+            raise ConfigurationError(f"--uff {options.uff}: {mend}")
     car = Car.load(options.vehicle, options.overrides)
     found = modes_table(car, options.damper)
     if options.uff is not None:

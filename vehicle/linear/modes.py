@@ -10,6 +10,7 @@ import numpy.typing as npt
 from vehicle.errors import ConfigurationError
 from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices
+from vehicle.linear.modal_scale import modal_a
 from vehicle.linear.natural_modes import grows, natural_modes
 from vehicle.linear.strained_part import holding_parameter
 from vehicle.names import SIDE_OF_WHEEL
@@ -28,6 +29,7 @@ class Mode:
         growth: Re(s) [1/s].
         grows: whether the motion grows by itself, beyond round-off.
         description: what moves.
+        modal_a: as of `vehicle.linear.modal_scale`, of this shape [kg/s].
     """
 
     frequency: float
@@ -37,6 +39,7 @@ class Mode:
     shape: npt.NDArray[np.complex128]
     energy: dict[str, float]
     description: str
+    modal_a: complex
 
 
 def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> list[Mode]:
@@ -65,6 +68,7 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> l
                 shape=shape,
                 energy=energy,
                 description=("grows: " if growing else "") + _describe(matrices, shape, energy),
+                modal_a=modal_a(matrices.system, modes.pole[index], shape),
             )
         )
     return found

@@ -8,7 +8,6 @@ import numpy as np
 
 from vehicle.car import Car
 from vehicle.comparison.mode_comparison import shapes_at
-from vehicle.linear.modal_scale import modal_a
 from vehicle.output.run_formats import geometry
 from vehicle.records import uff_writer
 from vehicle.records.geometry import ModeShape
@@ -26,8 +25,6 @@ def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
     found = []
     for number, (mode, at) in enumerate(zip(modes, shapes_at(car, modes, places), strict=True), 1):
         scale = at.ravel()[np.argmax(np.abs(at))] or 1.0
-        size = 2.0 * np.pi * mode.frequency
-        pole = complex(mode.growth, np.sqrt(max(size**2 - mode.growth**2, 0.0)))
         shape = np.zeros((len(places), 6), dtype=np.complex128)
         shape[:, :3] = at / scale
         found.append(
@@ -35,7 +32,7 @@ def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
                 number=number,
                 frequency=mode.frequency,
                 damping_ratio=mode.damping_ratio,
-                modal_a=modal_a(car.matrices.system, pole, mode.shape / scale),
+                modal_a=mode.modal_a / scale**2,
                 points=places,
                 shape=shape,
                 name=mode.description,
