@@ -1,9 +1,12 @@
 """Paths of parameters: into vehicles and back, whole or their ends, with their units."""
 
+import re
+
 import pytest
 
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.elements import Hydromount
 from vehicle.parameters.paths import full_path, overrides_of, unit_of, value_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.toml_file import as_table
@@ -75,6 +78,33 @@ def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
     )
     with pytest.raises(ConfigurationError, match=r"parameter stiffness\.z: no number of a vehicle; .* may"):
         value_of(car.vehicle, "stiffness.z")
+
+
+def test_optional_keys_are_given_where_the_law_has_them():
+    table = ["displacement=[-0.05, -0.02, 0.05]", "force=[-900.0, 0.0, 0.0]"]
+    laws = {
+        "damper.gas_force=200": lambda own: own.dampers[0].law.gas_force == 200.0,
+        "front.damper.stop={" + ", ".join(table) + "}": lambda own: own.dampers[0].law.stop.force[0] == -900.0,
+        "main_spring.table={" + ", ".join(table) + "}": lambda own: own.springs[0].table.force[0] == -900.0,
+        "*.damper.viscous=1999": lambda own: own.dampers[0].law.viscous == 1999.0,
+        "front.right.damper.viscous=1999": lambda own: [one.law.viscous for one in own.dampers] == [1999.0, 2250.0],
+    }
+    for text, holds in laws.items():
+        assert holds(load_vehicle(None, [text]).composition), text
+    branch = ["linear_mount.maxwell_stiffness=1e5", "linear_mount.maxwell_damping=1e3"]
+    mount = next(one.law for one in load_vehicle(None, branch).composition.connections if one.name == "linear_mount")
+    assert isinstance(mount, Hydromount) and mount.maxwell_damping == 1e3
+    ideal = [f"front.bushings.arm_front.{key}" for key in ("stiffness=[1e6, 1e6, 1e6]", "damping=[9, 9, 9]")]
+    links = load_vehicle(None, [*ideal, "arm_front.rotational_stiffness=1"]).composition.connections
+    arm = next(one.law for one in links if one.name == "arm_front_fl")
+    assert arm is not None and arm.damping == (9.0, 9.0, 9.0)
+    for text, near in (("gas_forse=1", "damper.gas_force"), ("*.stopp=1", "damper.stop"), ("w.tabel_x=1", "table_x")):
+        with pytest.raises(
+            ConfigurationError, match=rf"^--set {re.escape(text)}: no parameter .* nearest is .*{near}$"
+        ):
+            load_vehicle(None, [text])
+    with pytest.raises(ConfigurationError, match=r"parameter table_x may be front\.bushings\.\w+\.table_x, "):
+        load_vehicle(None, ["table_x=1"])
 
 
 def test_units_are_those_of_the_fields(car):

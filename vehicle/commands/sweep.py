@@ -125,13 +125,13 @@ def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[
         ConfigurationError: a path does not exist, or its value in the first row is none.
     """
     from vehicle.errors import ConfigurationError
-    from vehicle.parameters.base_car import vehicle_table
-    from vehicle.parameters.paths import override
-    from vehicle.parameters.shipped import FOCUS_FILE
+    from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
+    from vehicle.parameters.vehicle import overridden
 
-    table = override(vehicle_table(FOCUS_FILE if vehicle is None else vehicle), overrides)
+    file = FOCUS_FILE if vehicle is None else vehicle_file(vehicle)
+    overridden(file, overrides)
     try:
-        override(table, [f"{path}={value}" for path, value in zip(paths, row, strict=True)])
+        overridden(file, [*overrides, *(f"{path}={value}" for path, value in zip(paths, row, strict=True))])
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
 

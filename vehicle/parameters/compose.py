@@ -24,16 +24,13 @@ from vehicle.parameters.composition import (
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.freedoms import freedoms
 from vehicle.parameters.hardpoints import Point
-from vehicle.parameters.instance import OWN, Instance
+from vehicle.parameters.instance import Instance
+from vehicle.parameters.instances import instances
 from vehicle.parameters.parts import Part
-from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.references import require_aliases, require_points, require_ports, require_sound, require_taken
 from vehicle.parameters.springs import placed_spring, spring_kind
-from vehicle.parameters.template import read_template
-from vehicle.parameters.toml_file import convert, nearest
+from vehicle.parameters.toml_file import convert
 
-KEPT = ("name", "gravity", "body", "solver", "hardpoints", "outputs", "connection", "alias")
-"""Keys of a vehicle file that are no instance."""
 Elements = list[tuple[Instance, Any, str | None]]
 
 
@@ -51,12 +48,9 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         ConfigurationError: a name that leads nowhere, numbers that are missing or wrong, a part that nothing holds, a
             loop of joints; the message names table and template.
     """
-    car: dict[str, Instance] = {}
     given = {key: convert(dict, table.get(key, {}), key) for key in ("hardpoints", "connection", "outputs", "alias")}
     own = {name: own_point(f"hardpoints.{name}", value) for name, value in given["hardpoints"].items()}
-    for path, numbers in _instances(table, "", ""):
-        found = read_template(convert(str, numbers["template"], f"{path}.template"), numbers, folders)
-        car[path] = Instance(name=path, numbers=numbers, template=found, others=car, given=own)
+    car = instances(table, folders, own)
     points = dict(itertools.chain.from_iterable(map(_points, car.values())))
     if twice := sorted(set(own) & set(points)):
         raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; give it another one")
@@ -89,51 +83,14 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         outputs=tuple(_outputs(car, added)),
         wheels=tuple(wheels),
         points=points,
-        kinds=_kinds(car, table),
+        kinds=kinds(car, table),
         meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},
     )
     require_sound(composed)
     require_taken(car)
-    require_points(table)
+    require_points(table, car)
     require_aliases(table)
     return composed
-
-
-def _instances(table: Mapping[str, Any], prefix: str, inside: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Tables with a template, at any depth; outside of an instance every table holds one.
-
-    Args:
-        table: to be looked through.
-        prefix: path of it.
-        inside: the same where it is an instance, or lies in one; empty elsewhere.
-    """
-    for key, value in table.items():
-        place = f"{prefix}{key}"
-        if not prefix and key in KEPT:
-            continue
-        if isinstance(value, Mapping) and "template" in value:
-            if not NAME_PATTERN.fullmatch(key):
-                raise ConfigurationError(f"{place}: found {key!r}, allowed are letters, digits, '_', '.', '-'")
-            yield place, value
-            yield from _instances(value, f"{place}.", place)
-        elif inside:
-            yield from _instances(value, f"{place}.", inside) if isinstance(value, Mapping) else ()
-        elif isinstance(value, Mapping) and _holds(value):
-            yield from _instances(value, f"{place}.", "")
-        elif isinstance(value, Mapping) and set(value) & set(OWN):
-            raise ConfigurationError(f"{place}.template: missing; an instance needs template = NAME")
-        else:
-            near = nearest(key, [other for other in (table if prefix else (*KEPT, *table)) if other != key])
-            raise ConfigurationError(
-                f"{place}: unknown parameter; the nearest known name is {near}. A table of its own needs template "
-                "= NAME"
-            )
-
-
-def _holds(table: Mapping[str, Any]) -> bool:
-    """Whether a table holds an instance at any depth, or what lacks a template to be one."""
-    inner = [value for value in table.values() if isinstance(value, Mapping)]
-    return any(set(value) & {"template", *OWN} or _holds(value) for value in inner)
 
 
 def _points(instance: Instance) -> Iterator[tuple[str, Point]]:
@@ -283,12 +240,15 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
     )
 
 
-def _kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
-    """Class of each table of numbers."""
+def kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
+    """Class of each table of numbers, by its path in the vehicle file."""
     found: dict[str, type] = {f"connection.{name}": law_kind(one) for name, one in table.get("connection", {}).items()}
     for i in car.values():
         found |= {f"{i.name}.parts.{name}": Part for name in i.template.parts}
-        found |= {f"{i.name}.bushings.{name}": law_kind(one) for name, one in i.numbers.get("bushings", {}).items()}
+        for one in i.template.connection:
+            if not one.ideal or i.has("bushings", one.name):
+                path = f"{i.name}.bushings.{one.name}"
+                found[path] = law_kind(i.numbers.get("bushings", {}).get(one.name, {}))
         found |= {f"{i.name}.{one.name}": Damper for one in i.template.damper}
         found |= {f"{i.name}.{one.name}": spring_kind(i, one) for one in i.template.spring}
     return found

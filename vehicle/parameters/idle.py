@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from vehicle.parameters.elements import Hydromount
-from vehicle.parameters.paths import full_path
+from vehicle.parameters.paths import meant
 from vehicle.parameters.vehicle import Vehicle
 
 
@@ -34,10 +34,10 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
         if isinstance(one.law, Hydromount):
             none = one.law.maxwell_stiffness * one.law.maxwell_damping == 0.0
             off[f"{one.path}.maxwell_"] = (none, "both of its values above zero")
-    said = {text: full_path(vehicle.table, text.partition("=")[0].strip()) for text in overrides}
+    said = {text: meant(vehicle.table, text.partition("=")[0].strip()) for text in overrides}
     return tuple(
         f"{override.strip()}: without effect; it belongs to {needed}"
-        for override, whole in said.items()
+        for override, places in said.items()
         for path, (idle, needed) in off.items()
-        if idle and whole.startswith(path)
+        if idle and any(whole.startswith(path) for whole in places)
     )

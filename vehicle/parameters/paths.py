@@ -10,13 +10,16 @@ from __future__ import annotations
 import difflib
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 from vehicle.parameters.quantity import field_quantity
 from vehicle.parameters.toml_file import as_table, copy_table
+
+Optional = Callable[[], Iterable[str]]
+"""Paths that may be given beside those of a table."""
 
 SHOWN = 4
 """Most paths that a message lists."""
@@ -41,6 +44,10 @@ def full_path(table: Mapping[str, Any], path: str) -> str:
     found = [one for one in dict.fromkeys([*known, *groups]) if one.endswith(f".{path}")]
     if not found:
         raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
+    return _only(found, path)
+
+
+def _only(found: Sequence[str], path: str) -> str:
     if len(found) > 1:
         more = f" or one of {len(found) - SHOWN} others" if len(found) > SHOWN else ""
         raise ConfigurationError(f"parameter {path} may be {', '.join(found[:SHOWN])}{more}; give more of its path")
@@ -68,12 +75,42 @@ def nearest(path: str, known: Iterable[str]) -> str:
     return ends[difflib.get_close_matches(path, list(ends)[::-1], n=1, cutoff=0.0)[0]]
 
 
-def override(table: Mapping[str, Any], assignments: Iterable[str]) -> dict[str, Any]:
-    """Replace single values of nested dictionaries.
+def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> list[str]:
+    """Whole paths of what is to be set: one, or with "*." before it all that end so.
+
+    Args:
+        table: nested dictionaries.
+        path: a whole path, or the end of one.
+        optional: paths that may be given beside those of the table, of sides too; asked for where it has none.
+
+    Raises:
+        ConfigurationError: nothing is called so (with the nearest path), or more than one thing is.
+    """
+    every = path.startswith("*.")
+    if not every:
+        try:
+            return [full_path(table, path)]
+        except ConfigurationError as error:
+            if not str(error).startswith("no parameter"):
+                raise
+    # Of what is given for both sides, one side is meant only where it is named.
+    sided = bool({"right", "left"} & set(path.split(".")))
+    known = paths(table)
+    further = [one for one in optional() if sided or not {"right", "left"} & set(one.split("."))]
+    found = [one for one in (*known, *further) if f".{one}".endswith(f".{path.removeprefix('*.')}")]
+    if not found:
+        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, [*known, *further])}")
+    return found if every else [path if path in found else _only(found, path)]
+
+
+def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Optional = list) -> dict[str, Any]:
+    """Replace single values of nested dictionaries, or give optional ones.
 
     Args:
         table: as of `read_table`; not changed.
-        assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML.
+        assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML. "*.damper.viscous=2e3"
+            is for every damper.
+        optional: as of `meant`.
 
     Returns:
         A new table.
@@ -88,23 +125,31 @@ def override(table: Mapping[str, Any], assignments: Iterable[str]) -> dict[str, 
         if not separator or not given:
             raise ConfigurationError(f"--set {assignment}: needed is PATH=VALUE, as in damper.coulomb_friction=93.75")
         try:
-            path = full_path(result, given)
+            places = meant(result, given, optional)
         except ConfigurationError as error:
             raise ConfigurationError(f"--set {assignment}: {error}") from None
-        old = _at(result, path)
-        if isinstance(old, Mapping):
-            inside = ", ".join(f"{path}.{key}" for key in list(old)[:6])
-            raise ConfigurationError(f"--set {assignment}: {given} is a group; set one of {inside}")
-        value = _value(assignment, text, old)
-        if _is_vector(old) and isinstance(value, int | float):
-            raise ConfigurationError(
-                f"--set {assignment}: {given} is a vector; give all as [x, y, z], or one component with its axis "
-                f"behind the path: {given}.z={text}"
-            )
-        parent, _, name = path.rpartition(".")
-        outer: Any = _at(result, parent) if parent else result
-        outer[AXES.index(name) if isinstance(outer, list) else name] = value
+        for path in places:
+            _set(result, path, assignment, text)
     return result
+
+
+def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
+    """Put a value into its place; tables that an optional one needs are made."""
+    old, given = _at(table, path), assignment.partition("=")[0].strip()
+    if isinstance(old, Mapping):
+        inside = ", ".join(f"{path}.{key}" for key in list(old)[:6])
+        raise ConfigurationError(f"--set {assignment}: {given} is a group; set one of {inside}")
+    value = _value(assignment, text, "" if old is None else old)
+    if _is_vector(old) and isinstance(value, int | float):
+        raise ConfigurationError(
+            f"--set {assignment}: {given} is a vector; give all as [x, y, z], or one component with its axis "
+            f"behind the path: {given}.z={text}"
+        )
+    *parents, name = path.split(".")
+    outer: Any = table
+    for parent in parents:
+        outer = outer.setdefault(parent, {}) if isinstance(outer, dict) else outer[AXES.index(parent)]
+    outer[AXES.index(name) if isinstance(outer, list) else name] = value
 
 
 def value_of(vehicle: Any, path: str) -> float:

@@ -49,7 +49,8 @@ def require_sound(car: Composition) -> None:
         require_apart(dict(zip((f"{spring.path}, lower end", "upper end"), spring.at, strict=True)))
     joints = [joint.name for part in car.parts for joint in part.joints]
     parts, links = [one.name for one in car.parts], [one.name for one in car.connections]
-    laws, outputs = [one.name for one in (*car.springs, *car.dampers)], [one.name for one in car.outputs]
+    laws, outputs = [one.name for one in car.springs], [one.name for one in car.outputs]
+    laws += [one.name for one in car.dampers]
     for names in (parts, joints, links, laws, outputs):
         for name, other in itertools.pairwise(sorted(names)):
             if name == other:
@@ -77,7 +78,7 @@ def _places(table: Mapping[str, Any]) -> Iterator[str]:
         yield from (f"{key}.{name}" for name in inner) if key in GROUPS else (key,)
 
 
-def require_points(table: Mapping[str, Any]) -> None:
+def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> None:
     """Refuse a point of the vehicle file that nothing uses; a body with a model may stand on any.
 
     Raises:
@@ -87,6 +88,8 @@ def require_points(table: Mapping[str, Any]) -> None:
         return
     users = (*table.get("outputs", {}).values(), *table.get("connection", {}).values())
     used = {one.get("at") for one in users if isinstance(one.get("at"), str)}
+    tables = [side for i in car.values() for side in (i.numbers, *(i.numbers.get(word, {}) for word in SIDE_SIGN))]
+    used |= {value for one in tables for value in one.get("hardpoints", {}).values() if isinstance(value, str)}
     for name in table.get("hardpoints", {}):
         if name not in used:
             raise ConfigurationError(f"hardpoints.{name}: nothing uses it; take it out, or name it in an output")

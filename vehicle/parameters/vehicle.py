@@ -16,6 +16,7 @@ from vehicle.parameters.composition import Composition
 from vehicle.parameters.curves import with_curve_files
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.hardpoints import Point
+from vehicle.parameters.optional_keys import optional_paths
 from vehicle.parameters.paths import override
 from vehicle.parameters.plausible import require_plausible
 from vehicle.parameters.quantity import field_quantity, quantity, validate
@@ -206,6 +207,20 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     return vehicle
 
 
+def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
+    """A vehicle file with other values in their places, and optional ones where it has none.
+
+    Args:
+        file: TOML file.
+        overrides: texts "path.to.parameter=value".
+
+    Raises:
+        ConfigurationError: the file or an override is wrong.
+    """
+    table = vehicle_table(file)
+    return override(table, overrides, lambda: optional_paths(table, file.parent))
+
+
 def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Vehicle:
     """Read and validate a vehicle file.
 
@@ -221,7 +236,7 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
     """
     file = FOCUS_FILE if path is None else vehicle_file(path)
     try:
-        return vehicle_of(override(vehicle_table(file), overrides), file.parent)
+        return vehicle_of(overridden(file, overrides), file.parent)
     except ConfigurationError as error:
         if path is None:
             raise
