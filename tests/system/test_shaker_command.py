@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,8 @@ from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import write_signal
 from vehicle.output.written_files import MARKER, written
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.template import SHIPPED
 from vehicle.parameters.vehicle import load_vehicle
 
 FILES = {"summary.json", "vehicle.toml", "time.npz", "frf.csv", "frf.png", "time.png"}
@@ -124,6 +127,31 @@ def test_modes_command(capsys):
         assert sum(mode["energy"].values()) == pytest.approx(1.0, rel=1e-9)  # shares of one sum
     assert main(["--damper", "sliding"]) == 0
     assert "right wheel vertical" in capsys.readouterr().out
+
+
+def test_a_run_of_an_own_template_and_body_repeats_from_its_folder(shaker, short_signal, tmp_path):
+    """The run keeps the templates, those that they use, and the body that lay beside the vehicle file."""
+    mine = tmp_path / "mine"
+    (mine / "templates").mkdir(parents=True)
+    strut = (SHIPPED / "macpherson.toml").read_text(encoding="utf-8").replace('"anti_roll_bar"', '"bar"')
+    (mine / "strut.toml").write_text(strut, encoding="utf-8")
+    shutil.copy(SHIPPED / "anti_roll_bar.toml", mine / "templates" / "bar.toml")
+    body = (FOCUS_FILE.parent / "body_design.toml").read_text(encoding="utf-8")
+    (mine / "shell.toml").write_text(body.replace("damping_ratio = 0.03", "damping_ratio = 0.05"), encoding="utf-8")
+    text = FOCUS_FILE.read_text(encoding="utf-8").replace('"macpherson"', '"strut"').replace("body_design", "shell")
+    (mine / "car.toml").write_text(text, encoding="utf-8")
+    common = ("--input", "short.csv", "--engine", "reduced")
+    assert shaker(*common, "--vehicle", "mine/car.toml", "--output", "one").code == 0
+    shutil.rmtree(mine)
+    files = json.loads((tmp_path / "one" / "summary.json").read_text(encoding="utf-8"))["files"]
+    assert {files["template_strut"], files["template_bar"], files["body_shell"]} == {
+        "templates/strut.toml", "templates/bar.toml", "shell.toml"
+    }  # fmt: skip
+    outcome = shaker(*common, "--vehicle", "one/vehicle.toml", "--output", "two")
+    assert outcome.code == 0, outcome.err
+    one, two = (np.load(tmp_path / name / "time.npz") for name in ("one", "two"))
+    for name in one.files:
+        np.testing.assert_array_equal(one[name], two[name])
 
 
 def test_published_modes(capsys):

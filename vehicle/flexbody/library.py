@@ -60,6 +60,12 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
         raise ConfigurationError(text if text.startswith("body.") else f"{file.name}: {text}") from None
 
 
+def own_body_file(vehicle: Vehicle, folder: Path) -> Path | None:
+    """The file of the body where it is none of the package; arguments as of `body_model`."""
+    found = None if vehicle.body.superelement is None else _find(vehicle.body.superelement, folder)
+    return None if found is None or found.parent == PACKAGE_FOLDER else found
+
+
 def _find(name: str, folder: Path | None) -> Path | None:
     """A file by its name, which parameter validation keeps free of folders; None where there is none."""
     for place in (folder, PACKAGE_FOLDER):

@@ -22,6 +22,7 @@ from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.output.comparison_files import write_comparison
 from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
+from vehicle.output.own_files import write_own_files
 from vehicle.output.run_formats import writer
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
@@ -103,6 +104,7 @@ def write_run(
     files["time_plot"] = "time.png"
     header = f"parameters of this run, as used\nframe: {FRAME}"
     write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
+    files |= write_own_files(folder, run.car)
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME
     write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, frame))

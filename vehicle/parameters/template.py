@@ -46,6 +46,22 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
     return _read_once(name, frozenset(options), places, tuple((file, file.stat().st_mtime_ns) for file in files))
 
 
+def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
+    """Files of templates, and of those that they use, that lie in one of these folders and not in the package.
+
+    Args:
+        names: of the templates.
+        folders: as of `read_template`.
+    """
+    found, wanted = dict[str, Path](), list(names)
+    for name in wanted:
+        path = next(place / f"{name}.toml" for place in (*folders, SHIPPED) if (place / f"{name}.toml").is_file())
+        if name not in found:
+            found[name] = path
+            wanted += [use["template"] for use in read_template_file(path)["use"]]
+    return [path for path in found.values() if path.parent != SHIPPED]
+
+
 # A sweep composes thousands of cars of the same templates; a file that has changed is read again.
 @functools.lru_cache(maxsize=32)
 def _read_once(
