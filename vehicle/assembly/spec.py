@@ -245,6 +245,8 @@ class _Builder:
             constants = np.concatenate([law.stiffness, law.damping, law.branch_stiffness, branch_damping])
             for axis, local in zip(AXES, law.local, strict=True):
                 self._table(f"{name}/{axis}", getattr(connection.law, f"table_{axis}", None), float(local))
+            if getattr(connection.law, "one_sided", False):
+                self._numeric(f"one_sided/{name}", 1.0)
             self._numeric(f"law/{name}", [*constants, law.rotational_stiffness, float(law.averaged)])
         if on_body:
             self._node_shape(name, connection.at)

@@ -59,6 +59,7 @@ class CarMatrices:
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
         body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
+        one_sided: wheels whose tyres do not pull.
         carried_by: body that each body is fixed to, itself where it can move on its parent.
         modal: velocity coordinates of the flexible modes.
     """
@@ -67,6 +68,7 @@ class CarMatrices:
     dampers: npt.NDArray[np.intp]
     viscous: Vector
     bends: tuple[Bend, ...] = ()
+    one_sided: frozenset[str] = frozenset()
     tyre_stiffness: Vector
     tyre_damping: Vector
     body_rows: dict[str, Vector]
@@ -129,6 +131,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         dampers=dofs,
         viscous=viscous,
         bends=_bends(rows, jacobian),
+        one_sided=frozenset(
+            wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in bushings.one_sided
+        ),
         tyre_stiffness=bushings.stiffness[e.tyres, 2],
         tyre_damping=bushings.damping[e.tyres, 2],
         body_rows=_body_rows(model, data),

@@ -52,9 +52,15 @@ class Bushing:
     table_x: ForceTable | None = None
     table_y: ForceTable | None = None
     table_z: ForceTable | None = None
+    one_sided: bool = False
+    """of a contact with the ground: its vertical force is max(0, load - K r - D r'), so that it never pulls"""
 
     def __post_init__(self) -> None:
         validate(self)
+        if self.one_sided and self.table_z is not None:
+            raise ConfigurationError(
+                "Bushing.one_sided: found true beside table_z; a one-sided contact has a stiffness, so leave one out"
+            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -45,6 +45,10 @@ def require_sound(car: Composition) -> None:
     for connection in car.connections:
         if connection.moving == connection.carrier:
             raise ConfigurationError(f"{connection.path}: holds {connection.moving} on itself; name two parts")
+        if getattr(connection.law, "one_sided", False) and not connection.ground:
+            raise ConfigurationError(
+                f"{connection.path}.one_sided: found true, allowed is false; only a contact with the ground lifts off"
+            )
     for spring in car.springs:
         require_apart(dict(zip((f"{spring.path}, lower end", "upper end"), spring.at, strict=True)))
     joints = [joint.name for part in car.parts for joint in part.joints]

@@ -50,7 +50,7 @@ class ValidityWatch:
         self.tyres = Readout(
             model.outputs([f"tyre_{wheel}_force_z" for wheel in self.wheels]), factors, model.pairs, columns
         )
-        self.bends = model.matrices.bends
+        self.bends, self.one_sided = model.matrices.bends, model.matrices.one_sided
         rows_of = [bend.row @ model.modal for bend in self.bends]
         stretch = np.array(rows_of, dtype=complex).reshape(-1, len(model.poles))
         height = np.array([-1.0 * (np.arange(len(self.wheels)) == bend.plate) for bend in self.bends])
@@ -84,7 +84,13 @@ class ValidityWatch:
     @property
     def held(self) -> bool:
         """Whether the motion stayed within what the matrices hold for."""
-        return self.small_angles and not self.left
+        return self.small_angles and not self.left and not self.lifted
+
+    @property
+    def lifted(self) -> dict[str, float]:
+        """Lowest load [N] of each one-sided tyre that would have to pull: MuJoCo lets it go."""
+        loads = zip(self.wheels, self.load.tolist(), strict=True)
+        return {wheel: load for wheel, load in loads if wheel in self.one_sided and load < 0.0}
 
     def warnings(self) -> tuple[str, ...]:
         """A sentence for each way in which the motion left the validity of the matrices."""
@@ -100,8 +106,13 @@ class ValidityWatch:
                 f"{name} left the piece of its table on which the car stands by {1e3 * distance:.2g} mm; the reduced "
                 "engine knows that piece alone: use the MuJoCo engine"
             )
+        for wheel, load in self.lifted.items():
+            found.append(
+                f"tyre {wheel} lifts off its plate (load {load:.0f} N in the reduced engine, which is linear): use the "
+                "MuJoCo engine"
+            )
         for wheel, load in zip(self.wheels, self.load, strict=True):
-            if load < 0.0:
+            if load < 0.0 and wheel not in self.lifted:
                 found.append(
                     f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); the model pulls there, so the "
                     "result is out of its validity"

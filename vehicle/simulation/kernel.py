@@ -160,6 +160,9 @@ def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         if t.kinds[k] == 0:
             n, i = t.elements[k], t.axes[k]
             s.force[n, i] -= bent(k, s.residual[n, i], b.stiffness[n, i], t, s)
+    for k in range(b.one_sided.shape[0]):
+        n = b.one_sided[k]
+        s.contact[0, k] = max(0.0, s.force[n, 2] + b.damping[n, 2] * s.rate[n, 2])
     for tyre in range(e.tyres.shape[0]):
         for i in range(3):
             s.force[e.tyres[tyre], i] += c.inertial[tyre, i] * s.plate_acceleration[tyre, i]
@@ -171,6 +174,24 @@ def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
             s.explicit[row] = frame[3 * i] * x + frame[3 * i + 1] * y + frame[3 * i + 2] * z
             efc.D[row] = c.impedance[n, i]
             efc.aref[row] = 0.0
+    lift_off(efc, e, c, s)
+
+
+@jitable
+def lift_off(efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """One-sided contacts give max(0, f0 - D J a) along z: a row that would pull at the last J a is empty now.
+
+    The force is continuous, so a row that is wrong for one step changes a velocity by h2 at most: second order.
+    Carriers are the ground and the plates, which do not turn: rows are element axes.
+    """
+    b = e.bushings
+    for k in range(b.one_sided.shape[0]):
+        n = b.one_sided[k]
+        row, rate = b.rows[n, 2], s.rate[n, 2]
+        if s.force[n, 2] - c.impedance[n, 2] * (rate - s.contact[1, k]) / c.timestep <= 0.0:
+            s.explicit[row] = 0.0
+            efc.D[row] = EMPTY_ROW
+        s.contact[1, k] = rate
 
 
 @jitable

@@ -86,6 +86,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             branch_stiffness=laws[:, 6:9].copy(),
             branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=laws[:, 6:9] > 0.0),
             averaged=_whole(laws[:, 13] > 0.0),
+            one_sided=_whole([i for i, name in enumerate(names) if numeric(model, f"one_sided/{name}") is not None]),
         ),
         rotations=Rotations(
             sites=_whole([ends[name] for name in turning], 2),

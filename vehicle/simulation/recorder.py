@@ -80,6 +80,7 @@ class Recorder:
             poses=np.zeros((CHUNK, model.nq)),
             frames=np.zeros((CHUNK, 12 * len(bodies))),
             springs=np.zeros((CHUNK, 2 * len(joints))),
+            contact=np.zeros((CHUNK, len(e.bushings.one_sided))),
         )
         self.sources = Sources(
             position=data.qpos,
@@ -96,6 +97,7 @@ class Recorder:
             origins=data.xpos,
             bodies=bodies,
             springs=joints,
+            contact=rows.state.contact,
         )
         self.order = Order(
             step=0,
@@ -174,7 +176,10 @@ class Recorder:
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_energyPos(model, data)
         mujoco.mj_energyVel(model, data)
-        elastic = 0.5 * np.sum(b.stiffness * state.residual**2) - np.sum(preload[b.rows] * state.residual)
+        residual, ground = state.residual.copy(), b.one_sided
+        # What lifts off keeps the energy with which its spring was without force.
+        residual[ground, 2] = np.minimum(residual[ground, 2], preload[b.rows[ground, 2]] / b.stiffness[ground, 2])
+        elastic = 0.5 * np.sum(b.stiffness * residual**2) - np.sum(preload[b.rows] * residual)
         turned, frames = rows.rotation(self.data)
         twist = np.einsum("nji,nj->ni", frames, turned)
         elastic += 0.5 * np.sum(e.rotations.stiffness[:, None] * twist**2) - np.sum(
@@ -240,7 +245,11 @@ class Recorder:
         # The damping of a tyre answers the averaged velocity of its plate and works along the true one.
         true_rate = rate.copy()
         true_rate[:, e.tyres, 2] += (motion.row_velocity - motion.velocity)[steps]
-        loss = np.sum(bushings.damping * rate * true_rate, axis=(1, 2))
+        losses = bushings.damping * rate * true_rate
+        # Of a contact that lifts off, what the elastic force has more than the whole one.
+        ground = bushings.one_sided
+        losses[:, ground, 2] = (b.contact - total[:, bushings.rows[ground, 2]]) * true_rate[:, ground, 2]
+        loss = np.sum(losses, axis=(1, 2))
         branch = self._branch_force(b.solved, b.branch)
         present = bushings.branch_stiffness > 0.0
         dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
@@ -290,13 +299,26 @@ class Recorder:
     def warnings(self) -> tuple[str, ...]:
         """A sentence for each tyre that pulled on its plate."""
         found = []
-        for wheel, (load, when) in self.lowest_load.items():
-            if load < 0.0:
+        e = self.rows.layout
+        for (wheel, (load, when)), tyre in zip(self.lowest_load.items(), e.tyres, strict=True):
+            if load < 0.0 and tyre not in e.bushings.one_sided:
                 first = self.channels[f"tyre_{wheel}_force_z"]
                 start = int(np.argmax(first < 0.0)) / self.car.vehicle.solver.record_rate
                 found.append(
                     f"tyre {wheel} would lift off its plate at t = {start:.3f} s (lowest load {load:.0f} N at "
                     f"{when:.3f} s); the model pulls there, so the result is out of its validity"
+                )
+        return tuple(found)
+
+    def notices(self) -> tuple[str, ...]:
+        """A sentence for each one-sided tyre that left its plate."""
+        found, e, rate = [], self.rows.layout, self.car.vehicle.solver.record_rate
+        for wheel, tyre in zip(self.wheels, e.tyres, strict=True):
+            away = self.channels[f"tyre_{wheel}_force_z"] <= 0.0
+            if tyre in e.bushings.one_sided and away.any():
+                found.append(
+                    f"tyre {wheel} left its plate at t = {int(np.argmax(away)) / rate:.3f} s, for "
+                    f"{np.count_nonzero(away) / rate:.3g} s in all"
                 )
         return tuple(found)
 

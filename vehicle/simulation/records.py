@@ -27,6 +27,7 @@ class Bushings(NamedTuple):
         stiffness, damping: K [N/m] and B [N s/m]; (n, 3).
         branch_stiffness, branch_time: Maxwell branch K2 [N/m] and tau [s]; (n, 3).
         averaged: 1 where the stiffness is averaged over three steps; (n,).
+        one_sided: positions of the k elements that do not pull along z; (k,).
     """
 
     rows: Indices
@@ -36,6 +37,7 @@ class Bushings(NamedTuple):
     branch_stiffness: Table
     branch_time: Table
     averaged: Index
+    one_sided: Index
 
 
 class Rotations(NamedTuple):
@@ -226,6 +228,7 @@ class State(NamedTuple):
         ends, line: lower and upper ends of the main springs with their modal displacement, and their directions.
         stretch: displacement of the laws that are curves; (t,).
         deflection: modal displacement and velocity of the nodes in body axes; (2, 3 g).
+        contact: elastic force of the one-sided elements [N], and their r' at the last evaluation [m/s]; (2, k).
     """
 
     plate_velocity: Table
@@ -243,6 +246,7 @@ class State(NamedTuple):
     line: Table
     stretch: Vector
     deflection: Table
+    contact: Table
 
 
 class Ticket(NamedTuple):

@@ -202,6 +202,7 @@ def _at_rest(layout: Layout) -> State:
     shapes |= {"last_time": (1,), "explicit": (layout.row_count,)}
     shapes |= {"torque": (len(layout.rotations.sites), 3), "ends": (2 * springs, 3), "line": (springs, 3)}
     shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}
+    shapes |= {"contact": (2, len(layout.bushings.one_sided))}
     state = State(**{name: np.zeros(shapes[name]) for name in State._fields})
     state.last_time[0] = -1.0
     return state

@@ -131,7 +131,7 @@ def simulate(
         wall_time=wall,
         warnings=(*recorder.warnings(), *judge_energy(energies, 1.0 / (every * step))),
         energies=energies,
-        notices=notices,
+        notices=(*notices, *recorder.notices()),
     )
     return recorder.recording(signal, statistics)
 

@@ -41,6 +41,7 @@ class Sources(NamedTuple):
     origins: Table
     bodies: Index
     springs: Indices
+    contact: Table
 
 
 class Samples(NamedTuple):
@@ -59,6 +60,7 @@ class Samples(NamedTuple):
     poses: Table
     frames: Table
     springs: Table
+    contact: Table
 
 
 class Order(NamedTuple):
@@ -108,6 +110,7 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
     b.explicit[row] = s.explicit
     b.rate[row] = s.rate
     b.branch[row] = s.branch
+    b.contact[row] = s.contact[0]
     for body in range(s.bodies.shape[0]):
         for axis in range(3):
             b.frames[row, 12 * body + axis] = s.origins[s.bodies[body], axis]
