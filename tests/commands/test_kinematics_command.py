@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import shutil
 
 import numpy as np
 import pytest
 
 from vehicle.commands.kinematics import main
-from vehicle.parameters.shipped import FOCUS_FILE
 
 
 def test_rows_and_rates(capsys):
@@ -73,11 +71,10 @@ def test_too_much_travel_is_no_position(capsys):
     assert "axle: " in capsys.readouterr().err
 
 
-def test_laws_that_the_equilibrium_does_not_know_are_refused(tmp_path, capsys):
-    text = FOCUS_FILE.read_text(encoding="utf-8").replace("[front.damper]\n", "[front.damper]\ngas_force = 250.0\n", 1)
-    folder = tmp_path / "car"
-    shutil.copytree(FOCUS_FILE.parent, folder)
-    (folder / "vehicle.toml").write_text(text, encoding="utf-8")
-    assert main(["--vehicle", str(folder / "vehicle.toml"), "--travel=0:5:5"]) == 2
-    assert "gas_force: kinematics with loads knows linear springs" in capsys.readouterr().err
-    assert main(["--vehicle", str(folder / "vehicle.toml"), "--travel=0:5:5", "--ideal"]) == 0
+def test_gas_and_a_stop_are_part_of_the_load(capsys):
+    stop = "damper.stop={displacement=[-0.05, -0.02, 0.05], force=[-3000, 0, 0]}"
+    loads = []
+    for extra in ([], ["--set", "damper.gas_force=250", "--set", stop]):
+        assert main(["--travel=0:60:60", "--json", *extra]) == 0
+        loads.append([row["load_n"] for row in json.loads(capsys.readouterr().out)["rows"]])
+    assert loads[1][0] == pytest.approx(loads[0][0], rel=1e-4) and loads[1][1] > loads[0][1] + 1000.0

@@ -95,22 +95,7 @@ def axle_statics(car: Any, name: str, *, ideal: bool) -> AxleStatics:
     if not wheels:
         axles = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
         raise ConfigurationError(f"--axle {name!r}: no axle with wheels; {car.vehicle.name} has {', '.join(axles)}")
-    if not ideal:
-        _refuse_tables(car.vehicle.composition)
     return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal)
-
-
-def _refuse_tables(composition: Any) -> None:
-    """A wrong load is worse than none: laws that the equilibrium does not know are refused, with the way out."""
-    found = [one.path for one in composition.springs if one.table is not None]
-    for one in composition.connections:
-        found += [f"{one.path}.table_{axis}" for axis in "xyz" if getattr(one.law, f"table_{axis}", None) is not None]
-    for one in composition.dampers:
-        found += [f"{one.path}.{key}" for key in ("stop", "gas_force") if getattr(one.law, key)]
-    if found:
-        raise ConfigurationError(
-            f"{found[0]}: kinematics with loads knows linear springs and bushings only; give --ideal, or leave it out"
-        )
 
 
 def _travels(text: str) -> list[float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -10,12 +10,28 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
+from vehicle.laws.curve import Curve
+from vehicle.laws.damper import unpack
+from vehicle.names import AXES
 from vehicle.simulation.layout import numeric
 
 Vector = npt.NDArray[np.float64]
 
 HELD = ("world", "body")
 """Bodies that do not move; an axle is what hangs together with its wheels without passing through them."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Bent:
+    """A law over displacement that is a curve: -F(at + x) in place of preload - K x; `at` is where the car stands."""
+
+    curve: Curve
+    at: float
+
+    def force(self, displacement: float) -> tuple[float, float]:
+        """Force [N] of the element, and its stiffness there [N/m]."""
+        x = self.at + displacement
+        return -float(self.curve.force(x)), float(self.curve.slope(x))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -28,6 +44,7 @@ class Tie:
         preload: force in the design position [N], (3,).
         twist: rotational stiffness [N m/rad].
         torque: in the design position [N m], (3,).
+        bent: axes whose law is a curve.
     """
 
     moving: int
@@ -36,6 +53,15 @@ class Tie:
     preload: Vector
     twist: float
     torque: Vector
+    bent: Mapping[int, Bent]
+
+    def pull(self, gap: Vector) -> tuple[Vector, Vector]:
+        """Force [N] and stiffness [N/m] of a bushing at a displacement r [m], along its axes."""
+        assert self.stiffness is not None
+        force, stiffness = self.preload - self.stiffness * gap, self.stiffness.copy()
+        for axis, law in self.bent.items():
+            force[axis], stiffness[axis] = law.force(float(gap[axis]))
+        return force, stiffness
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,6 +73,28 @@ class Spring:
     stiffness: float
     length: float
     preload: float
+    bent: Bent | None = None
+
+    def pull(self, extension: float) -> tuple[float, float]:
+        """Force [N] and stiffness [N/m] at an extension from the design position [m]."""
+        if self.bent is not None:
+            return self.bent.force(extension)
+        return self.preload - self.stiffness * extension, self.stiffness
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Strut:
+    """A damper at rest on its slide joint: constant force of gas and valves [N], extension positive, and its stop."""
+
+    joint: int
+    rest: float
+    stop: Curve | None
+
+    def pull(self, position: float) -> tuple[float, float]:
+        """Force [N] on the joint and stiffness [N/m] at its position [m]."""
+        if self.stop is None:
+            return -self.rest, 0.0
+        return -self.rest - float(self.stop.force(position)), float(self.stop.slope(position))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -60,6 +108,7 @@ class AxleParts:
         ties: its bushings and ball joints, without those to the ground.
         springs: its springs between two points.
         joints: its joints with a spring.
+        struts: its dampers.
         standing: force [N] and torque [N m] of the ground on each wheel in the design position, without the vertical
             load, (wheels, 6).
     """
@@ -70,6 +119,7 @@ class AxleParts:
     ties: tuple[Tie, ...]
     springs: tuple[Spring, ...]
     joints: tuple[int, ...]
+    struts: tuple[Strut, ...]
     standing: Vector
 
 
@@ -115,6 +165,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
                 standing[numbers.index(moving)] = [*force[:2], 0.0, *torque]
                 continue
             soft = law.size > 0 and not ideal
+            curves = {axis: _curve(model, f"{name}/{letter}") for axis, letter in enumerate(AXES)} if soft else {}
             one, other = ends[name]
             ties.append(
                 Tie(
@@ -124,6 +175,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
                     preload=force,
                     twist=float(law[12]) if soft else 0.0,
                     torque=torque,
+                    bent={axis: _standing(one, force[axis]) for axis, one in curves.items() if one is not None},
                 )
             )
         elif kinds[index] == tendon and law.size:
@@ -131,7 +183,17 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             if bodies & {int(model.site_bodyid[lower]), int(model.site_bodyid[upper])}:
                 length = float(model.tendon_length0[model.eq_obj1id[index]])
                 pull = float(preload[rows[index]])
-                springs.append(Spring(lower=lower, upper=upper, stiffness=float(law[0]), length=length, preload=pull))
+                curve = _curve(model, name)
+                springs.append(
+                    Spring(
+                        lower=lower,
+                        upper=upper,
+                        stiffness=float(law[0]),
+                        length=length,
+                        preload=pull,
+                        bent=None if curve is None else _standing(curve, pull),
+                    )
+                )
     if not ties:
         raise ConfigurationError(f"axle of {', '.join(wheels)}: nothing ties its wheels to the body")
     return AxleParts(
@@ -145,8 +207,33 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             for joint in range(model.njnt)
             if np.max(model.jnt_stiffness[joint]) > 0.0 and int(model.jnt_bodyid[joint]) in bodies
         ),
+        struts=tuple(one for one in _struts(model) if int(model.jnt_bodyid[one.joint]) in bodies),
         standing=standing,
     )
+
+
+def _curve(model: mujoco.MjModel, name: str) -> Curve | None:
+    """The curve of an element; None of a linear one."""
+    points = numeric(model, f"table/{name}")
+    return None if points is None else Curve.through(*points.reshape(2, -1))
+
+
+def _standing(curve: Curve, preload: float) -> Bent:
+    """A curve where it carries a static force [N]."""
+    return Bent(curve=curve, at=curve.position(-preload))
+
+
+def _struts(model: mujoco.MjModel) -> list[Strut]:
+    dampers = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
+    rest: list[float] = unpack(model.actuator_biasprm[dampers])["rest_force"].tolist() if dampers else []
+    return [
+        Strut(
+            joint=int(model.actuator_trnid[index, 0]),
+            rest=float(force),
+            stop=_curve(model, str(model.actuator(index).name)),
+        )
+        for index, force in zip(dampers, rest, strict=True)
+    ]
 
 
 def _law(model: mujoco.MjModel, name: str) -> Vector:

@@ -181,15 +181,22 @@ class AxleStatics:
             if tie.stiffness is None:
                 continue
             gap, angle, moved, turned = self._relative(tie)
-            force += moved.T @ (tie.preload - tie.stiffness * gap)
-            stiffness += moved.T @ (tie.stiffness[:, None] * moved)
+            pull, slope = tie.pull(gap)
+            force += moved.T @ pull
+            stiffness += moved.T @ (slope[:, None] * moved)
             if tie.twist > 0.0:
                 force += turned.T @ (tie.torque - tie.twist * angle)
                 stiffness += tie.twist * turned.T @ turned
         for spring in self.parts.springs:
             length, row = self._length(spring)
-            force += row * (spring.preload - spring.stiffness * (length - spring.length))
-            stiffness += spring.stiffness * np.outer(row, row)
+            along, rate = spring.pull(length - spring.length)
+            force += row * along
+            stiffness += rate * np.outer(row, row)
+        for strut in self.parts.struts:
+            column = int(np.flatnonzero(self.columns == model.jnt_dofadr[strut.joint])[0])
+            along, rate = strut.pull(float(data.qpos[model.jnt_qposadr[strut.joint]]))
+            force[column] += along
+            stiffness[column, column] += rate
         for joint in self.parts.joints:
             column = int(np.flatnonzero(self.columns == model.jnt_dofadr[joint])[0])
             rate = float(np.ravel(model.jnt_stiffness[joint])[0])
