@@ -49,6 +49,27 @@ def test_the_force_is_that_of_the_table_at_the_present_velocity(velocity):
     assert found == pytest.approx(table_force(velocity) + REST, rel=1e-6, abs=1e-4)
 
 
+@pytest.mark.parametrize("amplitude", [0.002, 0.02, 0.08])
+def test_the_work_of_a_cycle_is_the_area_of_the_table(amplitude):
+    # A mass that no damper slows down swings as a sine at 2 Hz.
+    omega, heavy, step = 4.0 * np.pi, 1e9, 1e-3
+    run = strut(step, mass=heavy, stiffness=heavy * omega**2)
+    run.data.qvel[0] = amplitude * omega * np.cos(0.5 * omega * step)
+    e, data, found = run.rows.layout.dampers, run.data, []
+
+    def after():
+        # Of the step before, at its beginning: MuJoCo's velocity is that of the middle of a step.
+        force = -(data.actuator_force[0] + np.sum(data.efc_force[[*e.rows, *e.valves[:, 0]]])) if data.nefc else 0.0
+        return force, data.qvel[0] - 0.5 * step * data.qacc[0]
+
+    found = run.step(501, after)[1:]
+    work = np.sum(found[:, 0] * found[:, 1]) * step
+    phase = np.linspace(0.0, 2.0 * np.pi, 200001)[:-1]
+    speed = amplitude * omega * np.cos(phase)
+    expected = np.mean([table_force(v) * v for v in speed]) * 2.0 * np.pi / omega
+    assert expected > 0.1 and work == pytest.approx(expected, rel=1e-4)
+
+
 def swing(step, duration=0.2):
     """Positions of a mass that is released on its spring, every 4 ms."""
     run = strut(step)
