@@ -21,8 +21,8 @@ from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.output.comparison_files import write_comparison
 from vehicle.output.folder import write_json, write_text, write_whole
-from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.output.own_files import write_own_files
+from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.output.run_formats import writer
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
