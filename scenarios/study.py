@@ -33,6 +33,7 @@ STUDIES = {
     "half_car_rider": "Half car with seat and rider over a bump.",
     "damper_choice": "Choice of dampers for road holding.",
     "kinematics": "Axles of all cars over wheel travel and under load, and with one point moved.",
+    "road": "Four wheels on the road: class, speed, damper friction, with and without an occupant.",
     "published": "Every published result of the complete car beside ours.",
 }
 """Name of a study, `python -m scenarios.NAME`, and what it does."""

@@ -1,0 +1,156 @@
+"""A car on four wheels on roads of ISO 8608: class and speed, damper friction, with and without an occupant.
+
+python -m scenarios.road [--output DIR] [--quick] [--jobs N] [--records N] [--engine auto|reduced|mujoco]
+    [--vehicle FILE.toml] [--set PATH=VALUE]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time as clock
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from scenarios.car_runs import CarRuns
+from scenarios.claims import Findings
+from scenarios.road.figures import draw_classes, draw_friction
+from scenarios.road.findings import check_table, class_table, friction_claims, friction_table, scaling_claim, words
+from scenarios.road.runs import Ride, RideRuns
+from scenarios.study import QUICK_NOTE, car_study
+from vehicle.errors import ConfigurationError
+from vehicle.output.folder import write_text
+from vehicle.parameters.shipped import VEHICLES
+from vehicle.parameters.vehicle import Vehicle
+from vehicle.reduced.march import has_compiler
+
+CARS = {"without occupant": "focus_road", "with occupant": "focus_road_seated"}
+"""Shipped cars of the study by their names in tables."""
+
+ROADS, SPEEDS = ("A", "B", "C"), (50.0, 80.0, 120.0)
+FRICTIONS = (0.0, 31.25, 62.5, 125.0, 250.0)
+"""Coulomb friction of every damper [N]; source 1 has 125 N in front."""
+
+SPEED = 80.0
+"""Speed of the study of friction [km/h]."""
+
+RECORDS, DURATION_S = 3, 30.0
+QUICK_DURATION_S = 4.0
+QUICK_WHY = f"one record of {QUICK_DURATION_S:g} s tells it too coarsely"
+
+ONE_SIDED = "with one-sided tyres"
+
+
+def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+    """Run the cars on all roads, draw the figures into the folder, and say what is found."""
+    quick, started = options.quick, clock.perf_counter()
+    if options.records is not None and options.records < 1:
+        raise ConfigurationError(f"--records {options.records}: must be at least 1; a single one tells no error")
+    cars = {name: VEHICLES / car / "vehicle.toml" for name, car in CARS.items()}
+    if runs.vehicle is not None:
+        cars = {runs.car().vehicle.name: runs.vehicle}
+    rides = RideRuns(
+        cars,
+        overrides=runs.overrides,
+        engine=runs.engine,
+        jobs=runs.jobs,
+        records=options.records or (1 if quick else RECORDS),
+        duration=QUICK_DURATION_S if quick else DURATION_S,
+        folder=folder / "sweep",
+    )
+    roads, speeds = (ROADS[::2], SPEEDS[1:2]) if quick else (ROADS, SPEEDS)
+    frictions = FRICTIONS[::4] if quick else FRICTIONS
+    grid = [Ride(car=car, road=road, speed=speed) for car in cars for road in roads for speed in speeds]
+    varied = [
+        Ride(car=car, road=road, speed=SPEED, friction=one) for car in cars for road in roads for one in frictions
+    ]
+    rides.compute([*grid, *varied])
+    draw_classes(folder / "class_and_speed.png", rides, roads, speeds)
+    draw_friction(folder / "friction.png", rides, roads, SPEED, frictions)
+    about = [(rides, car, roads, SPEED, frictions) for car in cars]
+    claims = [one for each in about for one in (*friction_claims(*each), *scaling_claim(*each))]
+    notes = [
+        f"{rides.text()}; the same roads under every car. Isotropic tracks, wheelbase delay, no contact patch. ± is "
+        "one standard error over the records; that of a ratio is over the ratios of the single records.",
+        "Class and speed, friction of the vehicle file:",
+        class_table(rides, grid),
+        f"Friction of every damper at {SPEED:g} km/h; % of the same car without friction on the same records:",
+        friction_table(rides, varied),
+        *(words(*each) for each in about),
+    ]
+    data: dict[str, Any] = {"rides": [{**asdict(ride), **asdict(rides(ride))} for ride in (*grid, *varied)]}
+    if not quick and has_compiler():
+        notes += checks(rides, folder, list(cars)[-1], roads)
+    seconds = clock.perf_counter() - started
+    return Findings(
+        title="A car on four wheels on the road: class, speed, friction, occupant (beyond source 1)",
+        claims=claims,
+        unjudged={one.name: QUICK_WHY for one in claims} if quick else {},
+        notes=[*notes, f"{rides.computed} runs in {seconds:.0f} s.", *([QUICK_NOTE] if quick else [])],
+        data={
+            **data,
+            "engine": rides.engine,
+            "records": rides.records,
+            "duration_s": rides.duration,
+            "seconds": seconds,
+        },
+    )
+
+
+def checks(rides: RideRuns, folder: Path, car: str, roads: tuple[str, ...]) -> list[str]:
+    """One record of the last car by both engines, and on the roughest road with tyres that cannot pull."""
+    rough, engine = roads[-1], "mujoco"
+    cars = {car: rides.cars[car]}
+    if rides.cars[car].is_relative_to(VEHICLES):
+        cars[ONE_SIDED] = folder / "one_sided_tyres.toml"
+        write_text(cars[ONE_SIDED], one_sided(rides.cars[car].parent.name, rides.vehicles[car]))
+    one = RideRuns(
+        cars,
+        overrides=rides.overrides,
+        engine="reduced",
+        jobs=rides.jobs,
+        records=1,
+        duration=rides.duration,
+        folder=folder / "sweep",
+    )
+    pairs = {
+        f"class {road}, {SPEED:g} km/h: MuJoCo against the reduced engine": (
+            Ride(car=car, road=road, speed=SPEED),
+            Ride(car=car, road=road, speed=SPEED, engine=engine),
+        )
+        for road in roads
+    }
+    if ONE_SIDED in cars:
+        pairs[f"class {rough}, {SPEED:g} km/h: tyres that cannot pull against tyres that can, MuJoCo"] = (
+            Ride(car=car, road=rough, speed=SPEED, engine=engine),
+            Ride(car=ONE_SIDED, road=rough, speed=SPEED, engine=engine),
+        )
+    one.compute([ride for pair in pairs.values() for ride in pair])
+    return [
+        f"Checks, {car}, {one.text().partition(',')[0]}: differences of the second to the first:",
+        check_table(one, pairs),
+    ]
+
+
+def one_sided(base: str, vehicle: Vehicle) -> str:
+    """A vehicle file over another one whose tyres carry nothing where they would pull."""
+    lines = [f'base = "{base}"', f'name = "{base}_one_sided"', ""]
+    for axle in dict.fromkeys(wheel.axle for wheel in vehicle.composition.wheels):
+        stiffness = float(vehicle.table[axle]["bushings"]["tyre"]["stiffness"][2])
+        table = f"{{ displacement = [-0.1, 0.0, 0.1], force = [{-0.1 * stiffness!r}, 0.0, 0.0] }}"
+        lines += [f"[{axle}.bushings.tyre]", f"table_z = {table}  # [m], [N]", ""]
+    return "\n".join(lines)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Options of this study: the reduced engine by default, the number of records."""
+    parser.set_defaults(engine="auto")
+    what = f"roads for every point, {DURATION_S:g} s each; {RECORDS} by default"
+    parser.add_argument("--records", type=int, metavar="N", help=what)
+
+
+main = car_study("road", study, add_options)
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,227 @@
+"""Runs of a car on roads of ISO 8608: which there are, what is read off each, means over the records."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.comfort_runs import chosen_engine, standard_error
+from vehicle.analysis.comfort import comfort_value
+from vehicle.analysis.seat_value import seat_value, weighted_rms_of
+from vehicle.analysis.slip import slip_share
+from vehicle.car import Car, Run
+from vehicle.commands.options import ROAD_NUMBERS
+from vehicle.commands.road import road_drive
+from vehicle.errors import SimulationError
+from vehicle.names import AXES
+from vehicle.parameters.vehicle import Vehicle
+from vehicle.sweeps.case import Case
+from vehicle.sweeps.sweep import sweep
+
+LEAD_S = 2.0
+"""Seconds at the beginning that are left out: the road rises out of a plane in the first one."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RideMeasure:
+    """Turns a run on a road into numbers, all without the lead.
+
+    `rail` is the comfort value of source 1, sqrt(RMSx^2 + RMSy^2 + RMSz^2) unfiltered in 2 to 50 Hz; `rail_weighted`
+    and `seat_weighted` are vector sums after ISO 2631-1 (x and y by Wd, z by Wk), `seat_value` the SEAT value along z;
+    the last two are NaN of a car without seat. `load_front` and `load_rear` are RMS of the dynamic tyre load over the
+    static one, quadratic mean of the wheels of an axle; `lowest_load` that of any tyre over its static one; `pulling`
+    the largest share of the time in which a tyre would pull; `slip` the mean share of slip of all dampers.
+
+    Attributes:
+        wheels: names of wheel and axle of each.
+        dampers: names.
+        seat: whether the car has the place `seat` at all.
+    """
+
+    wheels: tuple[tuple[str, str], ...]
+    dampers: tuple[str, ...]
+    seat: bool
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are needed."""
+        places = ("seat_rail", "seat") if self.seat else ("seat_rail",)
+        motion = (f"{place}_acc_{axis}" for place in places for axis in AXES)
+        return (
+            *motion,
+            *(f"tyre_{wheel}_force_z" for wheel, _ in self.wheels),
+            *(f"{name}_velocity" for name in self.dampers),
+        )
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name of each number to its unit."""
+        loads = [f"load_{axle}" for axle in dict(self.by_axle)]
+        return dict.fromkeys(("rail", "rail_weighted", "seat_weighted"), "m/s2") | dict.fromkeys(
+            ("seat_value", *loads, "lowest_load", "pulling", "slip"), "-"
+        )
+
+    @property
+    def by_axle(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """Wheels of each axle."""
+        axles = dict.fromkeys(axle for _, axle in self.wheels)
+        return tuple((axle, tuple(wheel for wheel, its in self.wheels if its == axle)) for axle in axles)
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """The numbers of a run."""
+        step, vehicle = run.recording.timestep, run.car.vehicle
+        kept = slice(round(LEAD_S / step), None)
+        rail = np.array([run[f"seat_rail_acc_{axis}"] for axis in AXES])
+        found = {
+            "rail": comfort_value(step, rail[:, kept]).overall,
+            "rail_weighted": weighted_rms_of(step, rail, skip=LEAD_S)[3],
+            "seat_weighted": np.nan,
+            "seat_value": np.nan,
+        }
+        if vehicle.seated:
+            seat = np.array([run[f"seat_acc_{axis}"] for axis in AXES])
+            found["seat_weighted"] = weighted_rms_of(step, seat, skip=LEAD_S)[3]
+            found["seat_value"] = seat_value(step, seat[2], rail[2], skip=LEAD_S).rms
+        static = run.car.model.static.tyre_load
+        loads = {wheel: run[f"tyre_{wheel}_force_z"][kept] / static[wheel] for wheel, _ in self.wheels}
+        for axle, wheels in self.by_axle:
+            found[f"load_{axle}"] = float(np.sqrt(np.mean([np.mean((loads[one] - 1.0) ** 2) for one in wheels])))
+        found["lowest_load"] = min(float(np.min(load)) for load in loads.values())
+        found["pulling"] = max(float(np.mean(load < 0.0)) for load in loads.values())
+        limit = vehicle.damper.slip_velocity
+        found["slip"] = float(np.mean([slip_share(run[f"{one}_velocity"][kept], limit) for one in self.dampers]))
+        return found
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ride:
+    """A car on a road.
+
+    Attributes:
+        car: name of the car in tables, one of `RideRuns.cars`.
+        road: class of ISO 8608.
+        speed: [km/h].
+        friction: of every damper [N]; None for those of the vehicle file.
+        engine: another one than that of the study.
+    """
+
+    car: str
+    road: str
+    speed: float
+    friction: float | None = None
+    engine: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Found:
+    """Means over the records of a ride, and their standard errors (NaN of one record)."""
+
+    mean: Mapping[str, float]
+    error: Mapping[str, float]
+    each: Sequence[Mapping[str, float]]
+
+
+class RideRuns:
+    """Rides, each computed once, all that are missing together.
+
+    Args:
+        cars: vehicle files by the names of tables; all with the same wheels.
+        overrides: of every car.
+        engine: "mujoco", "reduced" or "auto".
+        jobs: worker processes.
+        records: number of roads with the seeds 1, 2, ...
+        duration: of each, without the lead [s].
+        folder: for the rows of an unfinished study.
+    """
+
+    def __init__(
+        self,
+        cars: Mapping[str, Path],
+        *,
+        overrides: Sequence[str] = (),
+        engine: str = "auto",
+        jobs: int = 1,
+        records: int,
+        duration: float,
+        folder: Path,
+    ) -> None:
+        self.cars, self.overrides, self.engine, self.jobs = dict(cars), tuple(overrides), chosen_engine(engine), jobs
+        self.records, self.duration, self.folder = records, duration, folder
+        self.vehicles = {name: Car.load(path, self.overrides).vehicle for name, path in self.cars.items()}
+        first = next(iter(self.vehicles.values()))
+        self.measure = RideMeasure(
+            wheels=tuple((wheel.name, wheel.axle) for wheel in first.composition.wheels),
+            dampers=tuple(damper.name for damper in first.composition.dampers),
+            seat="seat_acc_z" in first.channels,
+        )
+        self._done: dict[Ride, Found] = {}
+
+    @property
+    def computed(self) -> int:
+        """Number of runs so far."""
+        return self.records * len(self._done)
+
+    def text(self) -> str:
+        """For captions."""
+        many = f"{self.records} records" if self.records > 1 else "1 record"
+        seeds = f"seeds 1 to {self.records}" if self.records > 1 else "seed 1"
+        return f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, engine {self.engine}"
+
+    def compute(self, rides: Sequence[Ride]) -> None:
+        """Compute what is missing.
+
+        Raises:
+            SimulationError: a run failed.
+        """
+        missing = [ride for ride in dict.fromkeys(rides) if ride not in self._done]
+        if not missing:
+            return
+        # One car after the other: building one costs more than a record.
+        missing.sort(
+            key=lambda ride: (list(self.cars).index(ride.car), -1.0 if ride.friction is None else ride.friction)
+        )
+        self.folder.mkdir(exist_ok=True)
+        cases = [case for ride in missing for case in self.cases(ride)]
+        inside = partial(ThreadPoolExecutor, 1) if self.jobs == 1 else None
+        table = sweep(cases, self.measure, executor=inside, jobs=self.jobs, folder=self.folder)
+        for case, reason in table.failed[:1]:
+            raise SimulationError(f"{case.label}: {reason}; {len(table.failed)} of {len(cases)} runs failed")
+        for number, ride in enumerate(missing):
+            each = [one.values for one in table.results[number * self.records : (number + 1) * self.records]]
+            columns = {name: np.array([one[name] for one in each]) for name in each[0]}
+            self._done[ride] = Found(
+                mean={name: float(np.mean(values)) for name, values in columns.items()},
+                error={name: standard_error(values) for name, values in columns.items()},
+                each=each,
+            )
+        # They served an interrupted study; a finished one must not read them when the program has changed.
+        (self.folder / "rows.jsonl").unlink()
+
+    def __call__(self, ride: Ride) -> Found:
+        """What was found of a ride."""
+        self.compute([ride])
+        return self._done[ride]
+
+    def cases(self, ride: Ride) -> list[Case]:
+        """The runs of a ride, one for each record."""
+        vehicle = self.vehicles[ride.car]
+        changes = self.overrides if ride.friction is None else (*self.overrides, *all_friction(vehicle, ride.friction))
+        numbers = {**dict.fromkeys(ROAD_NUMBERS), "speed": ride.speed, "duration": self.duration + LEAD_S}
+        drives = [
+            road_drive(ride.road, argparse.Namespace(**{**numbers, "seed": seed}), vehicle)
+            for seed in range(1, self.records + 1)
+        ]
+        engine, file = ride.engine or self.engine, self.cars[ride.car]
+        return [Case(source=drive, overrides=tuple(changes), engine=engine, vehicle=file) for drive in drives]
+
+
+def all_friction(vehicle: Vehicle, friction: float) -> tuple[str, ...]:
+    """Overrides that give every damper of a car this Coulomb friction [N]."""
+    paths = dict.fromkeys(damper.path for damper in vehicle.composition.dampers)
+    return tuple(f"{path}.coulomb_friction={friction!r}" for path in paths)

@@ -1,0 +1,87 @@
+"""`python -m scenarios.road` as a user runs it; the scaling of a linear car with friction; what the rows ask."""
+
+from __future__ import annotations
+
+import json
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from scenarios.road.__main__ import main, one_sided
+from scenarios.road.findings import friction_claims, ratio, scaling_claim
+from scenarios.road.runs import Ride, RideRuns
+from tests.scenarios.test_comfort_sensitivity import needs_reduced
+from vehicle.parameters.elements import Bushing
+from vehicle.parameters.shipped import VEHICLES
+from vehicle.parameters.vehicle import load_vehicle
+
+SEATED = """
+base = "focus_road_seated"
+name = "rigid"
+[body]
+flexible = false
+attachment_flexibility = false
+"""
+
+
+@pytest.fixture(scope="module")
+def car(tmp_path_factory):
+    """The car with its occupant on a rigid body, which is quick to build."""
+    path = tmp_path_factory.mktemp("car") / "rigid.toml"
+    path.write_text(SEATED, encoding="utf-8")
+    return path
+
+
+@needs_reduced
+def test_a_short_study(car, tmp_path):
+    folder = tmp_path / "road"
+    assert main(["--output", str(folder), "--quick", "--vehicle", str(car)]) == 0
+    content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert {"class_and_speed.png", "friction.png", "results.md"} <= {path.name for path in folder.iterdir()}
+    rides = {(one["road"], one["friction"]): one["mean"] for one in content["rides"]}
+    smooth, rough = rides["A", None], rides["C", None]
+    # Four times the amplitude: nearly four times the vibration; less, for the friction matters less.
+    assert 3.0 < rough["rail"] / smooth["rail"] < 4.0 and 3.0 < rough["load_rear"] / smooth["load_rear"] < 5.0
+    assert 0.4 < smooth["seat_value"] < 1.0 and smooth["seat_weighted"] < smooth["rail_weighted"]
+    assert rides["A", 250.0]["rail"] > 1.3 * rides["A", 0.0]["rail"]
+    assert content["rows"] == []  # one short record judges nothing
+
+
+@needs_reduced
+def test_twice_the_road_and_twice_the_friction_are_the_same(car, tmp_path):
+    """u = a U(F / a): the reduced engine is linear but for its dampers, which it solves by turns to 1e-9 N."""
+    runs = RideRuns({"rigid": car}, records=1, duration=2.0, folder=tmp_path)
+    pairs = [Ride(car="rigid", road=road, speed=80.0, friction=force) for road, force in (("A", 30.0), ("C", 120.0))]
+    for name in ("rail", "seat_weighted", "load_front"):
+        one, other = (ratio(runs, ride, name)[0] for ride in pairs)
+        assert one == pytest.approx(other, rel=1e-5) and abs(one - 1.0) > 0.01
+    (claim,) = scaling_claim(runs, "rigid", ("A", "C"), 80.0, (0.0, 30.0, 120.0))
+    assert claim.within
+
+
+def told(smooth, rough):
+    """Runs whose comfort values over the frictions 0, 100, 200 N are given, for classes A and C."""
+
+    def found(ride):
+        value = {"A": smooth, "C": rough}[ride.road][int(ride.friction / 100.0)]
+        return SimpleNamespace(each=[{"rail": value, "seat_weighted": value}])
+
+    runs = SimpleNamespace(vehicles={"car": SimpleNamespace(seated=True)})
+    return type("Told", (SimpleNamespace,), {"__call__": lambda self, ride: found(ride)})(**vars(runs))
+
+
+def test_the_rows_fail_where_the_finding_does_not_hold():
+    asked = ("car", ("A", "C"), 80.0, (0.0, 100.0, 200.0))
+    assert all(claim.within for claim in friction_claims(told((1.0, 1.1, 1.5), (1.0, 1.0, 1.1)), *asked))
+    assert not any(claim.within for claim in friction_claims(told((1.0, 1.05, 1.02), (1.0, 1.1, 1.3)), *asked))
+
+
+def test_one_sided_tyres_are_a_file_over_the_car(tmp_path):
+    path = tmp_path / "one_sided.toml"
+    path.write_text(one_sided("focus_road", load_vehicle(VEHICLES / "focus_road" / "vehicle.toml")), encoding="utf-8")
+    laws = {one.name: one.law for one in load_vehicle(path).composition.connections}
+    law = laws["tyre_rr"]
+    assert isinstance(law, Bushing) and law.table_z is not None
+    table = law.table_z
+    assert table.force == pytest.approx((-2.5e4, 0.0, 0.0)) and math.isclose(table.displacement[0], -0.1)
