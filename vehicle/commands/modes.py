@@ -34,7 +34,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.car import Car
 
     if options.uff is not None and options.uff.exists():
-        own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.open("rb").read(500)
+        own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
         if not (options.force and own):
             mend = "is of somebody else; give another name" if options.force else "exists; give --force"
             raise ConfigurationError(f"--uff {options.uff}: {mend}")

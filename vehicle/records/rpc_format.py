@@ -65,7 +65,8 @@ def read(path: Path) -> Measurement:
     axis = uniform_axis(samples, step)
     found = []
     for index in range(channels):
-        values = table[:, index, :].reshape(-1)[:samples].astype(np.float64)
+        with np.errstate(invalid="ignore"):
+            values = table[:, index, :].reshape(-1)[:samples].astype(np.float64)
         number = index + 1
         if kind == "i2":
             values *= _number(path, head, f"SCALE.CHAN_{number}")

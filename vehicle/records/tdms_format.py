@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +16,23 @@ from vehicle.records.reader import digest, extra
 
 NO_DATE = 1904
 """Year of the start time of a waveform that has none."""
+
+
+@contextmanager
+def _remarks() -> Iterator[list[str]]:
+    """What the library would only log: an incomplete segment, a text that is none. The file lacks data then."""
+    found: list[str] = []
+    handler = logging.Handler()
+    handler.emit = lambda record: found.append(record.getMessage())  # type: ignore[method-assign]
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.split(".")[0] == "nptdms"]
+    before = [(one, one.handlers[:], one.propagate) for one in loggers]
+    for one in loggers:
+        one.handlers[:], one.propagate = [handler], False
+    try:
+        yield found
+    finally:
+        for one, handlers, propagate in before:
+            one.handlers[:], one.propagate = handlers, propagate
 
 
 def read(path: Path) -> Measurement:
@@ -26,9 +46,11 @@ def read(path: Path) -> Measurement:
     found: list[Channel] = []
     left, start = 0, ""
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _remarks() as remarks:
             warnings.simplefilter("error")
             file = nptdms.TdmsFile.read(path)
+        if remarks:
+            raise ValueError(remarks[0][:120])
         for group in file.groups():
             for one in group.channels():
                 values = np.asarray(one[:])

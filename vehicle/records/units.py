@@ -37,7 +37,7 @@ _TABLE = {
     ("pressure", "Pa"): {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "bar": 1e5, "mbar": 1e2},
     ("angle", "rad"): {"rad": 1.0, "deg": math.pi / 180.0, "°": math.pi / 180.0},
     ("angular velocity", "rad/s"): {"rad/s": 1.0, "deg/s": math.pi / 180.0, "°/s": math.pi / 180.0},
-    ("voltage", "V"): {"V": 1.0, "mV": 1e-3},
+    ("voltage", "V"): {"V": 1.0, "mV": 1e-3, "Volts": 1.0, "Volt": 1.0},
     ("current", "A"): {"A": 1.0, "mA": 1e-3},
     ("strain", "m/m"): {"m/m": 1.0, "um/m": 1e-6},
     ("temperature", "degC"): {"degC": 1.0, "°C": 1.0},
