@@ -36,8 +36,9 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
+    "report": {"analysis", "car", "linear", "parameters", "records", "rendering", "simulation"},
     "commands": {"analysis", "assembly", "car", "comparison", "excitation", "output", "parameters"}
-    | {"records", "rendering", "simulation", "sweeps"},
+    | {"records", "rendering", "report", "simulation", "sweeps"},
     "threads": set(),
     "compiler": set(),
     "errors": set(),

@@ -1,6 +1,18 @@
 """Commands, one file each; what they print is printed here and nowhere else in the package."""
 
-COMMANDS = ("shaker", "modes", "sweep", "comfort", "mjcf", "kinematics", "road", "inspect", "loads", "compare")
+COMMANDS = (
+    "shaker",
+    "modes",
+    "sweep",
+    "comfort",
+    "mjcf",
+    "kinematics",
+    "road",
+    "inspect",
+    "loads",
+    "compare",
+    "report",
+)
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 
 OLDER = COMMANDS[:5]

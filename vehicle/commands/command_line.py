@@ -128,7 +128,7 @@ def parse_and_run(
         for word in text:
             if "\0" in word:
                 raise ConfigurationError(f"argument {word!r}: holds a NUL byte; no path or value may")
-        return parser.parse_args(text)
+        return parser.parse_args(text, argparse.Namespace(words=text))
 
     # Looked for by hand: a failure to parse must show its traceback too.
     return run_command(lambda: job(checked(given)), debug="--debug" in given)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import shlex
 from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
@@ -68,6 +69,14 @@ def parser() -> Parser:
     found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower")
     found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     measured_options(found)
+    found.add_argument(
+        "--report",
+        nargs="?",
+        const="",
+        metavar="FILE.html",
+        help="write a report too: one HTML file with findings, figures, moving modes and tables; report.html in the "
+        "folder of the run by default",
+    )
     found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
     found.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
     found.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
@@ -108,6 +117,7 @@ def _job(options: argparse.Namespace) -> None:
 
         video_name = _film_path(options, stem, output)
         require_film()
+    report_name = None if options.report is None else _report_path(options, output)
     overrides = list(options.overrides)
     if options.timestep is not None:
         overrides.append(f"solver.timestep={options.timestep!r}")
@@ -158,6 +168,13 @@ def _job(options: argparse.Namespace) -> None:
             )
             film(run, path, take, progress=ProgressLine("film      ", enabled=not options.quiet))
 
+        def make_report(path: Path) -> None:
+            from vehicle.report.finished_run import read_run
+            from vehicle.report.page import report_page
+
+            progress = ProgressLine("report    ", enabled=not options.quiet)
+            path.write_text(report_page([read_run(folder, place=output, car=car)], progress), encoding="utf-8")
+
         summary = write_run(
             folder,
             run,
@@ -167,6 +184,8 @@ def _job(options: argparse.Namespace) -> None:
             road=road,
             video=None if video_name is None else (video_name, make_film),
             measured=measured,
+            report=None if report_name is None else (report_name, make_report),
+            command=shlex.join(["python", "-m", "vehicle.shaker", *options.words]),
         )
     if not options.quiet:
         print(report(summary, output))
@@ -217,14 +236,29 @@ def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
     name = Path(options.video) if options.video else Path(f"{stem}.mp4")
     if name.suffix != ".mp4":
         raise ConfigurationError(f"--video {name}: a film is written as .mp4; give FILE.mp4")
+    return _beside(name, "--video", output, lambda: check_film(name, force=options.force))
+
+
+def _report_path(options: argparse.Namespace, output: Path) -> Path:
+    """Where the report goes, in the same way."""
+    from vehicle.commands.report import NAME, check_report
+
+    name = Path(options.report or NAME)
+    if name.suffix != ".html":
+        raise ConfigurationError(f"--report {name}: a report is written as .html; give FILE.html")
+    return _beside(name, "--report", output, lambda: check_report(name, "--report", force=options.force))
+
+
+def _beside(name: Path, option: str, output: Path, check: Callable[[], None]) -> Path:
+    """A plain name in the folder of the run, or a path outside it that `check` does not refuse."""
     if name.parent == Path():
         return name
     folder = output.resolve()
     if name.resolve().parent == folder:
         return Path(name.name)
     if folder in name.resolve().parents:
-        raise ConfigurationError(f"--video {name}: lies below the folder of the run; give a plain name: {name.name}")
-    check_film(name, force=options.force)
+        raise ConfigurationError(f"{option} {name}: lies below the folder of the run; give a plain name: {name.name}")
+    check()
     return name
 
 

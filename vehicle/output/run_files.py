@@ -74,6 +74,8 @@ def write_run(
     road: Mapping[str, object] | None = None,
     video: tuple[Path, Callable[[Path], None]] | None = None,
     measured: Measured | None = None,
+    report: tuple[Path, Callable[[Path], None]] | None = None,
+    command: str = "",
 ) -> dict[str, Any]:
     """Write all files of a finished run.
 
@@ -86,6 +88,8 @@ def write_run(
         road: what the summary says of the road; on one, FRFs that cannot be had are left out with a notice.
         video: name of the film, or a path of its own, and what writes it.
         measured: a measurement that is put beside the run.
+        report: the same of the report, which is made of the other files.
+        command: line that makes this run, for the summary.
 
     Returns:
         The content of `summary.json`.
@@ -135,7 +139,13 @@ def write_run(
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing
+    summary["command"] = command or None
+    if report is not None:
+        files["report"] = str(report[0])
     write_json(folder / "summary.json", summary)
+    if report is not None:
+        name, make = report
+        write_whole(folder / name if name.parent == Path() else name, make)
     return summary
 
 

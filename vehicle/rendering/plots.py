@@ -146,7 +146,7 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         histories.align_ylabels(axes[:, 0])
         for axis, name in zip(characteristics.subplots(len(dampers), 1, squeeze=False)[:, 0], dampers, strict=True):
             speed, force = 1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"]
-            axis.plot(speed, force, ".", markersize=1.5, color=COLOURS[0], zorder=3)
+            axis.plot(speed, force, ".", markersize=1.5, color=COLOURS[0], zorder=3, rasterized=True)
             for limit in (-1e3 * slip, 1e3 * slip):
                 axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
             axis.set(

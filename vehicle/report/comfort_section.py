@@ -1,0 +1,86 @@
+"""Comfort of a run: weighted and unweighted accelerations, and what people say of them."""
+
+from __future__ import annotations
+
+from vehicle.report.comfort_class import REACTIONS, reactions
+from vehicle.report.finished_run import FinishedRun
+from vehicle.report.markup import Markup, joined, number, table, tag
+
+PLACES = {"seat_rail": "seat rail", "seat": "seat"}
+
+
+def comfort(run: FinishedRun) -> Markup:
+    """Weighted and unweighted accelerations, and the table of reactions with this run in it."""
+    parts, totals = [], {}
+    for place, value in run.summary["comfort"].items():
+        iso, raw = value["iso2631"], value["rms_2_50_hz"]
+        totals[PLACES.get(place, place)] = iso["vector_sum"]["weighted_rms"]
+        heads = (
+            "axis",
+            "weighting",
+            "weighted RMS [m/s²]",
+            "MTVV [m/s²]",
+            "crest factor",
+            "VDV [m/s¹·⁷⁵]",
+            "MSDV [m/s¹·⁵]",
+            "RMS 2 to 50 Hz [m/s²]",
+        )
+        rows = [
+            (
+                axis,
+                iso[axis]["weighting"],
+                *(number(iso[axis][key]) for key in ("weighted_rms", "mtvv", "crest_factor", "vdv", "msdv")),
+                number(raw[axis]),
+            )
+            for axis in "xyz"
+        ]
+        rows.append(
+            (
+                "all",
+                "",
+                number(iso["vector_sum"]["weighted_rms"]),
+                "",
+                "",
+                number(iso["vector_sum"]["vdv"]),
+                "",
+                number(raw["overall"]),
+            )
+        )
+        parts.append(table(heads, rows, caption=f"{PLACES.get(place, place).capitalize()}, {iso['standard']}", words=2))
+        parts += [tag("p", text) for text in iso["reasons"]]
+    here = {word: [place for place, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
+    body = [
+        tag(
+            "tr",
+            tag("td", _range(low, high)),
+            tag("td", word),
+            tag("td", ", ".join(here[word])),
+            class_="here" if here[word] else None,
+        )
+        for word, low, high in REACTIONS
+    ]
+    parts.append(
+        tag(
+            "div",
+            tag(
+                "table",
+                tag(
+                    "caption",
+                    "Likely reactions in public transport (ISO 2631-1:1997, C.2.3); ranges overlap; lower is better",
+                ),
+                tag(
+                    "thead", tag("tr", tag("th", "weighted acceleration"), tag("th", "reaction"), tag("th", "this run"))
+                ),
+                tag("tbody", *body),
+            ),
+            class_="table",
+        )
+    )
+    parts.append(tag("p", "The standard weights the vibration on the seat surface; the seat rail lies below it."))
+    return joined(parts)
+
+
+def _range(low: float, high: float) -> str:
+    if low == 0.0:
+        return f"below {high:g} m/s²"
+    return f"above {low:g} m/s²" if high == float("inf") else f"{low:g} to {high:g} m/s²"
