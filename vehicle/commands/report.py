@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
-from vehicle.commands.options import command_parser, message_options
+from vehicle.commands.options import FORCE_HELP, command_parser, message_options
 from vehicle.errors import ConfigurationError
 
 NAME = "report.html"
@@ -24,7 +24,7 @@ def parser() -> Parser:
         metavar="FILE.html",
         help=f"the file; {NAME} in the folder of a single run, and here for several, by default",
     )
-    found.add_argument("--force", action="store_true", help="replace the file where it is a report")
+    found.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(found, quiet=True)
     return found
 

@@ -76,6 +76,10 @@ def comfort(run: FinishedRun) -> Markup:
             class_="table",
         )
     )
+    seat = run.summary.get("seat_value")
+    if seat is not None:
+        words = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: below 1 the seat isolates."
+        parts.append(tag("p", words))
     parts.append(tag("p", "The standard weights the vibration on the seat surface; the seat rail lies below it."))
     return joined(parts)
 

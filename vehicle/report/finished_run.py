@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.motion_response import MotionResponse
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.parameters.vehicle import load_vehicle
@@ -47,7 +49,7 @@ class FinishedRun:
         summary: content of `summary.json`.
         car: the car with the parameters as used.
         recording: time histories; no poses.
-        response: FRFs of all acceleration channels; None where there are none.
+        responses: FRFs of all acceleration channels to each motion of the plates; none where there are none.
     """
 
     name: str
@@ -56,7 +58,12 @@ class FinishedRun:
     summary: dict[str, Any]
     car: Car
     recording: Recording
-    response: FrequencyResponse | None
+    responses: tuple[MotionResponse, ...]
+
+    @property
+    def response(self) -> FrequencyResponse | None:
+        """FRFs to the first motion of the plates; None where there are none."""
+        return self.responses[0].response if self.responses else None
 
     @property
     def wheel(self) -> str:
@@ -115,12 +122,14 @@ def read_run(folder: Path, *, place: Path | None = None, car: Car | None = None)
         if not path.is_file():
             raise DataError(f"{path}: missing, though summary.json lists it as {kind}; run it again")
     record = read_columns(places["time"])
+    own = car or _car(places["vehicle"], summary)
+    frfs = _responses(places["frf"], own.vehicle.acceleration_channels, summary) if "frf" in places else ()
     return FinishedRun(
         name=(place or folder).resolve().name,
         folder=folder,
         place=place or folder,
         summary=summary,
-        car=car or _car(places["vehicle"], summary),
+        car=own,
         recording=Recording(
             time=record.time,
             channels=record.channels,
@@ -130,7 +139,7 @@ def read_run(folder: Path, *, place: Path | None = None, car: Car | None = None)
             poses=np.empty((0, 0)),
             statistics=statistics,
         ),
-        response=_response(places["frf"], summary) if "frf" in places else None,
+        responses=frfs,
     )
 
 
@@ -142,18 +151,28 @@ def _car(path: Path, summary: dict[str, Any]) -> Car:
     return car
 
 
-def _response(path: Path, summary: dict[str, Any]) -> FrequencyResponse:
-    """FRFs of the table, with what the summary says of their estimate."""
-    found, about = read_frf(path), summary["frf"]
-    return FrequencyResponse(
-        frequency=found.frequency,
-        response=found.response,
-        coherence=found.coherence,
-        random_error=found.random_error,
-        averages=np.full(found.coherence.shape, np.nan),
-        segments=0,
-        window=about["window"],
-        estimator=about["estimator"],
-        resolution_hz=about["resolution_hz"],
-        reasons=(),
-    )
+def _responses(path: Path, channels: Sequence[str], summary: dict[str, Any]) -> tuple[MotionResponse, ...]:
+    """FRFs of the table to each motion of the plates, with what the summary says of their estimate."""
+    table, about = read_frf(path), summary["frf"]
+    motions = [one["plates"] for one in about.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
+    found = []
+    for index, motion in enumerate(motions):
+        ending = f"_to_{next(iter(motion))}" if index else ""
+        missing = [name for name in channels if name + ending not in table.channels]
+        if missing:
+            raise DataError(f"{path}: no FRFs of {missing[0] + ending}, which the car of the run has; run it again")
+        rows = [table.channels.index(name + ending) for name in channels]
+        response = FrequencyResponse(
+            frequency=table.frequency,
+            response=table.response[rows],
+            coherence=table.coherence[rows],
+            random_error=table.random_error[rows],
+            averages=np.full((len(rows), table.frequency.size), np.nan),
+            segments=0,
+            window=about["window"],
+            estimator=about["estimator"],
+            resolution_hz=about["resolution_hz"],
+            reasons=(),
+        )
+        found.append(MotionResponse(motion=motion, response=response))
+    return tuple(found)

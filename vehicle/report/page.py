@@ -14,6 +14,7 @@ from vehicle.report.comfort_section import comfort
 from vehicle.report.comparison_section import beside_each_other
 from vehicle.report.finished_run import FinishedRun
 from vehicle.report.markup import Markup, escaped, joined, section, tag
+from vehicle.report.measured_section import measured
 from vehicle.report.modes_section import HIGHEST_MODE, STATES, Modes, car_modes_of, moving_modes
 from vehicle.report.moving_modes import as_json
 from vehicle.report.response_section import responses
@@ -80,9 +81,9 @@ def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
         ("Dampers", "dampers", sections.dampers(run)),
         ("Comfort", "comfort", comfort(run)),
     ]
-    film = sections.film(run)
-    if film is not None:
-        found.append(("Film", "film", film))
+    for title, anchor, content in (("Measured", "measured", measured(run)), ("Film", "film", sections.film(run))):
+        if content is not None:
+            found.append((title, anchor, content))
     return [
         *found,
         ("All numbers", "tables", sections.tables(run)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from vehicle.linear.modes import Mode
-from vehicle.rendering.plots import plot_frf
+from vehicle.rendering.frf_plot import plot_frfs
 from vehicle.rendering.several_runs import plot_densities, shared_channels
 from vehicle.report.drawings import drawing
 from vehicle.report.findings import main_places, nearest_mode
@@ -15,11 +15,12 @@ from vehicle.report.markup import Markup, joined, number, table, tag
 
 def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
     """FRFs with phase and coherence and the resonances of the main places; on a road the densities."""
-    if run.response is not None:
-        found = run.response
+    if run.responses:
         return joined(
             [
-                drawing(lambda path: plot_frf(path, run, found, run.caption), f"Frequency responses of {run.name}"),
+                drawing(
+                    lambda path: plot_frfs(path, run, run.responses, run.caption), f"Frequency responses of {run.name}"
+                ),
                 tag(
                     "p",
                     "A band around a line is the 95 % region of its random error. Where the coherence is low the car "

@@ -32,13 +32,14 @@ def tiles(run: FinishedRun) -> Markup:
     """The numbers that are asked for first."""
     summary = run.summary
     shares = {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
-    comfort = summary["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"]
-    found = [
-        (f"{number(comfort)} m/s²", f"weighted acceleration at the seat rail, {' to '.join(reactions(comfort))}"),
-        *(
-            (f"{100 * share:.2g} %", f"of the time in slip: {side_of(wheel, shares)} damper")
-            for wheel, share in shares.items()
-        ),
+    found = []
+    for place, value in list(summary["comfort"].items())[:1]:
+        total = value["iso2631"]["vector_sum"]["weighted_rms"]
+        words = f"weighted acceleration at the {place.replace('_', ' ')}, {' to '.join(reactions(total))}"
+        found.append((f"{number(total)} m/s²", words))
+    found += [
+        (f"{100 * share:.2g} %", f"of the time in slip: {side_of(wheel, shares)} damper")
+        for wheel, share in shares.items()
     ]
     peaks = summary["peaks"].get(f"knuckle_{run.wheel}_acc_z")
     if peaks:
