@@ -12,13 +12,13 @@ export OMP_NUM_THREADS ?= 1
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.rendering.backend; then \
-	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --video --force; \
+	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --video --report --force; \
 	else \
 	  echo "no film: the run goes on without it"; \
-	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --force; \
+	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --report --force; \
 	fi
 
-test: setup check
+test: setup .stamps/browser check
 	$(BIN)/python -m pytest -n 2
 
 check: setup
@@ -38,6 +38,12 @@ setup: .stamps/system .stamps/python
 .stamps/system: tools/system-libraries.sh
 	@mkdir -p .stamps
 	@bash tools/system-libraries.sh
+	@touch $@
+
+# A browser, for the test of the report alone.
+.stamps/browser: tools/system-libraries.sh
+	@mkdir -p .stamps
+	@bash tools/system-libraries.sh browser
 	@touch $@
 
 .stamps/python: constraints.txt pyproject.toml tools/environment.sh

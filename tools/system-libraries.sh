@@ -1,13 +1,21 @@
 #!/usr/bin/env bash
-# Installs what pip cannot: the off-screen OpenGL library (OSMesa) and the venv module, on Debian, as root.
+# Installs what pip cannot, on Debian, as root: the off-screen OpenGL library (OSMesa) and the venv module; with the
+# word "browser" Chromium and its driver, which open the report in a test.
 set -u
 PATH=$PATH:/sbin:/usr/sbin
 wanted=()
-ldconfig -p 2>/dev/null | grep -q 'libOSMesa\.so' || wanted+=(libosmesa6)
-"${PYTHON:-python3}" -c 'import ensurepip, venv' 2>/dev/null || wanted+=(python3-venv)
+if [ "${1:-}" = browser ]; then
+  without="the test of the report in a browser is skipped"
+  [ -x /usr/bin/chromium ] || wanted+=(chromium)
+  [ -x /usr/bin/chromedriver ] || wanted+=(chromium-driver)
+else
+  without="without libosmesa6 there are no films"
+  ldconfig -p 2>/dev/null | grep -q 'libOSMesa\.so' || wanted+=(libosmesa6)
+  "${PYTHON:-python3}" -c 'import ensurepip, venv' 2>/dev/null || wanted+=(python3-venv)
+fi
 [ ${#wanted[@]} -eq 0 ] && exit 0
 if [ "$(id -u)" -ne 0 ]; then
-  echo "missing system packages: ${wanted[*]}; as root: apt-get install ${wanted[*]} (without libosmesa6 there are no films)"
+  echo "missing system packages: ${wanted[*]}; as root: apt-get install ${wanted[*]} ($without)"
   exit 0
 fi
 if ! command -v apt-get >/dev/null; then
@@ -16,7 +24,7 @@ if ! command -v apt-get >/dev/null; then
 fi
 echo "installing ${wanted[*]}"
 export DEBIAN_FRONTEND=noninteractive
-apt-get install -y -qq "${wanted[@]}" >/dev/null 2>&1 \
-  || { apt-get update -qq >/dev/null 2>&1 && apt-get install -y -qq "${wanted[@]}" >/dev/null 2>&1; } \
+apt-get install -y -qq --no-install-recommends "${wanted[@]}" >/dev/null 2>&1 \
+  || { apt-get update -qq >/dev/null 2>&1 && apt-get install -y -qq --no-install-recommends "${wanted[@]}" >/dev/null 2>&1; } \
   || echo "could not install ${wanted[*]}; the run goes on without what needs them"
 exit 0
