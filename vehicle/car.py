@@ -160,8 +160,8 @@ class Car:
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
             engine: "mujoco"; "reduced", hundreds of times faster, linear but for the dampers; "auto", which takes the
                 reduced one and falls back to MuJoCo where the motion leaves its validity or numba is missing.
-            channels: names of the recorded channels, loads (`vehicle.load_channels`) among them; by default all
-                but the loads.
+            channels: names of the recorded channels, those on request (`vehicle.requested_channels`) among
+                them; by default all but those.
 
         Returns:
             The run; `run.recording.statistics.engine` says which engine made it, `run.engine_reason` why.
@@ -175,10 +175,11 @@ class Car:
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
         known = self.vehicle.channels
-        self.vehicle.require_channels(channels or (), (*known, *self.vehicle.load_channels))
+        self.vehicle.require_channels(channels or (), (*known, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)
         names = known if channels is None else channels
-        loads = [name for name in names if name not in known]
+        more = [name for name in names if name not in known]
+        loads = [name for name in more if name in self.vehicle.load_channels]
         require_memory(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
         if engine == "auto" and not has_compiler():
@@ -201,7 +202,7 @@ class Car:
                 return Run(car=self, signal=signal, recording=recording, engine_reason=reason)
             reason = "; ".join(recording.statistics.warnings)
         self.check("mujoco")
-        recording = simulate(self.model, signal, progress=progress, loads=loads)
+        recording = simulate(self.model, signal, progress=progress, requested=more)
         require_finite(recording)
         if channels is not None:
             recording = recording.only(channels)

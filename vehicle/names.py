@@ -28,6 +28,7 @@ _UNITS = {
     r"plate_\w+_displacement": "m",
     r"suspension_travel_\w+": "m",
     r"\w+_torque": "N m",
+    r"\w+_coefficient": "N s/m",
 }
 
 

@@ -19,8 +19,8 @@ from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, stud
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
 from scenarios.study import lumped_study
 from vehicle.lumped.half_car_rider import ENDS
-from vehicle.lumped.semi_active import LAWS, PASSIVE
 from vehicle.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
+from vehicle.parameters.semi_active import LAWS, PASSIVE
 
 SETTLING_NOTE = (
     "Settling times: the source names no band. 0.5 % of the peak is the one of 0.5, 1, 2 and 5 % that comes nearest to "

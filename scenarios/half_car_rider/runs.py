@@ -14,9 +14,10 @@ from vehicle.errors import ConfigurationError
 from vehicle.lumped.bump_response import bump_passage, bump_response
 from vehicle.lumped.half_car_rider import ENDS, half_car_rider, lift_off, linear_tyre_load, places
 from vehicle.lumped.history import Array, History
-from vehicle.lumped.semi_active import PASSIVE, simulate_bump
+from vehicle.lumped.semi_active import simulate_bump
 from vehicle.parameters.axle import Axle
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.parameters.semi_active import PASSIVE
 
 Motion = Literal["displacement", "acceleration"]
 

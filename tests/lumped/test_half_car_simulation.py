@@ -9,8 +9,9 @@ from scipy.integrate import solve_ivp
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.lumped.bump_response import bump_passage, bump_response
 from vehicle.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
-from vehicle.lumped.semi_active import LAWS, simulate_bump
+from vehicle.lumped.semi_active import simulate_bump
 from vehicle.parameters.half_car_rider import half_car_rider_parameters
+from vehicle.parameters.semi_active import LAWS
 
 CAR = half_car_rider_parameters()
 SPEED = 20.0 / 3.6

@@ -13,6 +13,7 @@ from vehicle.assembly.connections import element_law
 from vehicle.flexbody.attached_mass import with_attached_masses
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, attached_nodes
+from vehicle.laws import semi_active
 from vehicle.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.names import AXES
 from vehicle.parameters.composition import (
@@ -285,6 +286,12 @@ class _Builder:
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER
         actuator.biastype = mujoco.mjtBias.mjBIAS_USER
         actuator.biasprm = actuator_parameters(laws)
+        if damper.controlled is not None:
+            self._numeric(f"control/{placed.name}", semi_active.pack(damper.controlled))
+            for end, part, at in zip(("lower", "upper"), placed.sensors, placed.at, strict=True):
+                self._site(f"sensor/{placed.name}/{end}", part, at)
+                if part == "body":
+                    self._node_shape(f"sensor/{placed.name}/{end}", at)
 
     def _table(self, name: str, table: ForceTable | None, local: float = np.inf) -> None:
         """Points of a law over displacement, behind a local stiffness [N/m]: in series displacements add up."""

@@ -164,18 +164,19 @@ def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
     Raises:
         ConfigurationError: the car has no such channel.
     """
+    more = vehicle.requested_channels
     if text in ("loads", "all"):
-        return (*vehicle.channels, *vehicle.load_channels)
+        return (*vehicle.channels, *(vehicle.load_channels if text == "loads" else more))
     names = [name.strip() for name in text.split(",")]
     for name in names:
-        if name not in vehicle.channels and name not in vehicle.load_channels:
-            close = get_close_matches(name, (*vehicle.load_channels, *vehicle.channels), n=1)
+        if name not in vehicle.channels and name not in more:
+            close = get_close_matches(name, (*more, *vehicle.channels), n=1)
             nearest = f"; did you mean {close[0]}?" if close else ""
             raise ConfigurationError(
                 f"--channels: no channel {name!r}; give loads, all, or names of channels as "
                 f"{vehicle.load_channels[0]},{vehicle.load_channels[-1]}{nearest}"
             )
-    return (*vehicle.channels, *(name for name in vehicle.load_channels if name in names))
+    return (*vehicle.channels, *(name for name in more if name in names))
 
 
 main = command(parser, _job)

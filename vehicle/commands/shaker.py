@@ -46,7 +46,8 @@ def parser() -> Parser:
         dest="recorded",
         metavar="loads|all|NAME,...",
         help="record more than the default channels: loads, the forces of all elements [N] and the suspension travel "
-        "[m], or some of these by name; all is everything; python -m vehicle loads counts their cycles",
+        "[m], or some of these by name; all is everything, with the coefficients of semi-active dampers [N s/m]; "
+        "python -m vehicle loads counts their cycles",
     )
     found.add_argument(
         "--format",

@@ -3,6 +3,7 @@
     F = F_c(v) - F_gas + clamp(c v, L(v)),   F_c = D v + shift + sum of clamp(e (v - m), e w)
 
 with the friction of `vehicle.laws.friction` and the curve F_c of `vehicle.laws.curve`: linear, degressive, or a table.
+Of a controlled damper F_c is that of its softest setting; what is set beyond it is of `vehicle.laws.semi_active`.
 """
 
 from __future__ import annotations
@@ -65,7 +66,9 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
 
 
 def damper_curve(damper: Damper) -> Curve:
-    """Force over velocity without friction and gas."""
+    """Force over velocity without friction and gas; of a controlled damper in its softest setting."""
+    if damper.controlled is not None:
+        return Curve.line(damper.controlled.minimum_damping)
     if damper.viscous_law == "table":
         return Curve.through(damper.velocity, damper.force)
     high, low, knee = (one or 0.0 for one in (damper.viscous, damper.degressive_viscous, damper.degressive_velocity))

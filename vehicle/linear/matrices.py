@@ -7,7 +7,7 @@ preloads: it is the derivative of the very forces that the time simulation appli
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import mujoco
 import numpy as np
@@ -53,7 +53,8 @@ class CarMatrices:
         system: matrices of `vehicle.linear.system`; C holds the viscous part of the dampers, inputs are the wheels,
             outputs turn u'' into the acceleration channels.
         dampers: velocity coordinates of the damper joints; (d,).
-        viscous: damping constants of the dampers [N s/m]; (d,).
+        viscous: damping constants of the dampers [N s/m], softest settings of controlled ones; (d,).
+        sensors: rows that turn u' into the velocities along controlled dampers, on the wheel and on the body; (2 k, n).
         bends: where the linear car ends.
         tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (w,).
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
@@ -67,6 +68,7 @@ class CarMatrices:
     system: LinearSystem
     dampers: npt.NDArray[np.intp]
     viscous: Vector
+    sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))
     bends: tuple[Bend, ...] = ()
     one_sided: frozenset[str] = frozenset()
     tyre_stiffness: Vector
@@ -130,6 +132,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         ),
         dampers=dofs,
         viscous=viscous,
+        sensors=_sensors(rows, data),
         bends=_bends(rows, jacobian),
         one_sided=frozenset(
             wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in bushings.one_sided
@@ -190,6 +193,19 @@ def _rewriter(rows: Rows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujo
         return rows
     compiled.attach(data)
     return compiled
+
+
+def _sensors(rows: Rows, data: mujoco.MjData) -> Vector:
+    """Rows of the velocities that the sensors of controlled dampers measure."""
+    model, own = rows.model, rows.layout.controls
+    found = np.zeros((2 * len(own.dampers), model.nv))
+    for row, (site, shape) in enumerate(zip(own.sites.ravel(), own.shapes, strict=True)):
+        jacobian = np.zeros((3, model.nv))
+        mujoco.mj_jacSite(model, data, jacobian, None, int(site))
+        jacobian[:, rows.layout.modes.velocities] += shape.reshape(3, -1)
+        damper = rows.layout.dampers.dofs[own.dampers[row // 2]]
+        found[row] = data.xaxis[model.dof_jntid[damper]] @ jacobian
+    return found
 
 
 def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:

@@ -1,19 +1,10 @@
 """Half cars with controlled dampers or tyres that can leave the road, many at once, over a bump.
 
-A control law asks for a force F along the damper (positive pulls body and wheel together); v = vb - vw is the rate at
-which they part. A damper can only resist: it gives c v with cmin <= c <= cmax. On-off laws choose cmax where F and v
-have the same sign, else cmin; continuous ones come as near to F as the limits allow.
-
-    skyhook     F = c_sky vb                          a damper between body and sky
-    groundhook  F = -c_ground vw                      a damper between wheel and ground
-    hybrid      F = share c_sky vb - (1 - share) c_ground vw
-
-The controller reads body and wheel velocity once a control period and holds the damper coefficients until the next;
-so the damper force c v opposes its velocity at every instant. In between the equations are integrated by the classical
-Runge-Kutta method with a fixed step. The road rate of a step is its difference quotient (z(t + h) - z(t)) / h: the
-impulse of the tyre damper is then exact where the slope of the road jumps. Order of the whole: 2.
-
-Source: Karnopp, Crosby, Harwood (1974) for skyhook; Ahmadian (1997) for groundhook and hybrid.
+The controller reads body and wheel velocity once a control period and holds the damper coefficients until the next
+(`vehicle.laws.semi_active`); so the damper force c v opposes its velocity at every instant. In between the equations
+are integrated by the classical Runge-Kutta method with a fixed step. The road rate of a step is its difference quotient
+(z(t + h) - z(t)) / h: the impulse of the tyre damper is then exact where the slope of the road jumps. Order of the
+whole: 2.
 """
 
 from __future__ import annotations
@@ -23,58 +14,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.laws.semi_active import PRESENT, act, at_rest, in_steps, pack
 from vehicle.linear.first_order import FirstOrder, first_order
 from vehicle.lumped.bump_response import bump_passage
 from vehicle.lumped.half_car_rider import ENDS, half_car_rider, static_tyre_load
 from vehicle.lumped.history import Array, History
-from vehicle.parameters.half_car_rider import HalfCarRiderParameters, SemiActiveDamper
-
-LAWS = ("skyhook_on_off", "skyhook", "groundhook_on_off", "groundhook", "hybrid_on_off", "hybrid")
-"""Names of the laws."""
-
-PASSIVE = "passive"
-"""Name of the car's own dampers, beside the laws."""
+from vehicle.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.parameters.semi_active import LAWS, PASSIVE
 
 LARGEST_STEP = 5e-4
 """[s]: against half of it the dose values of the base case change by less than 0.1 %."""
-
-
-def damping_coefficient(law: str, damper: SemiActiveDamper, body: npt.ArrayLike, wheel: npt.ArrayLike) -> Array:
-    """Setting of a semi-active damper.
-
-    Args:
-        law: one of `LAWS`.
-        damper: limits and gains.
-        body: velocity of the body above the wheel vb [m/s].
-        wheel: velocity of the wheel vw [m/s], same shape.
-
-    Returns:
-        c [N s/m] between the limits, same shape.
-
-    Raises:
-        ConfigurationError: unknown law.
-    """
-    if law not in LAWS:
-        raise ConfigurationError(f"semi-active law: found {law!r}, allowed are {', '.join(LAWS)}")
-    above, below = np.asarray(body, dtype=float), np.asarray(wheel, dtype=float)
-    share = {"skyhook": 1.0, "groundhook": 0.0, "hybrid": damper.skyhook_share}[law.removesuffix("_on_off")]
-    force = share * damper.skyhook_damping * above - (1.0 - share) * damper.groundhook_damping * below
-    parting = above - below
-    if law.endswith("_on_off"):
-        return np.where(force * parting > 0.0, damper.maximum_damping, damper.minimum_damping)
-    return _nearest(force, parting, damper)
-
-
-def _nearest(force: Array, parting: Array, damper: SemiActiveDamper) -> Array:
-    """Coefficient whose force c v comes nearest to the one asked for; no division where a limit decides."""
-    along, speed = force * np.sign(parting), np.abs(parting)
-    firm = (along > 0.0) & (along >= damper.maximum_damping * speed)
-    free = ~firm & (along > damper.minimum_damping * speed)
-    chosen = np.where(firm, damper.maximum_damping, damper.minimum_damping)
-    return np.divide(along, speed, out=chosen, where=free)
 
 
 def simulate_bump(
@@ -91,7 +42,7 @@ def simulate_bump(
     Args:
         cars: one car for each run; control limits and period are those of the first, which all must share.
         speeds: one speed for each run [m/s].
-        law: "passive" or one of `LAWS`.
+        law: "passive" or one of the laws of `vehicle.parameters.semi_active`; that of the parameters is not used.
         one_sided_tyres: a tyre that would pull gives no force: its load is max(0, static + k (z - x) + c (z' - x')).
         duration: [s].
         largest_step: upper limit of the integration step [s].
@@ -128,10 +79,13 @@ def simulate_bump(
     states = np.zeros((steps + 1, len(cars), run.state.shape[-1]))
     slopes, forces = np.zeros_like(states), np.zeros((steps + 1, len(cars), 2 * len(ENDS)))
     coefficient = np.array([[car.front.suspension_damping, car.rear.suspension_damping] for car in cars])
+    numbers = in_steps(pack(replace(control, law=law)), step) if law != PASSIVE else None
+    past = None if numbers is None else at_rest(numbers, *coefficient.shape)
     for k in range(steps + 1):
         state = states[k]
-        if law != PASSIVE and k % substeps == 0:
-            coefficient = damping_coefficient(law, control, *run.velocities(state))
+        if past is not None:
+            act(numbers, k, *run.velocities(state), past)
+            coefficient = past[PRESENT]
         z0, z1, z2 = road[2 * k], road[2 * k + 1], road[2 * k + 2]
         rate = (z2 - z0) / step
         k1, forces[k] = run.slope(state, z0, rate, coefficient)

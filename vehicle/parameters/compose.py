@@ -15,12 +15,12 @@ from vehicle.parameters.composition import (
     Composition,
     JointSpring,
     PlacedConnection,
-    PlacedDamper,
     PlacedOutput,
     PlacedPart,
     PlacedSpring,
     PlacedWheel,
 )
+from vehicle.parameters.dampers import placed_damper
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.freedoms import freedoms
 from vehicle.parameters.hardpoints import Point
@@ -71,15 +71,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         connections=tuple(connections),
         springs=tuple(one for one in springs if isinstance(one, PlacedSpring)),
         joint_springs=tuple(one for one in springs if isinstance(one, JointSpring)),
-        dampers=tuple(
-            PlacedDamper(
-                name=i.label(e.name, side),
-                joint=i.label(e.joint, side),
-                law=i.get(Damper, side, e.name),
-                path=f"{i.name}.{e.name}",
-            )
-            for i, e, side in _elements(car, "damper")
-        ),
+        dampers=tuple(placed_damper(*one) for one in _elements(car, "damper")),
         outputs=tuple(_outputs(car, added)),
         wheels=tuple(wheels),
         points=points,

@@ -90,12 +90,14 @@ class JointSpring:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedDamper:
-    """A damper on a slide."""
+    """A damper on a slide; of a controlled one, parts and points [m] of its sensors, on the wheel and on the body."""
 
     name: str
     joint: str
     law: Damper
     path: str
+    sensors: tuple[str, ...] = ()
+    at: tuple[Point, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -160,5 +162,11 @@ class Composition:
         found = {one.point: one.at for one in self.connections if "body" in (one.moving, one.carrier)}
         found |= {one.point: one.at[1] for one in self.springs if one.parts[1] == "body"}
         found |= {one.point: one.at[0] for one in self.springs if one.parts[0] == "body"}
+        found |= {
+            f"sensor/{one.name}/{end}": at
+            for one in self.dampers
+            for end, (part, at) in enumerate(zip(one.sensors, one.at, strict=True))
+            if part == "body" and at not in found.values()
+        }
         found |= {one.name: one.seat for one in self.parts if one.seat is not None and one.seat not in found.values()}
         return found | {one.point: one.at for one in self.outputs if one.on == "body"}

@@ -9,6 +9,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.parameters.curves import require_curve
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.quantity import quantity, validate
+from vehicle.parameters.semi_active import PASSIVE, SemiActiveDamper
 
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
@@ -128,7 +129,7 @@ class Damper:
     Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
     the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
-    Numbers of a law that is not chosen may be left out.
+    Numbers of a law that is not chosen may be left out. A control, but "passive", takes the place of the viscous law.
     """
 
     viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
@@ -149,6 +150,7 @@ class Damper:
         "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
     )
     stop: ForceTable | None = None
+    control: SemiActiveDamper | None = None
     friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(
@@ -188,6 +190,11 @@ class Damper:
                 f"Damper.degressive_viscous: found {self.degressive_viscous!r} N s/m, must be at least "
                 f"viscous ({self.viscous!r} N s/m)"
             )
+
+    @property
+    def controlled(self) -> SemiActiveDamper | None:
+        """Its control, None where nobody controls it."""
+        return None if self.control is None or self.control.law == PASSIVE else self.control
 
     @property
     def static_friction(self) -> float:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from vehicle.errors import ConfigurationError
 from vehicle.parameters.axle import Axle
-from vehicle.parameters.quantity import Validated, quantity, validate
+from vehicle.parameters.quantity import Validated, quantity
+from vehicle.parameters.semi_active import SemiActiveDamper
 from vehicle.parameters.toml_file import build, read_table
 
 PUBLISHED = Path(__file__).with_name("half_car_rider.toml")
@@ -39,28 +39,6 @@ class BumpShape(Validated):
 
     height: float = quantity("m", "bump height h0; negative is a dip")
     length: float = quantity("m", "bump length wb", above=0.0)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SemiActiveDamper:
-    """What the adjustable dampers can do, and the gains of the control laws."""
-
-    minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
-    maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0)
-    skyhook_damping: float = quantity("N s/m", "damper between body and sky", at_least=0.0)
-    groundhook_damping: float = quantity("N s/m", "damper between wheel and ground", at_least=0.0)
-    skyhook_share: float = quantity(
-        "-", "share of skyhook in the hybrid law, the rest is groundhook", at_least=0.0, at_most=1.0
-    )
-    control_period: float = quantity("s", "time between two settings of the dampers", above=0.0)
-
-    def __post_init__(self) -> None:
-        validate(self)
-        if self.maximum_damping < self.minimum_damping:
-            raise ConfigurationError(
-                f"SemiActiveDamper.maximum_damping: found {self.maximum_damping!r} N s/m, "
-                f"must be at least minimum_damping {self.minimum_damping!r} N s/m"
-            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

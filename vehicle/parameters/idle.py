@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 
 from vehicle.parameters.elements import Hydromount
 from vehicle.parameters.paths import meant
+from vehicle.parameters.semi_active import SemiActiveDamper
 from vehicle.parameters.vehicle import Vehicle
 
 
@@ -29,6 +31,10 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
     for damper in vehicle.composition.dampers:
         law, path = damper.law, damper.path
         off[f"{path}.stribeck_"] = (law.friction_law == "coulomb", f"{path}.friction_law = stribeck")
+        passive = law.controlled is None
+        off[f"{path}.viscous"] = (not passive, f"{path}.control.law = passive")
+        for name in (one.name for one in dataclasses.fields(SemiActiveDamper) if one.name != "law"):
+            off[f"{path}.control.{name}"] = (passive, f"{path}.control.law = skyhook or another law")
         off[f"{path}.degressive_"] = (law.viscous_law != "degressive", f"{path}.viscous_law = degressive")
     for one in vehicle.composition.connections:
         if isinstance(one.law, Hydromount):

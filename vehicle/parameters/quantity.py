@@ -147,6 +147,8 @@ def field_quantity(kind: type[Any], path: str) -> Mapping[str, Any]:
         origin = typing.get_origin(inner)
         if dataclasses.is_dataclass(inner) and key in (fields := {one.name: one for one in dataclasses.fields(inner)}):
             found, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
+            # Of a table that may be left out, the table.
+            inner = next((one for one in typing.get_args(inner) if dataclasses.is_dataclass(one)), inner)
         elif isinstance(origin, type) and issubclass(origin, Mapping):
             inner = typing.get_args(inner)[1]
         elif key in AXES and found.get("length") == len(AXES):

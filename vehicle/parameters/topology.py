@@ -70,8 +70,8 @@ class Connection:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SpringEnd:
-    """One end of a spring between two points."""
+class End:
+    """One end of a spring or of a damper: a point of a part."""
 
     part: str
     at: str
@@ -82,8 +82,8 @@ class Spring:
     """A spring between two points, or on a joint; the vehicle gives its numbers at `<name>`."""
 
     name: str
-    lower: SpringEnd | None = None
-    upper: SpringEnd | None = None
+    lower: End | None = None
+    upper: End | None = None
     joint: str | None = None
     shape: str = "coil_spring"
     """role of the shape of one between two points"""
@@ -95,10 +95,15 @@ class Spring:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Damper:
-    """A damper on a slide; the vehicle gives its numbers at `<name>`."""
+    """A damper on a slide; the vehicle gives its numbers at `<name>`.
+
+    A semi-active one needs its ends: there the sensors of its control sit, on the wheel side and on the body side.
+    """
 
     name: str
     joint: str
+    lower: End | None = None
+    upper: End | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

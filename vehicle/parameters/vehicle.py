@@ -145,6 +145,16 @@ class Vehicle:
         return tuple(name for name in found if name not in recorded)
 
     @property
+    def setting_channels(self) -> tuple[str, ...]:
+        """Coefficients `<damper>_coefficient` [N s/m] of the controlled dampers, recorded on request."""
+        return tuple(f"{one.name}_coefficient" for one in self.composition.dampers if one.law.controlled is not None)
+
+    @property
+    def requested_channels(self) -> tuple[str, ...]:
+        """Names of all channels that are recorded on request alone, in the order of the files."""
+        return (*self.load_channels, *self.setting_channels)
+
+    @property
     def damper(self) -> Damper:
         """Numbers of the first damper, which are those of all where the file gives one table.
 

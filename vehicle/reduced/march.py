@@ -23,6 +23,7 @@ from vehicle.compiler import OPTIONS, jitable, numba_module, stamp
 from vehicle.errors import MissingPartError
 from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import clamp, slope_at_rest
+from vehicle.reduced.control import Control, control, keep
 
 MISSING = "the reduced engine needs numba, which is missing (pip install numba)"
 
@@ -133,6 +134,7 @@ def march(
     velocities: Any,
     before: Any,
     after: Any,
+    controls: Control,
 ) -> None:
     """March over the steps between the rows of `plates` and keep every `every`-th end.
 
@@ -156,6 +158,7 @@ def march(
         samples: eta without the forces of the step at the samples; (block, 2 p + q).
         velocities, before, after: damper velocities [m/s], and damper forces [N] of the steps that end and
             begin at a sample; (all samples, e).
+        controls: controlled dampers, whose curves it changes.
     """
     pairs, reals = pair.shape[1], real.shape[0]
     inputs, at = count + plates.shape[1], 1 + count
@@ -171,6 +174,7 @@ def march(
         # An idle damper has no smoothing, and no friction.
         room[2, i] = 0.5 * np.pi / laws[i]["smoothing"] if laws[i]["smoothing"] > 0.0 else 1.0
     for step in range(plates.shape[0] - 1):
+        control(pair, real, plates[step], force, gain, velocity, curves, controls)
         u[0], u[1], u[2], u[3] = force[0], force[1], plates[step, 0], plates[step, 1]
         for k in range(2, count):
             u[2 + k] = force[k]
@@ -221,6 +225,7 @@ def march(
         phase += 1
         if phase == 1:
             after[sample - 1] = force
+            keep(sample - 1, 1, velocity, curves, controls)
         if phase == every:
             phase = 0
             row = sample - first
@@ -229,6 +234,7 @@ def march(
             samples[row, 2 * pairs :] = real
             velocities[sample] = velocity
             before[sample] = force
+            keep(sample, 0, velocity, curves, controls)
             sample += 1
 
 

@@ -13,6 +13,7 @@ from vehicle.laws.damper import RECORD, damper_curve, pack
 from vehicle.linear.load_rows import LoadRows
 from vehicle.names import channel_units, wheel_channels
 from vehicle.parameters.elements import Damper
+from vehicle.reduced.control import COEFFICIENT, FORCE, control_of
 from vehicle.reduced.loads import direct_forces, load_outputs
 from vehicle.reduced.march import March, compiled_march
 from vehicle.reduced.plate_samples import LongPlates, plate_samples
@@ -152,6 +153,7 @@ class _Run:
         self.gain[:count, :count] = (model.slip @ factors.force).real
         self.rest = np.array([pack(damper)["rest_force"] for damper in dampers])
         self.curves = _curves(dampers, np.diag(self.gain))
+        self.control = control_of(model, factors, dampers, self.columns)
         self.count = count
         self.pair, self.real = np.zeros((2, len(pairs))), np.zeros(len(reals))
         self.force = np.zeros(even)
@@ -180,6 +182,7 @@ class _Run:
             self.velocities,
             self.before,
             self.after,
+            self.control,
         )
 
     def fill(
@@ -194,6 +197,8 @@ class _Run:
         """Fill the table of outputs, (outputs, samples), and the arrays of the dampers."""
         samples = table.shape[1]
         self.velocities, self.before, self.after = np.zeros((3, samples, len(self.laws)))
+        kept = np.zeros((samples, len(self.control.dampers), 4))
+        self.control = self.control._replace(kept=kept)
         states = np.zeros((BLOCK, len(self.state())))
         done = 1
         while done < samples:
@@ -206,6 +211,8 @@ class _Run:
             watch.look(states[:size], ends, self.before[here, : self.count])
             done += size
         self.after[-1] = self.before[-1]
+        kept[0, :, COEFFICIENT] = kept[0, :, COEFFICIENT + 1]
+        kept[-1, :, [COEFFICIENT + 1, FORCE + 1]] = kept[-1, :, [COEFFICIENT, FORCE]]
 
     def friction(self, samples: int) -> Vector:
         """Nonlinear damper forces at the samples [N]; (samples, d).
@@ -224,7 +231,13 @@ class _Run:
             friction = self.friction(len(plates))[:, column]
             found[f"plate_{wheel}_displacement"] = height.copy()
             found[f"damper_{wheel}_velocity"] = velocity.copy()
-            found[f"damper_{wheel}_force"] = model.matrices.viscous[column] * velocity - friction + self.rest[column]
+            viscous: Vector | float = model.matrices.viscous[column]
+            if column in self.control.dampers:
+                kept = self.control.kept[: len(plates), list(self.control.dampers).index(column)]
+                viscous = 0.5 * (kept[:, COEFFICIENT] + kept[:, COEFFICIENT + 1])
+                friction = friction - 0.5 * (kept[:, FORCE] + kept[:, FORCE + 1])
+                found[f"damper_{wheel}_coefficient"] = viscous
+            found[f"damper_{wheel}_force"] = viscous * velocity - friction + self.rest[column]
         return found
 
 

@@ -18,6 +18,7 @@ from llvmlite import ir
 
 from vehicle.compiler import OPTIONS, numba_module, stamp
 from vehicle.laws.damper import RECORD
+from vehicle.laws.semi_active import SETTING
 from vehicle.simulation.kernel import damper_force, rewrite
 from vehicle.simulation.recorder import Recorder
 from vehicle.simulation.records import Efc, Simulation, Ticket
@@ -37,6 +38,7 @@ ARRAYS = {
     "Index": numba.int64[::1],
     "Indices": numba.int64[:, ::1],
     "Records": types.Array(numba.from_dtype(RECORD), 1, "C"),
+    "Settings": types.Array(numba.from_dtype(SETTING), 1, "C"),
     "int": numba.int64,
     "float": numba.float64,
 }
@@ -192,7 +194,7 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
         if address == 0:
             return 0.0
         one = load_simulation(address)
-        return damper_force(index, one.fields, one.layout)
+        return damper_force(index, one.fields, one.layout, one.state)
 
     def store(address: int, simulation: Simulation) -> int:
         size: int = store_simulation(address, simulation) if mark else 0

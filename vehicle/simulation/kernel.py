@@ -35,6 +35,7 @@ from vehicle.compiler import jitable
 from vehicle.laws.curve import curve_force
 from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import slope_at_rest
+from vehicle.simulation.control import control
 from vehicle.simulation.modal_rows import modal_rows
 from vehicle.simulation.records import Efc, Fields, Layout, State, Tables, Weights
 
@@ -241,6 +242,8 @@ def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         efc.D[row] = max(slope_at_rest(limit, own.laws[n]["smoothing"]) * c.timestep, EMPTY_ROW)
         efc.aref[row] = -sliding / c.timestep
         efc.frictionloss[row] = limit
+    for n in e.controls.dampers:
+        efc.D[own.rows[n]] = max(0.5 * c.timestep * s.coefficient[n], EMPTY_ROW)
     for n in range(own.valves.shape[0]):
         row, damper = own.valves[n, 0], own.valves[n, 1]
         efc.D[row] = c.valve_impedance[n]
@@ -276,6 +279,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     if e.modes.size > 0:
         modal_rows(d, efc, e, s)
     local_axes(d, efc, e, s)
+    control(time, d, e, s)
     advance_branches(time, c, s)
     elements(d, efc, e, c, s)
     springs(d, efc, e, c, s)
@@ -287,8 +291,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
 
 
 @jitable
-def damper_force(damper: int, d: Fields, e: Layout) -> float:
-    """Force of a user actuator [N]: -D v at the present velocity, and what is constant in the law."""
-    law = e.dampers.laws[damper]
-    force: float = -law["viscous_damping"] * d.actuator_velocity[damper] - law["shift"]
+def damper_force(damper: int, d: Fields, e: Layout, s: State) -> float:
+    """Force of a user actuator [N]: -D v at the present velocity, or -c v, and what is constant in the law."""
+    force: float = -s.coefficient[damper] * d.actuator_velocity[damper] - e.dampers.laws[damper]["shift"]
     return force

@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.laws.damper import unpack
+from vehicle.laws.semi_active import in_steps
 from vehicle.names import AXES
 from vehicle.simulation.records import (
     Bushings,
+    Controls,
     Dampers,
     Index,
     Indices,
@@ -102,6 +104,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             dofs=_spring_dofs(model, [ends[name] for name in springs]),
         ),
         dampers=_dampers(model, rows_of, int(first_rows[-1])),
+        controls=_controls(model, modes),
         tables=_tables(model, names, springs),
         modes=_modes(
             model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal
@@ -186,7 +189,7 @@ def _modes(
 
 def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int) -> Dampers:
     """The dampers: user actuators on joints, each with an equality row of its name."""
-    own = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
+    own = _damper_actuators(model)
     joints = [int(model.actuator_trnid[index, 0]) for index in own]
     dofs = _whole([model.jnt_dofadr[joint] for joint in joints])
     tendons = np.flatnonzero(model.tendon_frictionloss > 0.0)
@@ -205,10 +208,29 @@ def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], f
     )
 
 
+def _damper_actuators(model: mujoco.MjModel) -> list[int]:
+    return [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
+
+
+def _controls(model: mujoco.MjModel, modes: int) -> Controls:
+    """The controlled dampers, each with the sites of its sensors."""
+    names = [str(model.actuator(index).name) for index in _damper_actuators(model)]
+    read = {name: numeric(model, f"control/{name}") for name in names}
+    chosen = {name: found for name, found in read.items() if found is not None}
+    places = [(f"sensor/{name}/lower", f"sensor/{name}/upper") for name in chosen]
+    sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in places]
+    return Controls(
+        dampers=_whole([names.index(name) for name in chosen]),
+        laws=in_steps(np.reshape([*chosen.values()], (-1, 8)), float(model.opt.timestep)),
+        sites=_whole(sites, 2),
+        shapes=_shapes(model, [place for both in places for place in both], modes),
+        dofs=_spring_dofs(model, sites),
+    )
+
+
 def _tables(model: mujoco.MjModel, bushings: Sequence[str], springs: Sequence[str]) -> Tables:
     """The laws that are curves, without load."""
-    own = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
-    dampers = [str(model.actuator(index).name) for index in own]
+    dampers = [str(model.actuator(index).name) for index in _damper_actuators(model)]
     names = [(f"{name}/{axis}", (0, index, place)) for index, name in enumerate(bushings)
              for place, axis in enumerate(AXES)]  # fmt: skip
     names += [(name, (1, index, 0)) for index, name in enumerate(springs)]

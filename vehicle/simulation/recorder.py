@@ -36,7 +36,7 @@ class Recorder:
         samples: number of recorded samples.
         every: steps between two recorded samples.
         pose_every: samples between two stored poses.
-        loads: names of the load channels to be recorded beside the others.
+        requested: names of the channels on request to be recorded beside the others.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Recorder:
         samples: int,
         every: int,
         pose_every: int,
-        loads: Sequence[str] = (),
+        requested: Sequence[str] = (),
     ) -> None:
         self.car, self.model, self.data, self.rows = car, model, data, rows
         self.step = model.opt.timestep
@@ -62,6 +62,8 @@ class Recorder:
             shape = numeric(model, f"shape/place/{place}")
             if shape is not None:
                 self.shapes[place] = shape.reshape(3, -1)
+        self.settings = [name for name in requested if name in car.vehicle.setting_channels]
+        loads = [name for name in requested if name not in self.settings]
         self.loads = LoadPlaces(car, rows, loads) if loads else None
         bodies = np.zeros(0, dtype=np.int64) if self.loads is None else self.loads.bodies
         joints = np.zeros((0, 2), dtype=np.int64) if self.loads is None else self.loads.coordinates
@@ -72,6 +74,7 @@ class Recorder:
             modal_position=np.zeros((CHUNK, modes.size)),
             modal_velocity=np.zeros((CHUNK, modes.size)),
             damper_velocity=np.zeros((CHUNK, len(e.dampers.dofs))),
+            coefficient=np.zeros((CHUNK, len(e.dampers.dofs))),
             actuator=np.zeros((CHUNK, model.nu)),
             solved=np.zeros((CHUNK, e.row_count)),
             explicit=np.zeros((CHUNK, e.row_count)),
@@ -88,6 +91,7 @@ class Recorder:
             acceleration=data.qacc,
             orientation=data.xmat,
             site_positions=data.site_xpos,
+            coefficient=rows.state.coefficient,
             actuator=data.actuator_force,
             explicit=rows.state.explicit,
             rate=rows.state.rate,
@@ -113,7 +117,7 @@ class Recorder:
             half=-0.5 * self.step,
         )
         self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
-        self.channels |= {name: np.zeros(samples) for name in loads}
+        self.channels |= {name: np.zeros(samples) for name in requested}
         # Positions until the end of the run, which makes accelerations of them.
         self.channels |= {name: np.zeros(samples + AHEAD) for name in car.vehicle.acceleration_channels}
         self.poses: list[Vector] = []
@@ -234,6 +238,8 @@ class Recorder:
             if tyre[lowest, column] < self.lowest_load[wheel][0]:
                 when = (self.done + lowest) * every * self.step
                 self.lowest_load[wheel] = (float(tyre[lowest, column]), when)
+        for name in self.settings:
+            self.channels[name][here] = b.coefficient[:, self.dampers.index(name.removesuffix("_coefficient"))]
         if self.loads is not None:
             for name, values in self.loads.channels(total, b.frames, b.springs).items():
                 self.channels[name][here] = values

@@ -16,6 +16,7 @@ Table = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.int64]
 Records = npt.NDArray[Any]
+Settings = npt.NDArray[Any]
 
 
 class Bushings(NamedTuple):
@@ -92,6 +93,24 @@ class Dampers(NamedTuple):
     pieces: Table
 
 
+class Controls(NamedTuple):
+    """The k controlled dampers among the w.
+
+    Attributes:
+        dampers: which they are; (k,).
+        laws: records of `vehicle.laws.semi_active`; (k,).
+        sites: of the sensors, on the wheel and on the body; (k, 2).
+        shapes: modal shapes there, x of all modes, y, z; (2 k, 3 modes).
+        dofs: what moves them: control, sensor (0 wheel, 1 body), velocity coordinate, its tree; a row each.
+    """
+
+    dampers: Index
+    laws: Settings
+    sites: Indices
+    shapes: Table
+    dofs: Indices
+
+
 class Tables(NamedTuple):
     """The t laws over displacement that are curves (`vehicle.laws.curve`): F(at + x) - F(at) in place of K x.
 
@@ -147,7 +166,7 @@ class Layout(NamedTuple):
     """The elements of a car in its rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, tables, modes: see there.
+        bushings, rotations, springs, dampers, controls, tables, modes: see there.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: positions among the bushings of those on a plate, in the order of the plates; (t,).
         reach: where rows with explicit forces are not zero: first row, number of rows (3 or 1), first column, end.
@@ -158,6 +177,7 @@ class Layout(NamedTuple):
     rotations: Rotations
     springs: Springs
     dampers: Dampers
+    controls: Controls
     tables: Tables
     modes: Modes
     joints: Indices
@@ -229,6 +249,10 @@ class State(NamedTuple):
         stretch: displacement of the laws that are curves; (t,).
         deflection: modal displacement and velocity of the nodes in body axes; (2, 3 g).
         contact: elastic force of the one-sided elements [N], and their r' at the last evaluation [m/s]; (2, k).
+        coefficient: what the dampers have in place of D v, F = c v [N s/m]; (w,).
+        sensed: velocities at the sensors in the middle of the past step and of the one before it [m/s]; (2 k, 2).
+        past: what controlled dampers remember, as of `vehicle.laws.semi_active`; (k, ...).
+        steps: number of the present step; (1,).
     """
 
     plate_velocity: Table
@@ -247,6 +271,10 @@ class State(NamedTuple):
     stretch: Vector
     deflection: Table
     contact: Table
+    coefficient: Vector
+    sensed: Table
+    past: Table
+    steps: Vector
 
 
 class Ticket(NamedTuple):

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.laws.semi_active import RING
 from vehicle.simulation.kernel import EMPTY_ROW, damper_force, rewrite
 from vehicle.simulation.layout import element_names, read_layout
 from vehicle.simulation.records import Efc, Fields, Layout, State, Weights
@@ -108,7 +109,7 @@ class Rows:
 
     def actuator_bias(self, model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
         """Viscous force of a damper; installed as `mjcb_act_bias`."""
-        return float(damper_force(index, self.fields(data), self.layout))
+        return float(damper_force(index, self.fields(data), self.layout, self.state))
 
     @staticmethod
     def actuator_gain(model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
@@ -201,8 +202,13 @@ def _at_rest(layout: Layout) -> State:
     shapes |= dict.fromkeys(("plate_velocity", "plate_acceleration"), (tyres, 3))
     shapes |= {"last_time": (1,), "explicit": (layout.row_count,)}
     shapes |= {"torque": (len(layout.rotations.sites), 3), "ends": (2 * springs, 3), "line": (springs, 3)}
+    longest = RING + 1 + int(np.max(layout.controls.laws["lag"], initial=0.0))
+    controls, dampers = len(layout.controls.dampers), len(layout.dampers.dofs)
+    shapes |= {"coefficient": (dampers,), "sensed": (2 * controls, 2), "past": (controls, longest), "steps": (1,)}
     shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}
     shapes |= {"contact": (2, len(layout.bushings.one_sided))}
     state = State(**{name: np.zeros(shapes[name]) for name in State._fields})
     state.last_time[0] = -1.0
+    state.coefficient[:] = layout.dampers.laws["viscous_damping"]
+    state.past[:] = layout.controls.laws["softest"][:, None]
     return state

@@ -42,7 +42,7 @@ def simulate(
     *,
     progress: Progress | None = None,
     native: bool | None = None,
-    loads: Sequence[str] = (),
+    requested: Sequence[str] = (),
 ) -> Recording:
     """Run a car on its shaker plates.
 
@@ -52,7 +52,7 @@ def simulate(
         progress: called with the finished fraction [-] now and then.
         native: True for the compiled form of the element laws, False for the Python form; by default the compiled
             one where it can be had, with a notice where not.
-        loads: names of load channels to be recorded beside the others.
+        requested: names of channels to be recorded beside the usual ones: loads, settings.
 
     Returns:
         The recording, sampled at `solver.record_rate`.
@@ -89,7 +89,7 @@ def simulate(
     compiled, notices = _compiled(rows, native)
     pose_every = max(round(1.0 / (POSE_RATE * step * every)), 1)
     recorder = Recorder(
-        car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, loads=loads
+        car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
     )
     advance = None
     if compiled is not None:

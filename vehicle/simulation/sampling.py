@@ -32,6 +32,7 @@ class Sources(NamedTuple):
     acceleration: Vector
     orientation: Table
     site_positions: Table
+    coefficient: Vector
     actuator: Vector
     explicit: Vector
     rate: Table
@@ -52,6 +53,7 @@ class Samples(NamedTuple):
     modal_position: Table
     modal_velocity: Table
     damper_velocity: Table
+    coefficient: Table
     actuator: Table
     solved: Table
     explicit: Table
@@ -105,6 +107,7 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
     for damper in range(s.dampers.shape[0]):
         dof = s.dampers[damper]
         b.damper_velocity[row, damper] = s.velocity[dof] + half * s.acceleration[dof]
+    b.coefficient[row] = s.coefficient
     b.actuator[row] = s.actuator
     b.solved[row] = solved
     b.explicit[row] = s.explicit
