@@ -49,7 +49,7 @@ def findings(axles: Sequence[Axle]) -> list[str]:
     """What the table says, in words."""
 
     def each(say: str, value: Callable[[Axle], float]) -> str:
-        ranked = sorted(axles, key=lambda axle: -abs(value(axle)))
+        ranked = sorted((axle for axle in axles if math.isfinite(value(axle))), key=lambda axle: -abs(value(axle)))
         return ", ".join(f"{axle.label} {value(axle):{say}}" for axle in ranked)
 
     def slope(name: str) -> Callable[[Axle], float]:
@@ -62,8 +62,8 @@ def findings(axles: Sequence[Axle]) -> list[str]:
     return [
         f"Camber over equal travel [deg per 100 mm]: {each('+.2f', slope('camber_deg_per_m'))}.",
         f"Toe-in over equal travel [deg per 100 mm]: {each('+.2f', slope('toe_deg_per_m'))}.",
-        "What bushings add by their twist to the wheel rate that the spring alone makes with ideal joints, or take from "
-        f"it by yielding: {each('+.0%', lambda axle: rate(axle) / axle.from_spring - 1.0)}.",
+        "What bushings add by their twist to the wheel rate that the spring alone makes with ideal joints, or take "
+        f"from it by yielding: {each('+.0%', lambda axle: rate(axle) / axle.from_spring - 1.0)}.",
         "Wheel rate over opposite travel, times that over equal travel: "
         f"{each('.2f', lambda axle: float(axle.rolling['wheel_rate_n_per_m'] or math.nan) / rate(axle))}.",
         "Toe-in of the outer wheel in a bend, under 1 kN towards the middle of the bend [deg]: "
@@ -73,14 +73,14 @@ def findings(axles: Sequence[Axle]) -> list[str]:
 
 def sentence(one: Moved, point: str) -> str:
     """What moving the point does, in words."""
-    middle = one.toe_slopes[len(one.shifts) // 2]
-    text = (
-        f"{one.label}: {point} higher by 10 mm changes the slope of toe-in by {1e-3 * one.gain:+.2f} deg per 100 mm, "
-        f"from {0.1 * middle:+.2f}"
-    )
     if not math.isfinite(one.neutral):
-        return f"{text}."
-    return f"{text}; by this slope toe would not change over small travel with it moved by {1e3 * one.neutral:+.0f} mm."
+        return f"{one.label}: {point} does not change toe."
+    middle = one.toe_slopes[len(one.shifts) // 2]
+    return (
+        f"{one.label}: {point} higher by 10 mm changes the slope of toe-in by {1e-3 * one.gain:+.2f} deg per 100 mm, "
+        f"from {0.1 * middle:+.2f}; by this slope toe would not change over small travel with it moved by "
+        f"{1e3 * one.neutral:+.0f} mm."
+    )
 
 
 def load(options: argparse.Namespace) -> list[Path]:

@@ -19,6 +19,9 @@ from vehicle.simulation.axle_statics import WheelPose
 FORCE = 1000.0
 """Force at each contact point for compliance [N]."""
 
+LEAST_GAIN = 1.0
+"""Change of the toe slope that counts [deg/m2]: 0.001 deg per 100 mm for 10 mm."""
+
 POINT = "front.hardpoints.tie_inner.z"
 """Coordinate that is moved where none is asked for."""
 
@@ -32,7 +35,7 @@ class Axle:
         template: what it is.
         equal, opposite: poses of the right wheel over equal and opposite travel.
         slopes, rolling: slopes in the design position for these.
-        from_spring: wheel rate of the spring alone, k i^2 + F di/dz with ideal joints [N/m].
+        from_spring: wheel rate of the spring alone, k i^2 + F di/dz with ideal joints [N/m]; nan for one on a slide.
         across, along: pose under a force to the right and to the rear on both wheels.
     """
 
@@ -51,11 +54,12 @@ def measured(car: Car, name: str, travels: Sequence[float]) -> Axle:
     """All curves of an axle of a car; its table by name, travels of the right wheel [m]."""
     statics = axle_statics(car, name, ideal=False)
     pushed = [statics.solve([0.0, 0.0], np.array([force] * 2))[0] for force in FORCE * np.eye(6)[[1, 0]]]
-    ideal = axle_statics(car, name, ideal=True)
-    length = {z: ideal.solve([z, z])[0].strut_length_m for z in (-SMALL, 0.0, SMALL)}
-    ratio = (length[SMALL] - length[-SMALL]) / (2.0 * SMALL)
-    bend = (length[SMALL] - 2.0 * length[0.0] + length[-SMALL]) / SMALL**2
-    spring = statics.parts.springs[0]
+    ideal, from_spring = axle_statics(car, name, ideal=True), math.nan
+    if spring := next(iter(statics.parts.springs), None):
+        low, rest, high = (ideal.solve([z, z])[0].strut_length_m for z in (-SMALL, 0.0, SMALL))
+        ratio, bend = (high - low) / (2.0 * SMALL), (high - 2.0 * rest + low) / SMALL**2
+        # Virtual work: the load of the wheel is the pull of the spring times dL/dz.
+        from_spring = spring.stiffness * ratio**2 - spring.preload * bend
     return Axle(
         label=f"{car.vehicle.name}, {name}",
         template=str(car.vehicle.table[name]["template"]),
@@ -63,8 +67,7 @@ def measured(car: Car, name: str, travels: Sequence[float]) -> Axle:
         opposite=travel_curve(statics, travels, opposite=True),
         slopes=design_slopes(statics),
         rolling=design_slopes(statics, opposite=True),
-        # Virtual work: the load of the wheel is the pull of the spring times dL/dz.
-        from_spring=spring.stiffness * ratio**2 - spring.preload * bend,
+        from_spring=from_spring,
         across=pushed[0],
         along=pushed[1],
     )
@@ -106,8 +109,9 @@ class Moved:
 
     @property
     def neutral(self) -> float:
-        """Shift with which toe does not change over small travel [m]."""
-        return -self.toe_slopes[len(self.shifts) // 2] / self.gain
+        """Shift with which toe does not change over small travel [m]; nan where the point does not steer."""
+        steers = abs(self.gain) > LEAST_GAIN
+        return -self.toe_slopes[len(self.shifts) // 2] / self.gain if steers else math.nan
 
 
 def bump_steer_gain(car: Car, axle: str, path: str) -> float:

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from scenarios.kinematics.__main__ import main
-from scenarios.kinematics.axles import POINT, axles_of, bump_steer_gain, measured
+from scenarios.kinematics.axles import POINT, Moved, axles_of, bump_steer_gain, measured
 from scenarios.kinematics.claims import claims
 from vehicle.car import Car
 from vehicle.parameters.shipped import vehicle_file
 
 TRAVELS = (-0.02, 0.0, 0.02)
+MOVED = Moved(label="", shifts=(-0.01, 0.0, 0.01), curves=[], toe_slopes=(1.0, 3.0, 5.0), closed_form=np.nan)
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +51,8 @@ def test_refusals(arguments, message, tmp_path, capsys):
 
 def test_the_point_that_steers_least(sedan):
     """With the tie rod moved to where its slope says, toe hardly changes over small travel."""
+    assert (MOVED.gain, MOVED.neutral) == pytest.approx((200.0, -0.015))
+    assert not np.isfinite(replace(MOVED, toe_slopes=(1.0, 1.0, 1.0)).neutral)
     change = f"front.hardpoints.tie_inner.z={0.655 + 0.031}"
     moved = measured(Car.load(vehicle_file("sedan"), [change]), "front", TRAVELS)
     assert abs(moved.slopes["toe_deg_per_m"] or np.nan) < 0.4

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.shipped import VEHICLES, vehicle_file
+from vehicle.parameters.shipped import CARS, vehicle_file
 from vehicle.parameters.toml_file import convert, read_table
 
 
@@ -29,12 +29,11 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
         return table
     name = convert(str, table.pop("base"), "base")
     beside = file.parent / name
-    base = beside if beside.is_file() else vehicle_file(name)
-    if not base.is_file():
-        shipped = ", ".join(sorted(folder.name for folder in VEHICLES.iterdir() if folder.is_dir()))
+    if not beside.is_file() and name not in CARS:
         raise ConfigurationError(
-            f"base: found {name!r}; needed is a shipped car ({shipped}) or a vehicle file beside this one"
+            f"base: found {name!r}; needed is a shipped car ({', '.join(CARS)}) or a vehicle file beside this one"
         )
+    base = beside if beside.is_file() else vehicle_file(name)
     if base.resolve() in (*above, file.resolve()):
         raise ConfigurationError(f"base: {file} builds on itself; name another car")
     return _over(vehicle_table(base, (*above, file.resolve())), table)

@@ -197,8 +197,9 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                         f"{where}.name: found {word!r}, allowed are letters, digits, '_', '.', '-'"
                     )
                 if known is not None and head not in known:
+                    besides = f", and beside its own there are {', '.join(FREE_PORTS)}" if known is parts else ""
                     raise ConfigurationError(
-                        f"{where}.{key}: {word!r} leads nowhere; the nearest is {nearest(head, known)}"
+                        f"{where}.{key}: {word!r} leads nowhere; the nearest is {nearest(head, known)}{besides}"
                     )
                 if known is not None and side not in ("", "left", "right", "middle"):
                     raise ConfigurationError(f"{where}.{key}: found side {side!r}, allowed are left, right, middle")

@@ -76,13 +76,18 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
             near = f"the nearest known name is {nearest(key, fields)}"
             raise ConfigurationError(f"{_join(path, key)}: unknown parameter; {near}")
     values: dict[str, Any] = {}
+    missing: list[dataclasses.Field[Any]] = []
     for name, entry in fields.items():
         if name in table:
             values[name] = convert(hints[name], table[name], _join(path, name))
         elif entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING:
-            unit = entry.metadata.get("unit")
-            needed = f" [{unit}]" if unit else ""
-            raise ConfigurationError(f"{_join(path, name)}: missing; every parameter must be given{needed}")
+            missing.append(entry)
+    if missing:
+        first, *others = missing
+        also = f"; so must {', '.join(f'{one.name}{_needed(one)}' for one in others)}" if others else ""
+        raise ConfigurationError(
+            f"{_join(path, first.name)}: missing; every parameter must be given{_needed(first)}{also}"
+        )
     try:
         return cls(**values)
     except ConfigurationError as error:
@@ -93,6 +98,12 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
         elif not path and message.startswith(cls.__name__ + "."):
             message = message[len(cls.__name__) + 1 :]
         raise ConfigurationError(message) from None
+
+
+def _needed(entry: dataclasses.Field[Any]) -> str:
+    """What a field wants, in brackets: one of its words, or a number in its unit."""
+    words, unit = entry.metadata.get("choices"), entry.metadata.get("unit")
+    return f" [{' or '.join(words)}]" if words else f" [{unit}]" if unit else ""
 
 
 def as_table(instance: Any) -> dict[str, Any]:
