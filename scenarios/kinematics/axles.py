@@ -59,7 +59,8 @@ def measured(car: Car, name: str, travels: Sequence[float]) -> Axle:
         low, rest, high = (ideal.solve([z, z])[0].strut_length_m for z in (-SMALL, 0.0, SMALL))
         ratio, bend = (high - low) / (2.0 * SMALL), (high - 2.0 * rest + low) / SMALL**2
         # Virtual work: the load of the wheel is the pull of the spring times dL/dz.
-        from_spring = spring.stiffness * ratio**2 - spring.preload * bend
+        force, rate = spring.pull(0.0)
+        from_spring = rate * ratio**2 - force * bend
     return Axle(
         label=f"{car.vehicle.name}, {name}",
         template=str(car.vehicle.table[name]["template"]),
