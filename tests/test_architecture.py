@@ -33,12 +33,14 @@ ROOMS: dict[str, set[str]] = {
     "comparison": {"analysis", "car", "linear", "records"},
     "rendering": {"comparison", "simulation", "analysis", "assembly", "parameters", "shapes"},
     "car": {"analysis", "excitation", "flexbody", "linear", "parameters", "reduced", "simulation"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
+    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
+    | {"replication"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
+    "replication": {"car", "excitation", "records", "reduced"},
     "report": {"analysis", "car", "linear", "parameters", "records", "rendering", "simulation"},
     "commands": {"analysis", "assembly", "car", "comparison", "excitation", "output", "parameters"}
-    | {"records", "rendering", "report", "simulation", "sweeps"},
+    | {"records", "rendering", "replication", "report", "simulation", "sweeps"},
     "threads": set(),
     "compiler": set(),
     "errors": set(),

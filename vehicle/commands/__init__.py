@@ -12,6 +12,7 @@ COMMANDS = (
     "loads",
     "compare",
     "report",
+    "drive",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 
