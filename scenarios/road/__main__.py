@@ -20,9 +20,7 @@ from scenarios.road.findings import check_table, class_table, friction_claims, f
 from scenarios.road.runs import Ride, RideRuns
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.errors import ConfigurationError
-from vehicle.output.folder import write_text
 from vehicle.parameters.shipped import VEHICLES
-from vehicle.parameters.vehicle import Vehicle
 from vehicle.reduced.march import has_compiler
 
 CARS = {"without occupant": "focus_road", "with occupant": "focus_road_seated"}
@@ -38,8 +36,6 @@ SPEED = 80.0
 RECORDS, DURATION_S = 3, 30.0
 QUICK_DURATION_S = 4.0
 QUICK_WHY = f"one record of {QUICK_DURATION_S:g} s tells it too coarsely"
-
-ONE_SIDED = "with one-sided tyres"
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
@@ -101,12 +97,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 def checks(rides: RideRuns, folder: Path, car: str, roads: tuple[str, ...]) -> list[str]:
     """One record of the last car by both engines, and on the roughest road with tyres that cannot pull."""
     rough, engine = roads[-1], "mujoco"
-    cars = {car: rides.cars[car]}
-    if rides.cars[car].is_relative_to(VEHICLES):
-        cars[ONE_SIDED] = folder / "one_sided_tyres.toml"
-        write_text(cars[ONE_SIDED], one_sided(rides.cars[car].parent.name, rides.vehicles[car]))
     one = RideRuns(
-        cars,
+        {car: rides.cars[car]},
         overrides=rides.overrides,
         engine="reduced",
         jobs=rides.jobs,
@@ -121,26 +113,15 @@ def checks(rides: RideRuns, folder: Path, car: str, roads: tuple[str, ...]) -> l
         )
         for road in roads
     }
-    if ONE_SIDED in cars:
-        pairs[f"class {rough}, {SPEED:g} km/h: tyres that cannot pull against tyres that can, MuJoCo"] = (
-            Ride(car=car, road=rough, speed=SPEED, engine=engine),
-            Ride(car=ONE_SIDED, road=rough, speed=SPEED, engine=engine),
-        )
+    pairs[f"class {rough}, {SPEED:g} km/h: tyres that cannot pull against tyres that can, MuJoCo"] = (
+        Ride(car=car, road=rough, speed=SPEED, engine=engine),
+        Ride(car=car, road=rough, speed=SPEED, engine=engine, one_sided=True),
+    )
     one.compute([ride for pair in pairs.values() for ride in pair])
     return [
         f"Checks, {car}, {one.text().partition(',')[0]}: differences of the second to the first:",
         check_table(one, pairs),
     ]
-
-
-def one_sided(base: str, vehicle: Vehicle) -> str:
-    """A vehicle file over another one whose tyres carry nothing where they would pull."""
-    lines = [f'base = "{base}"', f'name = "{base}_one_sided"', ""]
-    for axle in dict.fromkeys(wheel.axle for wheel in vehicle.composition.wheels):
-        stiffness = float(vehicle.table[axle]["bushings"]["tyre"]["stiffness"][2])
-        table = f"{{ displacement = [-0.1, 0.0, 0.1], force = [{-0.1 * stiffness!r}, 0.0, 0.0] }}"
-        lines += [f"[{axle}.bushings.tyre]", f"table_z = {table}  # [m], [N]", ""]
-    return "\n".join(lines)
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

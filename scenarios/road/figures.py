@@ -39,9 +39,11 @@ def draw_classes(path: Path, runs: RideRuns, roads: Sequence[str], speeds: Seque
             axis.set(ylabel=label, ylim=(0.0, None))
             axis.set_xlabel("speed [km/h]")
             if name.startswith("load"):
-                axis.axhline(100.0 / 3.0, color="#777777", linewidth=0.8, linestyle=":")
-                axis.annotate("a Gaussian load touches 0 at 3 σ", (speeds[0], 100.0 / 3.0), fontsize=7, va="bottom")
-        axes[0].legend(loc="upper left", fontsize=7)
+                look = {"color": "#777777", "linewidth": 0.8, "linestyle": ":"}
+                line = axis.axhline(100.0 / 3.0, **look, label="a Gaussian load touches 0 at three times its RMS")
+                axis.legend(handles=[line], loc="upper left", fontsize=7)
+        axes[0].set_ylim(0.0, 1.4 * axes[0].get_ylim()[1])
+        axes[0].legend(loc="upper left", ncols=2, fontsize=7)
         figure.align_ylabels(axes)
 
 

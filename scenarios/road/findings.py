@@ -194,7 +194,7 @@ def words(runs: RideRuns, car: str, roads: Sequence[str], speed: float, friction
         rides = [Ride(car=car, road=road, speed=speed, friction=one) for one in frictions]
         best = min(rides, key=lambda ride: runs(ride).mean[LOAD.format(runs.measure.by_axle[0][0])])
         rail = ratio(runs, rides[-1], "rail")[0]
-        part = f"class {road}: {frictions[-1]:g} N in every damper change comfort at the rail by {_percent(rail)}"
+        part = f"class {road}: {frictions[-1]:g} N in every damper change the vibration of the rail by {_percent(rail)}"
         if runs.vehicles[car].seated:
             part += f", the weighted vibration of the seat by {_percent(ratio(runs, rides[-1], 'seat_weighted')[0])}"
         said.append(f"{part}; the front tyre load varies least at {best.friction:g} N")

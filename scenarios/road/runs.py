@@ -109,6 +109,7 @@ class Ride:
         speed: [km/h].
         friction: of every damper [N]; None for those of the vehicle file.
         engine: another one than that of the study.
+        one_sided: whether the tyres let go where they would pull.
     """
 
     car: str
@@ -116,6 +117,7 @@ class Ride:
     speed: float
     friction: float | None = None
     engine: str | None = None
+    one_sided: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -212,6 +214,7 @@ class RideRuns:
         """The runs of a ride, one for each record."""
         vehicle = self.vehicles[ride.car]
         changes = self.overrides if ride.friction is None else (*self.overrides, *all_friction(vehicle, ride.friction))
+        changes = (*changes, *one_sided_tyres(vehicle)) if ride.one_sided else changes
         numbers = {**dict.fromkeys(ROAD_NUMBERS), "speed": ride.speed, "duration": self.duration + LEAD_S}
         drives = [
             road_drive(ride.road, argparse.Namespace(**{**numbers, "seed": seed}), vehicle)
@@ -225,3 +228,10 @@ def all_friction(vehicle: Vehicle, friction: float) -> tuple[str, ...]:
     """Overrides that give every damper of a car this Coulomb friction [N]."""
     paths = dict.fromkeys(damper.path for damper in vehicle.composition.dampers)
     return tuple(f"{path}.coulomb_friction={friction!r}" for path in paths)
+
+
+def one_sided_tyres(vehicle: Vehicle) -> tuple[str, ...]:
+    """Overrides with which no tyre of a car pulls."""
+    rolling = {wheel.part for wheel in vehicle.composition.wheels}
+    paths = dict.fromkeys(one.path for one in vehicle.composition.connections if one.ground and one.moving in rolling)
+    return tuple(f"{path}.one_sided=true" for path in paths)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 from types import SimpleNamespace
 
 import pytest
 
-from scenarios.road.__main__ import main, one_sided
+from scenarios.road.__main__ import main
 from scenarios.road.findings import friction_claims, ratio, scaling_claim
-from scenarios.road.runs import Ride, RideRuns
+from scenarios.road.runs import Ride, RideRuns, one_sided_tyres
 from tests.scenarios.test_comfort_sensitivity import needs_reduced
 from vehicle.parameters.elements import Bushing
 from vehicle.parameters.shipped import VEHICLES
@@ -77,11 +76,11 @@ def test_the_rows_fail_where_the_finding_does_not_hold():
     assert not any(claim.within for claim in friction_claims(told((1.0, 1.05, 1.02), (1.0, 1.1, 1.3)), *asked))
 
 
-def test_one_sided_tyres_are_a_file_over_the_car(tmp_path):
-    path = tmp_path / "one_sided.toml"
-    path.write_text(one_sided("focus_road", load_vehicle(VEHICLES / "focus_road" / "vehicle.toml")), encoding="utf-8")
-    laws = {one.name: one.law for one in load_vehicle(path).composition.connections}
-    law = laws["tyre_rr"]
-    assert isinstance(law, Bushing) and law.table_z is not None
-    table = law.table_z
-    assert table.force == pytest.approx((-2.5e4, 0.0, 0.0)) and math.isclose(table.displacement[0], -0.1)
+def test_one_sided_tyres_are_those_of_all_wheels():
+    changes = one_sided_tyres(load_vehicle(VEHICLES / "focus_road" / "vehicle.toml"))
+    laws = {
+        one.name: one.law
+        for one in load_vehicle(VEHICLES / "focus_road" / "vehicle.toml", changes).composition.connections
+    }
+    found = {name: law.one_sided for name, law in laws.items() if isinstance(law, Bushing) and law.one_sided}
+    assert sorted(found) == ["tyre_fl", "tyre_fr", "tyre_rl", "tyre_rr"]
