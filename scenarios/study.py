@@ -29,6 +29,7 @@ STUDIES = {
     "tornado": "Comfort on both roads against all parameters, as a tornado chart.",
     "global_sensitivity": "Sobol indices, Morris effects or a Latin hypercube of the comfort value, ten parameters.",
     "tuning": "Fit parameters of the car to FRFs and bump records.",
+    "four_post": "Four-post rig: heave, pitch, roll and warp of cars on four wheels, dampers stuck and sliding.",
     "quarter_car": "Quarter-car models with friction, engine, degressive damper and inclined strut.",
     "half_car_rider": "Half car with seat and rider over a bump.",
     "damper_choice": "Choice of dampers for road holding.",

@@ -1,0 +1,206 @@
+"""Runs of a car on a four-post rig, and the same FRFs from its matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.peaks import Peak, resonance_peaks
+from vehicle.car import Car
+from vehicle.excitation.four_post import MOTIONS, four_post
+from vehicle.linear.first_order import first_order
+from vehicle.linear.modes import Mode
+from vehicle.linear.response import frequency_response
+from vehicle.names import AXES
+from vehicle.rendering.recorded_run import hub_channel
+
+Vector = npt.NDArray[np.float64]
+
+Thing = TypeVar("Thing")
+
+LEVELS = tuple(2.0**-n for n in range(5, -1, -1))
+"""Displacements of the plates over those of a road of class A at 80 km/h."""
+
+QUICK_LEVELS, QUICK_DURATION = (LEVELS[0], LEVELS[-1]), 8.0
+"""Levels, and length of the signals [s], with --quick."""
+
+STATES = ("stuck", "sliding")
+
+LINES = np.geomspace(1.0, 40.0, 900)
+"""Frequencies of the FRFs from matrices [Hz]."""
+
+HIGHEST_PEAK_HZ = 30.0
+"""Peaks are compared up to here [Hz]."""
+
+NEAR = 0.05
+"""A peak of a run, and a mode, belong to a peak of the matrices within this share of its frequency."""
+
+WHEELS_FROM_HZ = 10.0
+"""Peaks of the wheel carriers are listed from here on [Hz]; below they ride with the body."""
+
+PROMINENCE_DB = 6.0
+"""Height of a peak of the matrices above its feet from which it is looked for: twice as high."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class OneRun:
+    """What is kept of a run.
+
+    Attributes:
+        motion: name of the motion of the plates.
+        level: displacements over those of a road of class A.
+        engine: that made it.
+        slip: wheel to the share of the time in which its damper slips, |v| above the slip velocity.
+        comfort: unfiltered RMS of the seat rail, 2 to 50 Hz, all axes [m/s2].
+        response: FRFs of `channels_of` to the common motion [m/s2 per m]; None where not asked for.
+    """
+
+    motion: str
+    level: float
+    engine: str
+    slip: dict[str, float]
+    comfort: float
+    response: FrequencyResponse | None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Matched:
+    """A peak of the FRF from matrices, the mode that it belongs to, and the peak of a run there.
+
+    Attributes:
+        motion: name of the motion.
+        channel: its acceleration channel.
+        state: of the dampers in the matrices.
+        peak: of the matrices.
+        mode: the mode nearest in frequency; None where none is within `NEAR`.
+        found: peak of the run; None where there is none within `NEAR`.
+    """
+
+    motion: str
+    channel: str
+    state: str
+    peak: Peak
+    mode: Mode | None
+    found: Peak | None
+
+    @property
+    def deviation(self) -> float | None:
+        """Frequency of the run over that of the matrices, less 1."""
+        return None if self.found is None else self.found.frequency_hz / self.peak.frequency_hz - 1.0
+
+
+def channels_of(car: Car, motion: str) -> tuple[str, ...]:
+    """Body and wheel carriers in a motion: the seat rail along the axis in which the body answers it, one hub an axle.
+
+    Heave and pitch shake the seat rail vertically and along the car, roll and warp sideways.
+    """
+    body = {
+        "heave": "seat_rail_acc_z",
+        "pitch": "seat_rail_acc_x",
+        "roll": "seat_rail_acc_y",
+        "warp": "seat_rail_acc_y",
+    }
+    hubs = [hub_channel(car.vehicle.composition, wheel) for wheel in ("fr", "rr")]
+    known = car.vehicle.acceleration_channels
+    return (body[motion], *(hub for hub in hubs if hub in known))
+
+
+def run_motion(car: Car, motion: str, level: float, *, duration: float, engine: str, response: bool = True) -> OneRun:
+    """Put a car on the rig.
+
+    Args:
+        car: with wheels at four corners.
+        motion: of `MOTIONS`.
+        level: displacements over those of a road of class A.
+        duration: length [s].
+        engine: as of `Car.run`.
+        response: whether FRFs are estimated.
+    """
+    asked = channels_of(car, motion)
+    dampers = [one for one in MOTIONS[motion] if f"damper_{one}_velocity" in car.vehicle.channels]
+    recorded = {*asked, *(f"seat_rail_acc_{axis}" for axis in AXES)}
+    recorded |= {f"plate_{wheel}_displacement" for wheel in MOTIONS[motion]}
+    recorded |= {f"damper_{wheel}_velocity" for wheel in dampers}
+    order = [name for name in car.vehicle.channels if name in recorded]
+    run = car.run(four_post(motion, factor=level, duration=duration), engine=engine, channels=order)
+    return OneRun(
+        motion=motion,
+        level=level,
+        engine=run.recording.statistics.engine,
+        slip={wheel: run.slip_share(wheel) for wheel in dampers},
+        comfort=run.comfort().overall,
+        response=run.frf(asked) if response else None,
+    )
+
+
+def matrix_response(car: Car, motion: str, state: str) -> npt.NDArray[np.complex128]:
+    """FRFs of `channels_of` to the common motion from the matrices, over `LINES`; (channels, lines)."""
+    form = first_order(car.matrices.system, stuck=state == "stuck")
+    driven = [MOTIONS[motion].get(wheel, 0.0) for wheel in car.vehicle.wheels]
+    return frequency_response(form, LINES, channels_of(car, motion), "acceleration", driven=driven)
+
+
+def transmissibility(frequency: Vector, response: npt.NDArray[np.complex128]) -> Vector:
+    """|displacement of the place over that of the plates| = |H| / (2 pi f)^2 [-]."""
+    return np.asarray(np.abs(response) / (2.0 * np.pi * frequency) ** 2)
+
+
+def distance_db(response: FrequencyResponse, exact: npt.NDArray[np.complex128]) -> float:
+    """RMS over lines and channels of 20 lg of |H| of a run over |H| of the matrices [dB]."""
+    frequency = response.frequency
+    known = np.isfinite(response.response).all(axis=0) & (frequency <= HIGHEST_PEAK_HZ)
+    level = [np.interp(np.log(frequency[known]), np.log(LINES), np.log10(row)) for row in np.abs(exact)]
+    ratio = 20.0 * (np.log10(np.abs(response.response[:, known])) - np.array(level))
+    return float(np.sqrt(np.mean(ratio**2)))
+
+
+def matched_peaks(
+    car: Car, one: OneRun, state: str, exact: npt.NDArray[np.complex128], modes: Sequence[Mode]
+) -> list[Matched]:
+    """Peaks of the transmissibility from matrices beside those of a run and the modes, channel by channel.
+
+    Args:
+        car: the car.
+        one: the run, with its FRFs.
+        state: of the dampers in the matrices.
+        exact: as of `matrix_response`.
+        modes: of the car in that state.
+    """
+    response = one.response
+    assert response is not None
+    size = (2.0 * np.pi * response.frequency) ** 2
+    found = []
+    for row, channel in enumerate(channels_of(car, one.motion)):
+        measured = resonance_peaks(
+            response.frequency,
+            np.abs(response.response[row]) / size,
+            response.coherence[row],
+            response.random_error[row] / size,
+        )
+        for peak in resonance_peaks(LINES, transmissibility(LINES, exact[row]), prominence_db=PROMINENCE_DB):
+            if (WHEELS_FROM_HZ if row else 0.0) <= peak.frequency_hz <= HIGHEST_PEAK_HZ:
+                at = peak.frequency_hz
+                near = _nearest(at, measured, [other.frequency_hz for other in measured])
+                mode = _nearest(at, modes, [other.frequency for other in modes])
+                found.append(
+                    Matched(
+                        motion=one.motion,
+                        channel=channel,
+                        state=state,
+                        peak=peak,
+                        mode=mode,
+                        found=near,
+                    )
+                )
+    return found
+
+
+def _nearest(at: float, those: Sequence[Thing], frequencies: Sequence[float]) -> Thing | None:
+    """The thing whose frequency is nearest; None where none is within `NEAR`."""
+    offsets = np.abs(np.array(frequencies) / at - 1.0)
+    return those[int(np.argmin(offsets))] if offsets.size and offsets.min() < NEAR else None
