@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from vehicle.assembly.visuals import visible_shapes
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.signal import Signal
@@ -235,6 +236,13 @@ def same_answers(one: dict[str, Any], two: dict[str, Any], other: dict[str, str]
             np.testing.assert_allclose(np.abs(b), np.abs(a), rtol=1e-5)
     loads = [car.model.static.tyre_load for car in cars]
     assert {wheel: loads[1][counterpart] for wheel, counterpart in other.items()} == pytest.approx(loads[0], rel=1e-8)
+
+
+def test_a_wheel_is_drawn_whatever_its_points_are_called(tmp_path):
+    own = RIDE.replace('hub = { shape = "none"', 'hub = { shape = "wheel"')
+    (tmp_path / "ride.toml").write_text(own, encoding="utf-8")
+    shapes = visible_shapes(vehicle_of(ride_table(1e8), tmp_path))
+    assert {f"wheel_bolts_{wheel}" for wheel in WHEELS} <= set(shapes)
 
 
 @pytest.fixture(scope="module")

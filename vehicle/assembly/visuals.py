@@ -43,7 +43,7 @@ def visible_shapes(vehicle: Vehicle, *, rig: bool = True) -> dict[str, Shape]:
     }
     blocks = [one for one in car.connections if one.carrier == "world" and one.ground]
     supports = {one.name.rpartition("_")[2]: np.array(one.at) for one in blocks}
-    return car_shapes(points, corners, supports, _drawn(vehicle, points), rig=rig)
+    return car_shapes(points, corners, supports, _drawn(vehicle, points, corners), rig=rig)
 
 
 def _around(points: Mapping[str, Vector], suffix: str) -> dict[str, Vector]:
@@ -51,8 +51,13 @@ def _around(points: Mapping[str, Vector], suffix: str) -> dict[str, Vector]:
     return {name.removesuffix(suffix): point for name, point in points.items() if name.endswith(suffix)}
 
 
-def _drawn(vehicle: Vehicle, points: Mapping[str, Vector]) -> Iterator[Part]:
-    """Parts and springs of a car with the points that their roles need, or with their own."""
+def _drawn(
+    vehicle: Vehicle, points: Mapping[str, Vector], corners: Mapping[str, Mapping[str, Vector]]
+) -> Iterator[Part]:
+    """Parts and springs of a car with the points that their roles need, or with their own.
+
+    Those of a corner name wheel centre and contact patch whatever its template calls them.
+    """
     car = vehicle.composition
     listed = [(one.path, one.name, one.shape, one.points, one.side) for one in car.parts]
     for spring in car.springs:
@@ -60,7 +65,8 @@ def _drawn(vehicle: Vehicle, points: Mapping[str, Vector]) -> Iterator[Part]:
         listed.append((spring.path, spring.name, spring.shape, ends, float(np.sign(spring.at[0][1]))))
     for path, name, role, own, side in listed:
         base = path.rpartition(".")[2]
-        around = _around(points, name.removeprefix(base))
+        suffix = name.removeprefix(base)
+        around = corners.get(suffix[1:]) or _around(points, suffix)
         needed = set(ROLES[role][1]) if role in ROLES else {""}
         if needed <= set(around):
             chosen = around
