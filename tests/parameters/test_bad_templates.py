@@ -101,6 +101,12 @@ TEMPLATES = {
         '{ kind = "ball", child = "main_spring_upper", parent = "body", at = "strut_top" }',
         "on the trimmed body a part is fixed, with a point in at",
     ),
+    "a part on a bracket": (
+        '["damper_bottom", "main_spring_lower"], parent = "knuckle" }',
+        '"damper_bottom", parent = "knuckle" }, { kind = "slide", child = "main_spring_lower", '
+        'parent = "main_spring_upper", at = "spring_lower", axis = [0, 0, 1] }',
+        "joint of main_spring_lower_fr: main_spring_upper_fr is fixed to the trimmed body, and what hangs on it would",
+    ),
     "a part of others": (
         'child = "a_arm" }',
         'child = ["a_arm", "body"] }',

@@ -158,6 +158,12 @@ def _parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
     children: dict[str, list[str]] = {}
     for label, (_, _, _, parent, _) in held.items():
         children.setdefault(parent, []).append(label)
+    for bracket in children.get("body", []):
+        for label in children.get(bracket, []):
+            raise ConfigurationError(
+                f"{held[label][0].template.file}: joint of {label}: {bracket} is fixed to the trimmed body, and what "
+                "hangs on it would not feel the modes there; hold it by a connection"
+            )
     order = [*children.get("body", []), *children.get("world", [])]
     for label in order:
         order[order.index(label) + 1 : order.index(label) + 1] = children.get(label, [])
