@@ -32,6 +32,7 @@ STUDIES = {
     "four_post": "Four-post rig: heave, pitch, roll and warp of cars on four wheels, dampers stuck and sliding.",
     "quarter_car": "Quarter-car models with friction, engine, degressive damper and inclined strut.",
     "half_car_rider": "Half car with seat and rider over a bump.",
+    "semi_active": "Passive against semi-active dampers of the complete car: comfort, tyre load, delay.",
     "damper_choice": "Choice of dampers for road holding.",
     "kinematics": "Axles of all cars over wheel travel and under load, and with one point moved.",
     "road": "Four wheels on the road: class, speed, damper friction, with and without an occupant.",

@@ -1,0 +1,276 @@
+"""Passive against semi-active dampers of the complete car over speeds and road classes: comfort against tyre load.
+
+python -m scenarios.semi_active [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
+    [--set PATH=VALUE]...
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenarios.car_runs import CarRuns
+from scenarios.charts import chart
+from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
+from scenarios.comfort_runs import chosen_engine
+from scenarios.study import QUICK_NOTE, car_study
+from vehicle.analysis.comfort import comfort_value
+from vehicle.analysis.seat_value import weighted_rms_of
+from vehicle.car import Run
+from vehicle.commands.options import ROAD_NUMBERS
+from vehicle.commands.road import road_drive
+from vehicle.errors import ConfigurationError
+from vehicle.parameters.semi_active import LAWS, PASSIVE
+from vehicle.parameters.shipped import vehicle_file
+from vehicle.parameters.vehicle import Vehicle
+from vehicle.rendering.figure import COLOURS
+from vehicle.sweeps.case import Case
+from vehicle.sweeps.sweep import sweep
+
+CAR = "focus_road"
+RAIL = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")
+LEAD_S = 3.0
+"""Left out at the beginning [s]: the road rises for 1 s, and the body's heave at 1.3 Hz dies out."""
+
+SHOWN = ("B", 80.0)
+"""Road class and speed [km/h] of the passive settings and of the delays."""
+
+FACTORS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0)
+"""Passive settings, as shares of the passive damper: the range of the semi-active one."""
+
+DELAYS_MS = (0.0, 5.0, 10.0, 20.0, 40.0)
+CONTINUOUS = tuple(law for law in LAWS if not law.endswith("_on_off"))
+MARKS = dict(zip(CONTINUOUS, zip(COLOURS[1:], "os^", strict=False), strict=False))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Setting:
+    """A damper on a road: law, class, speed [km/h], delay [ms], share of the passive damper."""
+
+    law: str = PASSIVE
+    road: str = SHOWN[0]
+    speed: float = SHOWN[1]
+    delay: float = 0.0
+    factor: float = 1.0
+
+    def changes(self, vehicle: Vehicle) -> list[str]:
+        """Overrides that give all dampers this setting."""
+        found = []
+        for path in dict.fromkeys(damper.path for damper in vehicle.composition.dampers):
+            law = next(damper.law for damper in vehicle.composition.dampers if damper.path == path)
+            if law.control is None or law.viscous is None:
+                raise ConfigurationError(f"{path}.control: missing; the study needs it, and {path}.viscous beside it")
+            found += [f"{path}.control.law={self.law}", f"{path}.control.delay={1e-3 * self.delay!r}"]
+            found += [f"{path}.viscous={self.factor * law.viscous!r}"] if self.factor != 1.0 else []
+        return found
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RideMeasure:
+    """Comfort at the seat rail and dynamic tyre load of a run.
+
+    `weighted` is the RMS of the rail's z, weighted by Wk; `unfiltered` the comfort value of the rail, 2 to 50 Hz, all
+    axes; `tyre` the RMS of dynamic over static load, of all tyres; `lowest` the lowest load over the static one.
+    """
+
+    wheels: tuple[str, ...]
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are needed."""
+        return (*RAIL, *(f"tyre_{wheel}_force_z" for wheel in self.wheels))
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name of each number to its unit."""
+        return {"weighted": "m/s2", "unfiltered": "m/s2", "tyre": "-", "lowest": "-"}
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """The numbers of a run."""
+        step = run.recording.timestep
+        kept = slice(round(LEAD_S / step), None)
+        xyz = np.array([run[name] for name in RAIL])
+        static = run.car.model.static.tyre_load
+        loads = np.array([run[f"tyre_{wheel}_force_z"][kept] / static[wheel] for wheel in self.wheels])
+        return {
+            "weighted": weighted_rms_of(step, xyz, skip=LEAD_S)[2],
+            "unfiltered": comfort_value(step, xyz[:, kept]).overall,
+            "tyre": float(np.sqrt(np.mean((loads - 1.0) ** 2))),
+            "lowest": float(np.min(loads)),
+        }
+
+
+Numbers = Mapping[str, float]
+Points = Mapping[Setting, Numbers]
+
+
+def settings(quick: bool) -> list[Setting]:
+    """Everything that is run: the laws over speeds and roads, passive settings, delays."""
+    roads, speeds = ((SHOWN[0],), (SHOWN[1],)) if quick else (("A", "B", "C"), (50.0, 80.0, 120.0))
+    laws = (PASSIVE, *LAWS)
+    found = [Setting(law=law, road=road, speed=speed) for road in roads for speed in speeds for law in laws]
+    found += [Setting(factor=factor) for factor in FACTORS[:: 2 if quick else 1]]
+    found += [Setting(law=law, delay=delay) for law in CONTINUOUS for delay in DELAYS_MS[:: 2 if quick else 1]]
+    return list(dict.fromkeys(found))
+
+
+def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> dict[Setting, Numbers]:
+    """What is measured of each setting."""
+    vehicle, cases, listed = runs.car().vehicle, [], list(chosen)
+    for one in listed:
+        options = argparse.Namespace(**dict.fromkeys(ROAD_NUMBERS) | {"speed": one.speed, "duration": duration})
+        source = road_drive(one.road, options, vehicle)
+        changes = (*runs.overrides, *one.changes(vehicle))
+        cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle))
+    table = sweep(cases, RideMeasure(wheels=vehicle.wheels), jobs=runs.jobs)
+    if table.failed:
+        raise ConfigurationError(f"{table.failed[0][0].label}: {table.failed[0][1]}")
+    columns = {name: table.column(name) for name in table.units}
+    return {one: {name: float(columns[name][i]) for name in columns} for i, one in enumerate(listed)}
+
+
+def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
+    """Run all settings, draw the figures into the folder, and say what they show."""
+    engine, duration = chosen_engine(options.engine), 20.0 if options.quick else 60.0
+    points = computed(runs, settings(options.quick), duration, engine)
+    name = runs.car().vehicle.name
+    about = f"{name}, {duration:g} s of road, engine {engine}"
+    trade_off(folder / "trade_off.png", points, about)
+    delays(folder / "delay.png", points, about)
+    checks = [] if options.quick or engine == "mujoco" else [engines(runs, points, duration)]
+    changed = f", changed: {', '.join(runs.overrides)}" if runs.overrides else ""
+    made = f"Made with {name}{changed}; engine {engine}, {duration:g} s of each road, {LEAD_S:g} s left out."
+    return Findings(
+        title="Semi-active dampers on the complete car: comfort against dynamic tyre load",
+        claims=[*claims(points), *checks],
+        notes=[table_of(points), *words(points), made, *([QUICK_NOTE] if options.quick else [])],
+        data={"points": [asdict(one) | dict(numbers) for one, numbers in points.items()]},
+    )
+
+
+def engines(runs: CarRuns, points: Points, duration: float) -> Claim:
+    """The reduced engine beside MuJoCo on one road."""
+    both = [Setting(), Setting(law="skyhook")]
+    stepped = computed(runs, both, duration, "mujoco")
+    gaps = {f"{one.law}, {name}": points[one][name] / stepped[one][name] - 1.0 for one in both
+            for name in ("weighted", "tyre")}  # fmt: skip
+    text = ", ".join(f"{name} {100.0 * gap:+.2f} %" for name, gap in gaps.items())
+    why = "1.5 %: tyre forces of MuJoCo are 0.8 % off at its step of 1 ms, and vanish with it"
+    holds = max(map(abs, gaps.values())) < 0.015
+    return OWN_CHECK.statement("reduced engine against MuJoCo", "same car", text, holds, why)
+
+
+def claims(points: Points) -> list[Claim]:
+    """What the laws are made for, and what a delay does."""
+    passive, found = points[Setting()], []
+    for law, name, what in (
+        ("skyhook", "weighted", "weighted acceleration of the rail"),
+        ("groundhook", "tyre", "dynamic tyre load"),
+    ):
+        ratio = points[Setting(law=law)][name] / passive[name]
+        best = min(points[one][name] for one in points if one == Setting(factor=one.factor))
+        gain = 100.0 * (best / passive[name] - 1.0)
+        late = points[Setting(law=law, delay=DELAYS_MS[-1])][name] / passive[name]
+        found.append(
+            OWN_CHECK.statement(
+                f"{law} against the passive damper: {what}, road B at 80 km/h",
+                "less",
+                f"{100.0 * (ratio - 1.0):+.1f} %, with a delay of {DELAYS_MS[-1]:g} ms {100.0 * (late - 1.0):+.1f} %",
+                ratio < 1.0,
+                f"what the law is made for, without delay; best passive setting {gain:+.1f} %",
+            )
+        )
+    return found
+
+
+def words(points: Points) -> list[str]:
+    """Findings in words, from the numbers."""
+    fixed = [(one.factor, numbers) for one, numbers in points.items() if one == Setting(factor=one.factor)]
+    found = []
+    for name, what in (("weighted", "weighted rail"), ("unfiltered", "unfiltered rail"), ("tyre", "tyre load")):
+        base = points[Setting()][name]
+        best = min(fixed, key=lambda one: one[1][name])
+        laws = {law: 100.0 * (points[Setting(law=law)][name] / base - 1.0) for law in LAWS}
+        first = min(laws, key=lambda law: laws[law])
+        found.append(
+            f"{what.capitalize()}, road B at 80 km/h: lowest with {first} ({laws[first]:+.1f} % against the passive "
+            f"damper); the best passive setting is {best[0]:g} times the damper "
+            f"({100.0 * (best[1][name] / base - 1.0):+.1f} %); "
+            + ", ".join(f"{law} {value:+.1f} %" for law, value in laws.items())
+            + "."
+        )
+    return found
+
+
+def table_of(points: Points) -> str:
+    """Every run."""
+    rows = [
+        (one.road, f"{one.speed:g}", one.law, f"{one.factor:g}", f"{one.delay:g}", *(f"{x:.4g}" for x in n.values()))
+        for one, n in points.items()
+    ]
+    heads = ("road", "speed [km/h]", "law", "passive factor [-]", "delay [ms]", "weighted rail z [m/s2]")
+    more = ("unfiltered rail [m/s2]", "dynamic / static tyre load [-]", "lowest tyre load [-]")
+    return markdown((*heads, *more), rows)
+
+
+def trade_off(path: Path, points: Points, about: str) -> None:
+    """Write comfort against tyre load: a mark for each law, on the shown road the line of passive settings."""
+    drives = list(dict.fromkeys((one.road, one.speed) for one in points))
+    columns = min(len(drives), 3)
+    caption = (
+        "Lower left is better. Circle: skyhook, square: groundhook, triangle: hybrid, open where on-off; black: "
+        f"passive, on road {SHOWN[0]} at {SHOWN[1]:g} km/h also with its constant times the number beside it. {about}."
+    )
+    size = (4.6 * max(columns, 2), 4.0 * -(-len(drives) // columns) + 1.2)
+    with chart(path, caption, rows=-(-len(drives) // columns), columns=columns, size=size) as axes:
+        for axis, (road, speed) in zip(axes, drives, strict=False):
+            here = {one: n for one, n in points.items() if (one.road, one.speed, one.delay) == (road, speed, 0.0)}
+            passive = sorted((one.factor, n["weighted"], n["tyre"]) for one, n in here.items() if one.law == PASSIVE)
+            axis.plot([n[1] for n in passive], [n[2] for n in passive], "k.-", linewidth=1.0, label=PASSIVE)
+            for factor, x, y in passive:
+                axis.annotate(f"{factor:g}", (x, y), xytext=(3, 3), textcoords="offset points", fontsize=7)
+            for one, n in here.items():
+                if one.law != PASSIVE:
+                    _mark(axis, one.law, n["weighted"], n["tyre"])
+            axis.set(xlabel="weighted rail acceleration z [m/s²]", ylabel="dynamic / static tyre load, RMS [-]")
+            axis.set_title(f"road {road}, {speed:g} km/h")
+        axes[0].legend(fontsize=7)
+
+
+def _mark(axis: Any, law: str, x: float, y: float) -> None:
+    colour, mark = MARKS[law.removesuffix("_on_off")]
+    axis.plot([x], [y], mark, color=colour, markerfacecolor="none" if law.endswith("_on_off") else colour, label=law)
+
+
+def delays(path: Path, points: Points, about: str) -> None:
+    """Write comfort and tyre load over the delay, relative to the passive damper."""
+    base = points[Setting()]
+    caption = (
+        f"Continuous laws on road {SHOWN[0]} at {SHOWN[1]:g} km/h; delay from sensor to setting of the damper; "
+        f"grey: passive damper. {about}."
+    )
+    panels: Sequence[tuple[str, str]] = (("weighted", "weighted rail acceleration z"), ("tyre", "dynamic tyre load"))
+    with chart(path, caption, columns=2, size=(9.4, 4.6)) as axes:
+        for axis, (name, label) in zip(axes, panels, strict=True):
+            for law in CONTINUOUS:
+                own = [one for one in points if one == Setting(law=law, delay=one.delay)]
+                shown = sorted((one.delay, points[one][name] / base[name]) for one in own)
+                colour, mark = MARKS[law]
+                axis.plot(*np.transpose(shown), f"{mark}-", color=colour, label=law)
+            axis.axhline(1.0, color="#888888", linewidth=1.0)
+            axis.set(xlabel="delay [ms]", ylabel=f"{label}\nover that of the passive damper [-]")
+        axes[0].legend()
+
+
+main = car_study("semi_active", study)
+main.parser.set_defaults(vehicle=vehicle_file(Path(CAR)), engine="auto")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,76 @@
+"""The study of semi-active dampers: its settings, what it says of numbers, and its measure on a run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from scenarios import semi_active
+from scenarios.semi_active import LEAD_S, RideMeasure, Setting, main, settings
+from vehicle.analysis.weighting import weighted_record
+from vehicle.parameters.semi_active import LAWS
+from vehicle.parameters.vehicle import load_vehicle
+
+
+def test_settings_cover_laws_roads_delays_and_the_passive_range():
+    full, quick = settings(False), settings(True)
+    assert set(quick) <= set(full) and len(full) == len(set(full)) == 9 * 7 + 6 + 3 * 4
+    changed = Setting(law="skyhook", delay=20.0, factor=0.5).changes(load_vehicle(Path("focus_road")))
+    assert changed == [
+        "front.damper.control.law=skyhook", "front.damper.control.delay=0.02", "front.damper.viscous=1125.0",
+        "rear.damper.control.law=skyhook", "rear.damper.control.delay=0.02", "rear.damper.viscous=750.0",
+    ]  # fmt: skip
+
+
+def made_up(runs, chosen, duration, engine):
+    """Skyhook comfortable, groundhook light on the tyres, both worse by delay."""
+    found = {}
+    for one in chosen:
+        comfort = {"skyhook": 0.8, "groundhook": 1.2}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay) * one.factor**0.2
+        tyre = {"skyhook": 1.1, "groundhook": 0.9}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay)
+        found[one] = {"weighted": comfort, "unfiltered": 2.0 * comfort, "tyre": 0.2 * tyre, "lowest": 0.3}
+    return found
+
+
+def test_it_says_what_its_numbers_show(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(semi_active, "computed", made_up)
+    assert main(["--quick", "--output", str(tmp_path / "out")]) == 0
+    assert "2 own check (2 agree)" in capsys.readouterr().out
+    text = (tmp_path / "out" / "results.md").read_text(encoding="utf-8")
+    assert "-20.0 %, with a delay of 40 ms +12.0 %" in text and "-10.0 %, with a delay of 40 ms +26.0 %" in text
+    assert (
+        "Weighted rail, road B at 80 km/h: lowest with skyhook (-20.0 % against the passive damper); the best " in text
+    )
+    points = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["points"]
+    assert {point["law"] for point in points} == {"passive", *LAWS}
+    assert {path.name for path in (tmp_path / "out").glob("*.png")} == {"trade_off.png", "delay.png"}
+
+
+class Made:
+    """A run of made-up channels."""
+
+    def __init__(self):
+        time = 1e-3 * np.arange(13001)
+        wave, sizes = np.sin(2 * np.pi * 8.0 * time), {"x": 3.0, "y": 4.0, "z": 12.0}
+        self.channels = {f"seat_rail_acc_{axis}": size * wave for axis, size in sizes.items()}
+        self.channels |= {"tyre_fr_force_z": 4000.0 + 1000.0 * np.sin(2 * np.pi * 11.0 * time)}
+        self.recording = type("Recording", (), {"timestep": 1e-3})
+        static = type("Static", (), {"tyre_load": {"fr": 4000.0}})
+        self.car = type("Car", (), {"model": type("Model", (), {"static": static})})
+
+    def __getitem__(self, name):
+        return self.channels[name]
+
+
+def test_measure_of_sines():
+    run = Made()
+    numbers = RideMeasure(wheels=("fr",))(cast(Any, run))
+    assert numbers["unfiltered"] == pytest.approx(13.0 / np.sqrt(2.0), rel=5e-3)
+    assert numbers["tyre"] == pytest.approx(0.25 / np.sqrt(2.0), rel=1e-3)
+    assert numbers["lowest"] == pytest.approx(0.75, rel=1e-3)
+    weighted = weighted_record(1e-3, run["seat_rail_acc_z"], "Wk")[round(LEAD_S / 1e-3) :]
+    assert numbers["weighted"] == pytest.approx(np.sqrt(np.mean(weighted**2)), rel=1e-12)
