@@ -206,8 +206,8 @@ def in_words(one: Found) -> str:
     return (
         f"{one.car.vehicle.name} {sticks}; on {level_words(levels[-1])} its dampers slip {min(shares):.0f} to "
         f"{max(shares):.0f} % of the time. Body heave is at {heave or 'no mode of its own'}. The seat rail shakes, "
-        f"over the level of the input, {min(more):.1f} to {max(more):.1f} times as much on {level_words(levels[0])} as on "
-        f"{level_words(levels[-1])}."
+        f"over the level of the input, {min(more):.1f} to {max(more):.1f} times as much on {level_words(levels[0])} as "
+        f"on {level_words(levels[-1])}."
     )
 
 

@@ -41,6 +41,11 @@ SHOWN = {
     "slip_error": "largest difference of a slip share against an eighth of the step",
     "reduced_realtime_factor": "the same for the reduced engine, all channels",
     "reduced_few_realtime_factor": "the same with the channels of seat rail and dampers only",
+    "four_wheel_rows": "constraint rows of focus_road, on four plates",
+    "four_wheel_dof": "degrees of freedom of focus_road",
+    "four_wheel_step_us": "its step with the callbacks that a run uses, all plates in motion [us]",
+    "four_wheel_step_ratio": "that over step_us, interleaved",
+    "four_wheel_reduced_realtime_factor": "simulated over computing time of its reduced engine, all channels",
     "reduced_rms_error": "largest RMS difference of an acceleration channel to MuJoCo at an eighth of the step",
 }
 
@@ -90,6 +95,14 @@ def piece(seconds: float, level: str = "high") -> Signal:
     signal = read_signal(find_input(f"{level}.csv"))
     count = int(np.searchsorted(signal.time, seconds)) + 1
     return Signal(time=signal.time[:count], displacement={"fr": signal.displacement["fr"][:count]})
+
+
+def on_four_plates(signal: Signal) -> Signal:
+    """The signal of the front right plate under four wheels, 40 samples later from each to the next."""
+    z = signal.displacement["fr"]
+    late = {wheel: 40 * number for number, wheel in enumerate(("fr", "fl", "rr", "rl"))}
+    plates = {wheel: np.concatenate([np.zeros(delay), z[: z.size - delay]]) for wheel, delay in late.items()}
+    return Signal(time=signal.time, displacement=plates)
 
 
 def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[str, float] | None = None) -> float:
@@ -174,18 +187,29 @@ def measure(effort: Effort) -> Figures:
     native, python, plain, factors = [], [], [], []
     reduced: list[float] = []
     few: list[float] = []
+    four_wheel: list[float] = []
+    four_wheel_reduced: list[float] = []
+    road_car = Car.load("focus_road")
+    on_four, long_on_four = on_four_plates(signal), on_four_plates(piece(effort.accuracy_seconds))
+    road_car.run(long_on_four, engine="reduced")
     car.run(signal)
     # Long enough that what a run does once is as small a part as in a study.
     long = piece(effort.accuracy_seconds)
     car.run(long, engine="reduced")
     for _ in range(effort.repeats):
         native.append(stepping_time(car, signal, steps, "native"))
+        four_wheel.append(stepping_time(road_car, on_four, steps, "native"))
         python.append(stepping_time(car, signal, steps, "python"))
         plain.append(stepping_time(car, signal, steps, "plain"))
         factors.append(car.run(signal).recording.statistics.realtime_factor)
         for found_factors, channels in ((reduced, None), (few, FEW)):
             run = car.run(long, engine="reduced", channels=channels)
             found_factors.append(run.recording.statistics.realtime_factor)
+        run = road_car.run(long_on_four, engine="reduced")
+        four_wheel_reduced.append(run.recording.statistics.realtime_factor)
+    road_model = road_car.model.model
+    road_data = mujoco.MjData(road_model)
+    mujoco.mj_forward(road_model, road_data)
     parts: dict[str, dict[str, float]] = {"native": {}, "plain": {}}
     for form, found in parts.items():
         stepping_time(car, signal, steps, form, found)
@@ -199,6 +223,11 @@ def measure(effort: Effort) -> Figures:
         "realtime_factor": median(factors),
         "reduced_realtime_factor": median(reduced),
         "reduced_few_realtime_factor": median(few),
+        "four_wheel_rows": int(road_data.nefc),
+        "four_wheel_dof": int(road_model.nv),
+        "four_wheel_step_us": median(four_wheel),
+        "four_wheel_step_ratio": median(four / two for four, two in zip(four_wheel, native, strict=True)),
+        "four_wheel_reduced_realtime_factor": median(four_wheel_reduced),
         "parts_us": parts["native"],
         "plain_parts_us": parts["plain"],
     }

@@ -12,8 +12,10 @@ from tests.benchmarks import speed
 
 SMALL = speed.Effort(repeats=1, steps=50, seconds=0.5, accuracy_seconds=0.5)
 TIMES = {"step_us", "python_step_us", "plain_step_us", "realtime_factor", "reduced_realtime_factor"}
-TIMES |= {"reduced_few_realtime_factor"}
-KEYS = {"rows", "dof", "timestep", *TIMES, "rms_error", "rms_error_channel", "slip_error", "reduced_rms_error"}
+TIMES |= {"reduced_few_realtime_factor", "four_wheel_step_us", "four_wheel_step_ratio"}
+TIMES |= {"four_wheel_reduced_realtime_factor"}
+COUNTS = {"rows", "dof", "four_wheel_rows", "four_wheel_dof"}
+KEYS = {*COUNTS, "timestep", *TIMES, "rms_error", "rms_error_channel", "slip_error", "reduced_rms_error"}
 PARTS = {"parts_us", "plain_parts_us"}
 
 
@@ -30,6 +32,7 @@ def test_benchmark_prints_and_compares(tmp_path, capsys):
     found = json.loads(text)
     assert set(found) == KEYS | PARTS and set(speed.SHOWN) == KEYS
     assert (found["rows"], found["dof"]) == (66, 63)
+    assert (found["four_wheel_rows"], found["four_wheel_dof"]) == (120, 113)
     assert all(found[name] > 0.0 for name in TIMES)
     for parts in (found["parts_us"], found["plain_parts_us"]):
         assert set(parts) == {"step", *speed.PARTS} and all(value > 0.0 for value in parts.values())
