@@ -74,6 +74,9 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
     if body.attachment_flexibility and "body" in (connection.moving, connection.carrier):
         node = attached_nodes(superelement, {connection.point: connection.at}).get(connection.at, "")
         local = superelement.attachment_stiffness.get(node)
+        if local is not None and connection.axes is not None and connection.law is not None:
+            # Along each axis of the law alone: what the attachment yields across it is left out.
+            local = 1.0 / np.sum(np.square(connection.axes) / local, axis=1)
     if connection.law is not None:
         return _bushing_law(connection.law, local)
     return None if local is None else ElementLaw(stiffness=local, damping=STRUCTURAL_LOSS_TIME * local, averaged=True)

@@ -98,8 +98,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         mujoco.mj_forward(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
-    # In the design position all carriers but none are parallel to the vehicle frame, so rows are element axes.
+    jacobian = rows.in_axes(data.efc_J.reshape(e.row_count, model.nv))
     row_damping = np.zeros(e.row_count)
     row_damping[bushings.rows] = bushings.damping
     damping = jacobian.T @ (row_damping[:, None] * jacobian)

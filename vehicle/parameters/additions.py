@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.axes import Axes, axes_along
 from vehicle.parameters.composition import PlacedConnection, PlacedOutput
 from vehicle.parameters.elements import Bushing, Hydromount
-from vehicle.parameters.hardpoints import Point, require_point
+from vehicle.parameters.hardpoints import Point, require_apart, require_point
 from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.toml_file import build, convert, nearest
 
-LAW = {"moving", "carrier", "at", "ground"}
+LAW = {"moving", "carrier", "at", "ground", "axes"}
 """Keys of a connection of the vehicle file that are not of its law."""
 
 
@@ -86,7 +87,25 @@ def further_connection(name: str, value: Any, names: set[str], points: Mapping[s
         law=build(law_kind(law), law, path) if law else None,
         ground=convert(bool, table.get("ground", False), f"{path}.ground"),
         path=path,
+        axes=_axes(path, table, points),
     )
+
+
+def _axes(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> Axes | None:
+    """Axes of a law along two points."""
+    if "axes" not in table:
+        return None
+    names: tuple[str, ...] = convert(tuple[str, ...], table["axes"], f"{path}.axes")
+    for name in names:
+        if name not in points:
+            near = nearest(name, points)
+            raise ConfigurationError(f"{path}.axes: found {name!r}, no such point; the nearest is {near}")
+    if len(names) != 2 or table.get("ground"):
+        raise ConfigurationError(
+            f"{path}.axes: found {list(names)}; needed are two points, of what is not on the ground"
+        )
+    require_apart({f"{path}.axes, {name}": points[name] for name in names})
+    return axes_along(points[names[0]], points[names[1]])
 
 
 def further_output(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedOutput:

@@ -11,6 +11,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import SIDE_SIGN
 from vehicle.parameters import topology
 from vehicle.parameters.additions import further_connection, further_output, law_kind, own_point
+from vehicle.parameters.axes import axes_along
 from vehicle.parameters.composition import (
     Composition,
     JointSpring,
@@ -235,6 +236,7 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
         law=law,
         ground=e.ground or e.carrier == "plate",
         path=f"{i.name}.bushings.{e.name}",
+        axes=None if e.axes is None else axes_along(i.point(e.axes[0], side), i.point(e.axes[1], side)),
     )
 
 

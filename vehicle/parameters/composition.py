@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from vehicle.parameters.axes import Axes
 from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.parts import Part
@@ -51,7 +52,8 @@ class PlacedPart:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedConnection:
-    """Two parts that meet at a point [m]; `law` None of an ideal ball joint; `path` of its numbers."""
+    """Two parts that meet at a point [m]; `law` None of an ideal ball joint; `path` of its numbers; `axes` of the law,
+    by default those of the carrier."""
 
     name: str
     moving: str
@@ -61,6 +63,7 @@ class PlacedConnection:
     law: Bushing | Hydromount | None
     ground: bool
     path: str
+    axes: Axes | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

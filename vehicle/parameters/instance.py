@@ -252,6 +252,7 @@ class Instance:
         template = self.template
         yield from (part.points for part in template.parts.values())
         yield from (joint.along for joint in template.joint if joint.along)
+        yield from (one.axes for one in template.connection if one.axes)
         for name in template.parts:
             held = [one.at for one in template.connection if name in (one.moving, one.carrier)]
             held += [one.at for one in template.joint if one.at and name in (*one.child, one.parent) and not one.along]

@@ -25,7 +25,10 @@ SHIPPED = Path(str(resources.files("vehicle"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
 """Parts of others that every template may name: the trimmed body, the ground, what the tyre of this side stands on."""
 
-_POINTS, _PARTS = {"at", "along", "points", "center", "patch"}, {"child", "parent", "moving", "carrier", "part", "on"}
+_POINTS, _PARTS = (
+    {"at", "along", "axes", "points", "center", "patch"},
+    {"child", "parent", "moving", "carrier", "part", "on"},
+)
 _ON = {"damper": ("slide",), "spring": ("slide", "hinge")}
 """Kinds of joints that these elements may be on."""
 

@@ -64,9 +64,19 @@ class Connection:
     """an ideal ball joint where the vehicle gives no numbers"""
     ground: bool = False
     """the car stands on it"""
+    axes: tuple[str, ...] | None = None
+    """two points: x of its law lies along them, y level; by default those of the carrier"""
     least: float = 0.0
     """least stiffness along each axis [N/m] with which the car does not fall"""
     why: str = ""
+
+    def __post_init__(self) -> None:
+        if self.axes is not None and (len(self.axes) != 2 or self.axes[0] == self.axes[1]):
+            raise ConfigurationError(f"Connection.axes: found {list(self.axes)}; needed are two different points")
+        if self.axes is not None and (self.ground or self.carrier == "plate"):
+            raise ConfigurationError(
+                "Connection.axes: found on the ground, whose axes are those of the car; leave them out"
+            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -156,15 +156,16 @@ class AxleStatics:
         """Displacement r [m] and turn [rad] of the moving part against the carrier in its axes, and Jacobians."""
         data, bodies = self.data, self.model.site_bodyid
         one, other = tie.moving, tie.carrier
-        frame = data.site_xmat[other].reshape(3, 3)
+        # Forces in the axes of the law, turns in those of the car.
+        own, frame = data.xmat[bodies[other]].reshape(3, 3), data.site_xmat[other].reshape(3, 3)
         # Seen from the carrier: its own point is the one that lies under the moving part.
         moved, turned = self.jacobian(int(bodies[one]), data.site_xpos[one])
         carried, rotated = self.jacobian(int(bodies[other]), data.site_xpos[one])
-        gap = frame.T @ (data.site_xpos[one] - data.site_xpos[other])
+        gap = own.T @ (data.site_xpos[one] - data.site_xpos[other])
         relative, quaternion, angle = frame.T @ data.site_xmat[one].reshape(3, 3), np.zeros(4), np.zeros(3)
         mujoco.mju_mat2Quat(quaternion, relative.ravel())
         mujoco.mju_quat2Vel(angle, quaternion, 1.0)
-        return gap, angle, frame.T @ (moved - carried), frame.T @ (turned - rotated)
+        return gap, angle, own.T @ (moved - carried), frame.T @ (turned - rotated)
 
     def _forces(self, loads: Vector) -> tuple[Vector, Vector]:
         """Generalised force and stiffness of the elements at the present position."""

@@ -116,6 +116,14 @@ class Rows:
         """No control acts on a damper; installed as `mjcb_act_gain`."""
         return 0.0
 
+    def in_axes(self, values: Vector) -> Vector:
+        """Rows of the elements, in world axes in the design position, in the axes of their laws.
+
+        Args:
+            values: one for each row, or an array of them; (rows, ...).
+        """
+        return in_axes(self.model, self.layout, values)
+
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""
         frames = data.site_xmat[self.layout.rotations.sites].reshape(-1, 2, 3, 3)
@@ -128,6 +136,18 @@ class Rows:
         element, dof, sign = self.layout.rotations.turning.T
         found[element, :, dof] = sign[:, None] * data.cdof[dof, :3]
         return found
+
+
+def in_axes(model: mujoco.MjModel, layout: Layout, values: Vector) -> Vector:
+    """As `Rows.in_axes`."""
+    found, b = values.copy(), layout.bushings
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    for own, frame in zip(b.rows, data.xmat[b.carriers].reshape(-1, 3, 3), strict=True):
+        # Carriers of laws without axes of their own are parallel to the car.
+        if np.max(np.abs(frame - np.eye(3)), initial=0.0) > 1e-9:
+            found[own] = frame.T @ values[own]
+    return found
 
 
 def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
@@ -188,7 +208,7 @@ def _row_masses(model: mujoco.MjModel, layout: Layout) -> Vector:
     mujoco.mj_fwdPosition(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    rows = data.efc_J.reshape(-1, model.nv)[layout.bushings.rows.ravel()]
+    rows = in_axes(model, layout, data.efc_J.reshape(-1, model.nv))[layout.bushings.rows.ravel()]
     inverse = np.einsum("ij,ji->i", rows, np.linalg.solve(mass, rows.T))
     # A row that nothing can move moves an infinite mass.
     moved = np.divide(1.0, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0.0)

@@ -67,7 +67,7 @@ def trim(rows: Rows) -> StaticTrim:
     with installed(rows):
         mujoco.mj_forward(model, data)
     e, twist = rows.layout, rows.layout.rotations.stiffness
-    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
+    jacobian = rows.in_axes(data.efc_J.reshape(e.row_count, model.nv))
     gravity = _unsolved(rows, data)
     row_stiffness = np.zeros(e.row_count)
     row_stiffness[e.bushings.rows] = e.bushings.stiffness
