@@ -53,6 +53,11 @@ def test_a_universal_file_comes_back(tmp_path):
     assert response.axis is not None
     np.testing.assert_allclose(response.axis, LINES[3:])
     assert not np.iscomplexobj(coherence.values) and coherence.values.size == 37
+    # Dataset 164 says SI: what is in mm/s is written in m/s.
+    write(path, (Channel(name="v", values=SINE, unit="mm/s", axis=TIME),), "test")
+    (speed,) = read_record(path).channels
+    assert speed.unit == "m/s"
+    np.testing.assert_allclose(speed.values, 1e-3 * SINE, rtol=1e-15)
     gap = Channel(name="gap", values=np.where(TIME > 0.5, np.nan, SINE), axis=TIME)
     with pytest.raises(DataError, match="gap has a missing value; UFF knows none"):
         write(path, (gap,), "test")

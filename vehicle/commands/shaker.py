@@ -320,8 +320,7 @@ def _comfort(summary: dict[str, Any]) -> list[str]:
 
 
 def _weighted(places: dict[str, Any], place: str) -> float:
-    found: float = places[place]["iso2631"]["vector_sum"]["weighted_rms"]
-    return found
+    return float(places[place]["iso2631"]["vector_sum"]["weighted_rms"])
 
 
 def _balance(solver: dict[str, Any]) -> str:

@@ -6,9 +6,14 @@ import re
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+from vehicle.car import Run
+from vehicle.comparison.comparison import comparison_of
 from vehicle.comparison.report import Comparison
+from vehicle.comparison.simulated import of_run
 from vehicle.output.folder import write_json, write_text, write_whole
+from vehicle.records.measured import Measured
 from vehicle.rendering.comparison_plot import plot_histories, plot_responses, plot_signatures
 
 
@@ -41,6 +46,23 @@ def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
         write_whole(folder / f"{name}.png", draw)
         files[name] = f"{name}.png"
     return files
+
+
+def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, str]) -> dict[str, Any]:
+    """Put a measurement beside a run, in the folder of the run.
+
+    Args:
+        folder: of the run.
+        measured: the measurement.
+        run: the run.
+        files: kind of file to its name; what is written is added.
+
+    Returns:
+        What the summary says of it.
+    """
+    comparison = comparison_of(measured, of_run(run))
+    files |= write_comparison(folder, comparison)
+    return {"file": comparison.measured, "table": comparison.summary()["table"]}
 
 
 def _place(channel: str) -> str:

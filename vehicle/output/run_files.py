@@ -14,12 +14,10 @@ from vehicle.analysis.motion_response import MotionResponse
 from vehicle.analysis.peaks import resonances
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
-from vehicle.comparison.comparison import comparison_of
-from vehicle.comparison.simulated import of_run
 from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.output.comparison_files import write_comparison
+from vehicle.output.comparison_files import write_beside
 from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.output.own_files import write_own_files
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
@@ -130,12 +128,8 @@ def write_run(
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
         files["video"] = str(name)
-    comparison = None
-    if measured is not None:
-        comparison = comparison_of(measured, of_run(run))
-        files |= write_comparison(folder, comparison)
-    summary = summarise(run, responses, files)
-    summary["measured"] = comparison and {"file": comparison.measured, "table": comparison.summary()["table"]}
+    beside = None if measured is None else write_beside(folder, measured, run, files)
+    summary = {**summarise(run, responses, files), "measured": beside}
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -84,7 +85,10 @@ def _direction(text: str) -> int:
 
 
 def _function(path: Path, one: Channel, nodes: Mapping[str, int]) -> bytes:
-    """A channel as dataset 58b."""
+    """A channel as dataset 58b, or as text; in SI, which dataset 164 tells, but for accelerations in g."""
+    known = find_unit(one.unit)
+    if known is not None and known.factor != 1.0 and "g" not in one.unit:
+        one = replace(one, values=one.si_values, unit=known.si)
     values, axis = _defined(path, one)
     step = even_step(axis)
     if step is None and one.kind == "time":

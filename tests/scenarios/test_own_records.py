@@ -1,0 +1,68 @@
+"""Targets of a fit from a file of the user: another clock, another rate, other units, the noise that was put in."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from scenarios.tuning.__main__ import add_options
+from scenarios.tuning.own_data import own_measurements
+from vehicle.car import Car
+from vehicle.errors import DataError
+from vehicle.excitation.bump import bump
+from vehicle.records import uff_writer
+from vehicle.records.channel import Channel, uniform_axis
+from vehicle.records.text_format import write_table
+
+NOISE = 0.02
+STRIBECK = ("damper.friction_law='stribeck'", "damper.stribeck_friction=160.0", "damper.coulomb_friction=60.0")
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """A car with Stribeck friction over a bump; measured from 0.2 s on, at the logger's 12.5 s, in g and mm/s."""
+    folder = tmp_path_factory.mktemp("records")
+    signal = bump(amplitude=6e-3, duration=1.2, start=0.3, noise_rms=0.0)
+    write_table(folder / "bump.csv", ["time [s]", "displacement [m]"], [signal.time, signal.displacement["fr"]], [])
+    run = Car.load(overrides=STRIBECK).run(signal, engine="reduced")
+    noise = np.random.default_rng(4)
+    channels = []
+    for name, source, unit, factor in (
+        ("knuckle_fr_acc_z", "Acc", "g", 9.80665),
+        ("damper_fr_velocity", "Velocity", "mm/s", 1e-3),
+    ):
+        values = run[name][200:] / factor
+        values = values + NOISE * np.sqrt(np.mean(values**2)) * noise.standard_normal(values.size)
+        axis = uniform_axis(values.size, run.recording.timestep, 12.5)
+        channels.append(Channel(name=source, values=values, unit=unit, axis=axis))
+    uff_writer.write(folder / "bump.uff", channels, "made")
+    return folder
+
+
+def measured(folder: Path, *arguments: str):
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    given = ["--record", str(folder / "bump.uff"), "--signal", str(folder / "bump.csv")]
+    given += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", *arguments]
+    (found,) = own_measurements(parser.parse_args(given), Car.load())
+    return found.target
+
+
+def test_the_residuals_of_the_true_car_are_the_noise(files):
+    target = measured(files, "--delay", "0.2")
+    assert target.rows == ("bump, knuckle_fr_acc_z", "bump, damper_fr_velocity")
+    assert target.window == pytest.approx((0.2, 1.2))
+    true, other = (target.residuals(Car.load(overrides=law)) for law in (STRIBECK, ()))
+    # The low-pass at 100 Hz leaves a fifth of the power of white noise up to 500 Hz.
+    expected = NOISE * np.sqrt(100.0 / 500.0)
+    np.testing.assert_allclose(np.sqrt(np.mean(true**2, axis=1)), expected, rtol=0.4)
+    assert np.sqrt(np.mean(other**2)) > 5.0 * expected
+
+
+def test_the_part_that_counts(files):
+    assert measured(files, "--delay", "0.2", "--stretch", "0.25:0.9").window == pytest.approx((0.25, 0.9))
+    late = measured(files)  # taken to begin with the signal: nothing fits
+    assert np.sqrt(np.mean(late.residuals(Car.load(overrides=STRIBECK)) ** 2)) > 0.5
+    with pytest.raises(DataError, match="nothing in common; give --delay S"):
+        measured(files, "--delay", "5")
