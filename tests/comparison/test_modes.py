@@ -7,6 +7,7 @@ import pytest
 
 from vehicle.car import Car
 from vehicle.commands.compare import main as compare
+from vehicle.commands.inspect import main as inspect
 from vehicle.commands.modes import main as modes
 from vehicle.comparison.mode_comparison import compare_modes, mac, shapes_at
 from vehicle.errors import DataError
@@ -49,6 +50,16 @@ def test_the_file_holds_places_and_modes(file, car, capsys):
     assert np.max(np.abs(theirs), axis=1) == pytest.approx(1.0)
     capsys.readouterr()
     assert modes(["--uff", str(file)]) == 2 and "exists; give --force" in capsys.readouterr().err
+
+
+def test_the_command_inspect_lists_modes(file, car, capsys):
+    assert inspect([str(file)]) == 0
+    said = capsys.readouterr().out
+    assert "no channels; 13 nodes, " in said and f"{car.modes()[0].frequency:.4f}" in said and "complex  body" in said
+    assert inspect([str(file), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["modes"][0]["damping_ratio"] == pytest.approx(car.modes()[0].damping_ratio, rel=1e-4)
+    assert len(found["points"]) == 13 and found["modes"][0]["modal_mass"] is None
 
 
 def test_pairs_and_their_frequencies(file, tmp_path, car, capsys):

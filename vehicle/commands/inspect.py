@@ -45,6 +45,20 @@ def contents(measurement: Measurement) -> dict[str, Any]:
         "start": measurement.start,
         "sha256": measurement.sha256,
         "channels": [_channel(number, one) for number, one in enumerate(measurement.channels, 1)],
+        "modes": [
+            {
+                "number": one.number,
+                "name": one.name,
+                "frequency_hz": one.frequency,
+                "damping_ratio": one.damping_ratio,
+                "modal_mass": one.modal_mass or None,
+                "complex": one.is_complex,
+                "points": len(one.points),
+            }
+            for one in measurement.shapes
+        ],
+        "points": {name: list(at) for name, at in measurement.geometry.points.items()},
+        "lines": len(measurement.geometry.lines),
         "notices": [*measurement.notices, *dict.fromkeys(remarks)],
     }
 
@@ -85,10 +99,13 @@ def report(found: dict[str, Any]) -> str:
     width = max([4, *(len(one["name"]) for one in found["channels"])])
     width = min(width, 40)
     lines = ["; ".join(about), f"sha256 {found['sha256']}"]
-    lines.append(
-        f"{'no':>4}  {'name':<{width}}  {'unit':<10} {'rate [Hz]':>11} {'samples':>9} {'RMS':>11} {'lowest':>11} "
-        f"{'highest':>11}  {'of':<8} place"
-    )
+    if not found["channels"]:
+        lines.append(f"no channels; {len(found['points'])} nodes, {len(found['modes'])} mode shapes")
+    else:
+        lines.append(
+            f"{'no':>4}  {'name':<{width}}  {'unit':<10} {'rate [Hz]':>11} {'samples':>9} {'RMS':>11} {'lowest':>11} "
+            f"{'highest':>11}  {'of':<8} place"
+        )
     for one in found["channels"]:
         numbers = ["-" if one[key] is None else f"{one[key]:.4g}" for key in ("rms", "min", "max")]
         rate = one.get("rate_hz")
@@ -101,6 +118,15 @@ def report(found: dict[str, Any]) -> str:
         )
         if one["remark"]:
             lines.append(f"{'':>6}{one['remark']}")
+    if found["modes"]:
+        lines.append(f"{'mode':>6} {'[Hz]':>10} {'damping':>9} {'modal mass':>12} {'points':>7}")
+    for one in found["modes"]:
+        mass = "-" if one["modal_mass"] is None else f"{one['modal_mass']:.5g} kg"
+        kind = " complex" if one["complex"] else ""
+        lines.append(
+            f"{one['number']:>6} {one['frequency_hz']:>10.4f} {100 * one['damping_ratio']:>7.2f} % {mass:>12} "
+            f"{one['points']:>7}{kind}  {one['name']}"
+        )
     lines += [f"notice: {text}" for text in found["notices"]]
     histories = [one for one in found["channels"] if "rate_hz" in one]
     if histories:

@@ -9,9 +9,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from vehicle.errors import DataError
+from vehicle.errors import DataError, VehicleError
 from vehicle.excitation.iso_road import Side
 from vehicle.records.formats import read_table
+from vehicle.records.named_columns import named_columns
 from vehicle.records.table import Header, Wanted, name_and_unit
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
@@ -67,18 +68,28 @@ def read_road(path: Path) -> MeasuredRoad:
     """Read a profile.
 
     Args:
-        path: columns `distance [m]`, `left [m]`, `right [m]` in any order.
+        path: columns `distance [m]`, `left [m]`, `right [m]` in any order; or a file of any format of
+            `vehicle.records` with channels of these names in units of length.
 
     Raises:
         ConfigurationError: there is no such file.
         DataError: bad data; the message names the place.
     """
-    table = read_table(path, Wanted(needed=NEEDED, key=lambda header: _columns(header)["distance"][0]))
-    found = {name: table.values[:, column] * scale for name, (column, scale) in _columns(table.header).items()}
+    source = ""
+    try:
+        table = read_table(path, Wanted(needed=NEEDED, key=lambda header: _columns(header)["distance"][0]))
+        found = {name: table.values[:, column] * scale for name, (column, scale) in _columns(table.header).items()}
+    except DataError as error:
+        try:
+            found = named_columns(path, dict.fromkeys(("distance", "left", "right"), "m"))
+        except VehicleError:
+            raise error from None
+        source = str(path)
     steps = np.diff(found["distance"])
     if steps.size < 3 or not (steps > 0.0).all():
         row = int(np.argmin(steps)) + 1 if steps.size else 0
-        raise DataError(f"{table.place(row)}: the distance must increase from row to row, over four rows or more")
+        place = source or table.place(row)
+        raise DataError(f"{place}: the distance must increase from row to row, over four rows or more")
     return MeasuredRoad(distance=found["distance"], right=found["right"], left=found["left"], source=path.name)
 
 

@@ -17,6 +17,8 @@ MOST_POINTS = 40
 
 HEADS = {"velocity": "velocity [m/s]", "displacement": "displacement [m]"}
 """Heads of the columns of a file, beside `force [N]`."""
+SI = {"velocity": "m/s", "displacement": "m"}
+"""Units of what they hold; a file of another program may have any other of the same quantity."""
 
 
 def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequence[float]) -> None:
@@ -84,6 +86,7 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
     """The columns of a file by their keys."""
     # Parameters are known without numpy, which tables are read with.
     from vehicle.records.formats import read_table
+    from vehicle.records.named_columns import named_columns
     from vehicle.records.table import Wanted
 
     heads = {key: HEADS[key], "force": "force [N]"}
@@ -98,5 +101,9 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
     try:
         table = read_table(file, Wanted(needed=needed, key=column, remedy="repair or remove the row"))
     except VehicleError as error:
-        raise ConfigurationError(f"{path}: {error}") from None
+        # Of a machine, in a format or in units of its own.
+        try:
+            return {name: values.tolist() for name, values in named_columns(file, {key: SI[key], "force": "N"}).items()}
+        except VehicleError:
+            raise ConfigurationError(f"{path}: {error}") from None
     return {name: table.values[:, table.header.cells.index(head)].tolist() for name, head in heads.items()}

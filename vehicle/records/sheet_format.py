@@ -18,21 +18,39 @@ def read(path: Path) -> Measurement:
         MissingPartError: openpyxl is not installed.
         DataError: damaged, or without such a table.
     """
-    openpyxl = extra("openpyxl", "xlsx", "an XLSX file")
-    try:
-        with path.open("rb") as file:  # the library refuses other endings of a name
-            book = openpyxl.load_workbook(file, read_only=True, data_only=True)
-            sheets = {one.title: [_row(row) for row in one.iter_rows(values_only=True)] for one in book.worksheets}
-    except Exception as error:  # damaged archives raise what they like
-        raise DataError(f"{path}: no XLSX file that can be read ({error}); save it again, or as CSV") from None
+    sheets = _sheets(path)
     told: DataError | None = None
-    for title, lines in sheets.items():
+    for title, cells in sheets.items():
+        lines = [_row(row) for row in cells]
         notice = () if len(sheets) == 1 else (f"sheet {title!r} of {len(sheets)}",)
         try:
             return read_lines(path, Text(lines=lines, notices=notice, sha256=digest(path)), "xlsx")
         except DataError as error:
             told = told or error
     raise told or DataError(f"{path}: no sheet; save it again")
+
+
+def _sheets(path: Path) -> dict[str, list[tuple[object, ...]]]:
+    """Title of each sheet to its rows."""
+    openpyxl = extra("openpyxl", "xlsx", "an XLSX file")
+    try:
+        with path.open("rb") as file:  # the library refuses other endings of a name
+            book = openpyxl.load_workbook(file, read_only=True, data_only=True)
+            return {one.title: list(one.iter_rows(values_only=True)) for one in book.worksheets}
+    except Exception as error:  # damaged archives raise what they like
+        raise DataError(f"{path}: no XLSX file that can be read ({error}); save it again, or as CSV") from None
+
+
+def read_sheet_texts(path: Path) -> list[list[str]]:
+    """Cells of the first sheet as texts, rows without any left out; numbers with all their digits.
+
+    Raises:
+        MissingPartError: openpyxl is not installed.
+        DataError: damaged, or without a sheet.
+    """
+    rows = next(iter(_sheets(path).values()), [])
+    texts = [["" if cell is None else str(cell).strip() for cell in row] for row in rows]
+    return [row for row in texts if any(row)]
 
 
 def _row(cells: tuple[object, ...]) -> str:
