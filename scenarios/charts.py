@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.output.folder import write_whole
-from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, wrapped_phase
+from vehicle.rendering.figure import COLOURS, FADED, fading, frf_axes, saved_figure, wrapped_phase
 
 Vector = npt.NDArray[np.float64]
 
@@ -71,12 +71,15 @@ def draw_frf(
         columns: title and curves of each.
         marks: label, frequency [Hz] and colour of vertical lines in all columns.
     """
+    if any(curve.coherence is not None for _, curves in columns for curve in curves):
+        caption = f"{caption}; {FADED}"
     with figure_file(path, (max(7.2, 5.2 * len(columns)), 7.4), title, caption) as figure:
         axes = figure.subplots(3, len(columns), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False)
         for (heading, curves), (magnitude, phase, coherence) in zip(columns, axes.T, strict=True):
             for curve in curves:
                 look = {"color": curve.colour, "linestyle": curve.style}
-                magnitude.plot(curve.frequency, np.abs(curve.response), label=curve.label, **look)
+                known = np.ones(curve.frequency.size) if curve.coherence is None else curve.coherence
+                fading(magnitude, curve.frequency, np.abs(curve.response), known, curve.label, **look)
                 phase.plot(curve.frequency, wrapped_phase(curve.response), **look)
                 if curve.coherence is not None:
                     coherence.plot(curve.frequency, curve.coherence, **look)

@@ -45,7 +45,7 @@ HORIZONTAL = {"seat rail x (3.19)": "seat_rail_acc_x", "seat rail y (3.20)": "se
 
 RINGING = {"seat rail": "seat_rail", "engine": "engine", "roof left rear": "roof_left_rear"}
 
-NOISY, QUIET = "#9dbbe0", "#12365f"
+NOISY, QUIET = COLOURS[3], COLOURS[4]
 """Colours of the run with noise and of the same bump alone."""
 
 SHOWN = (-0.25, 3.25)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import colorsys
-
 import mujoco
 import numpy as np
 import pytest
 
+from tests.rendering.test_palette import linear, oklab
 from vehicle.rendering.motion import Coil, Motion, Wireframe
 from vehicle.rendering.overlay import colours, round_up
 
@@ -51,11 +50,12 @@ def test_displacement_is_true_whatever_the_factor(car, run, motion):
     np.testing.assert_allclose(frame.displacement(state), expected, atol=1e-15)
 
 
-def test_colours_run_from_blue_to_red():
-    values = np.linspace(0.0, 2.0, 200)
-    hues = [colorsys.rgb_to_hsv(*colour[:3])[0] for colour in colours(values, 2.0).tolist()]
-    assert np.all(np.diff(hues) < 0.0)
-    assert hues[0] > 0.6 and hues[-1] < 0.02
+def test_colours_of_the_displacement_grow_lighter_in_equal_steps():
+    """OKLab: lightness rises throughout, and no step between twenty shades is twice the mean one."""
+    shades = np.array([oklab(linear(colour)) for colour in colours(np.linspace(0.0, 2.0, 21), 2.0)[:, :3]])
+    steps = np.linalg.norm(np.diff(shades, axis=0), axis=1)
+    assert np.all(np.diff(shades[:, 0]) > 0.0) and np.ptp(shades[:, 0]) > 0.5
+    assert steps.max() < 1.5 * steps.mean() and steps.min() > 0.5 * steps.mean()
     np.testing.assert_array_equal(colours([5.0], 2.0), colours([2.0], 2.0))
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.spectra import power_spectral_density
-from vehicle.rendering.figure import COLOURS, saved_figure
+from vehicle.rendering.figure import COLOURS, LINES, saved_figure
 from vehicle.rendering.recorded_run import liveliest
 
 Vector = npt.NDArray[np.float64]
@@ -60,7 +61,7 @@ def plot_replication(
                 right.plot(*_amplitude(step, values), label=label, **look)
             left.set(ylabel="acceleration [m/s²]", title=name)
             right.set(ylabel="[(m/s²)/√Hz]", yscale="log")
-        for wheel, line in zip(drive, ("-", "--", "-.", ":"), strict=False):
+        for wheel, line in zip(drive, cycle(LINES), strict=False):
             style = {"color": COLOURS[2], "linestyle": line}
             values = 1e3 * drive[wheel]
             axes[-1, 0].plot(time[shown], values[shown], label=f"plate {wheel}", **style)
@@ -101,8 +102,8 @@ def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray
     runs = np.arange(1, kept.size + 1)
     with saved_figure(path, (8.0, 4.8), "Error over the iteration", caption) as figure:
         axis = figure.subplots()
-        for (name, values), colour, line in zip(errors.items(), COLOURS, ("-", "--", "-.", ":", "-"), strict=False):
-            axis.plot(runs, 100.0 * values, line, color=colour, label=name)
+        for (name, values), colour, line in zip(errors.items(), cycle(COLOURS), cycle(LINES), strict=False):
+            axis.plot(runs, 100.0 * values, linestyle=line, color=colour, label=name)
             axis.plot(runs[kept], 100.0 * values[kept], "o", color=colour)
             axis.plot(runs[~kept], 100.0 * values[~kept], "o", color=colour, markerfacecolor="white")
         if not kept.all():

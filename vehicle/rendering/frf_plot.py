@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,18 @@ import numpy as np
 from vehicle.analysis.dependence import motion_words
 from vehicle.analysis.motion_response import MotionResponse
 from vehicle.names import side_of
-from vehicle.rendering.figure import COLOURS, INK, UNDRIVEN, frf_axes, saved_figure, shade, wrapped_phase
+from vehicle.rendering.figure import (
+    COLOURS,
+    FADED,
+    INK,
+    LINES,
+    UNDRIVEN,
+    fading,
+    frf_axes,
+    saved_figure,
+    shade,
+    wrapped_phase,
+)
 from vehicle.rendering.plots import NO_LEVELS, REGION, plot_frf
 from vehicle.rendering.recorded_run import RecordedRun, hub_channel
 
@@ -62,20 +74,22 @@ def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResp
     inside = np.asarray(np.isfinite(levels).all(axis=0))
     single = all(len(one.motion) == 1 for one in responses)
     title = f"FRFs to each of {len(responses)} {'plates' if single else 'motions of the plates'}, which act at once"
-    with saved_figure(path, (max(7.2, 5.0 * len(shown)), 8.6), title, caption) as figure:
+    with saved_figure(path, (max(7.2, 5.0 * len(shown)), 8.6), title, f"{caption}; {FADED}") as figure:
         axes = figure.subplots(3, len(shown), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False)
         for (magnitude, phase, coherence), (name, heading) in zip(axes.T, shown.items(), strict=True):
-            for colour, one in zip(COLOURS * len(responses), responses, strict=False):
+            for colour, line, one in zip(cycle(COLOURS), cycle(LINES), responses, strict=False):
                 values, error = one.response.response[rows[name]], REGION * one.response.random_error[rows[name]]
                 size = np.abs(values)
                 low = np.maximum(size - error, 0.01 * size)
                 magnitude.fill_between(frequency, low, size + error, alpha=0.25, linewidth=0.0, color=colour)
-                magnitude.plot(frequency, size, color=colour, label=_plates(one.motion, vehicle.wheels))
-                phase.plot(frequency, wrapped_phase(values), color=colour, linewidth=0.8)
+                style = {"color": colour, "linestyle": line}
+                coherent = responses[0].response.coherence[rows[name]]
+                fading(magnitude, frequency, size, coherent, _plates(one.motion, vehicle.wheels), **style)
+                phase.plot(frequency, wrapped_phase(values), linewidth=0.8, **style)
             coherence.plot(frequency, responses[0].response.coherence[rows[name]], color=INK)
             magnitude.set_title(heading)
             for axis in (magnitude, phase, coherence):
-                shade(axis, frequency, ~inside, UNDRIVEN, "no FRF: no input")
+                shade(axis, frequency, ~inside, UNDRIVEN, None if inside.all() else "no FRF: no input")
         axes[0, 0].legend(loc="upper left")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
         axes[2, 0].set_ylabel("multiple coherence [-]")

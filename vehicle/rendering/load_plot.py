@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from vehicle.analysis.load_spectrum import LoadSpectrum
-from vehicle.rendering.figure import COLOURS, saved_figure
+from vehicle.rendering.figure import COLOURS, LINES, saved_figure
 
 PANELS = {
     "wheels, springs and dampers: range [N]": (r"(tyre_|damper_\w+_force$|\w*spring\w*_force$)", "N", 1.0),
@@ -40,10 +40,12 @@ def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
         for number, (label, own) in enumerate(panels.items()):
             axis = figure.add_subplot(2 if len(panels) > 2 else 1, 2 if len(panels) > 1 else 1, number + 1)
             scale = PANELS[label][2]
-            for colour, one in zip(COLOURS, own, strict=False):
+            for colour, line, one in zip(COLOURS, LINES, own, strict=False):
                 # The largest range is reached by every smaller number of cycles.
                 cycles, ranges = one.counted.exceeded(), scale * one.counted.ranges
-                axis.step([*cycles, FEWEST], [*ranges, ranges[-1]], where="post", color=colour, label=one.name)
+                axis.step(
+                    [*cycles, FEWEST], [*ranges, ranges[-1]], where="post", color=colour, linestyle=line, label=one.name
+                )
             axis.set(xscale="log", xlabel="cycles", ylabel=label)
             axis.set_xlim(left=FEWEST)
             axis.set_ylim(bottom=0.0)

@@ -12,29 +12,29 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw, ImageFont
 
 from vehicle.errors import ConfigurationError
+from vehicle.rendering.figure import COLOURS
 
 Picture = npt.NDArray[np.uint8]
 Vector = npt.NDArray[np.float64]
 
 INK = (28, 37, 48)
 PAPER = (245, 246, 248)
-STICK_COLOUR = (38, 140, 84)
-SLIP_COLOUR = (214, 48, 49)
+STICK_COLOUR, SLIP_COLOUR = (tuple(bytes.fromhex(COLOURS[place][1:])) for place in (0, 1))
 GRID = (208, 212, 218)
-TRACE_COLOURS = ((31, 95, 168), (46, 139, 87), (209, 73, 91))
-BAND = (226, 240, 231)
+TRACE_COLOURS = tuple(tuple(bytes.fromhex(COLOURS[place][1:])) for place in (4, 0, 1))
+BAND = (221, 233, 246)
 FINE = 2
 """Traces are drawn this many times larger and reduced, which smooths their lines."""
 
-SCALE_COLOURS = (
-    (0.10, 0.18, 0.55),
-    (0.00, 0.50, 0.75),
-    (0.05, 0.68, 0.45),
-    (0.98, 0.80, 0.10),
-    (0.95, 0.40, 0.05),
-    (0.80, 0.06, 0.04),
-)
-"""From rest (blue) to the top of the scale (red), evenly spaced; the order of the rainbow, as modal analysis has it."""
+SCALE = "viridis"
+"""Colour map of the displacement: equal steps look equally large, in print without colours and to colour-blind eyes too
+(Smith and van der Walt, 2015). Violet is at rest, yellow the top of the scale."""
+
+AXIS, TICKS = 15, 5
+"""Height of the time axis in a picture of 720 lines [pixel], and about how many times it names."""
+
+SHADES = 256
+"""Of its table."""
 
 SMALLEST = (320, 180)
 """Width and height of a frame that can still be read [pixel]."""
@@ -196,9 +196,22 @@ class Overlay:
     def _rows(self) -> list[tuple[int, int]]:
         """Upper and lower edge of each trace in the frame [pixel]."""
         layout, gap = self.layout, self._px(6)
-        height = (layout.height - layout.view_height - gap) // max(len(self.traces), 1)
+        height = (layout.height - layout.view_height - gap - self._px(AXIS)) // max(len(self.traces), 1)
         first = layout.view_height + gap
         return [(first + height * row, first + height * (row + 1) - gap) for row in range(len(self.traces))]
+
+    def _time_axis(self, image: Image.Image, begin: float, width: int) -> None:
+        """Times of the record under the traces, which run along with them."""
+        layout, pen = self.layout, ImageDraw.Draw(image)
+        top = self._rows[-1][1] if self._rows else layout.view_height
+        pen.text((self._px(12), top + self._px(1)), "time [s]", fill=INK, font=self._font(12))
+        step = round_up(self.visible / TICKS)
+        for number in range(int(np.ceil(begin / step)), int((begin + self.visible) / step) + 1):
+            x = layout.trace_left + (number * step - begin) / self.visible * width
+            inside = number >= 0 and number * step <= self.time[-1] and x < layout.width - self._px(24)
+            if inside:
+                pen.line([(x, top), (x, top + self._px(3))], fill=INK)
+                pen.text((x, top + self._px(2)), f"{number * step:.6g}", fill=INK, font=self._font(12), anchor="ma")
 
     def _run(self, image: Image.Image, now: float) -> None:
         """Traces with the present in the middle."""
@@ -208,6 +221,7 @@ class Overlay:
         first, last = np.searchsorted(self.time, [begin, begin + self.visible])
         part = slice(max(first - 1, 0), last + 1)
         across = (self.time[part] - begin) / self.visible * width * FINE
+        self._time_axis(image, begin, width)
         for (top, bottom), trace, colour in zip(self._rows, self.traces, TRACE_COLOURS, strict=False):
             height = (bottom - top) * FINE
             panel = Image.new("RGB", (width * FINE, height), (255, 255, 255))
@@ -240,9 +254,11 @@ def colours(values: npt.ArrayLike, top: float) -> npt.NDArray[np.float32]:
     Returns:
         Red, green, blue and opacity 1, (n, 4).
     """
-    table = np.array(SCALE_COLOURS)
-    place = np.clip(np.atleast_1d(np.asarray(values, dtype=float)) / top, 0.0, 1.0) * (len(table) - 1)
-    rgb = [np.interp(place, np.arange(len(table)), column) for column in table.T]
+    from matplotlib import colormaps
+
+    table = np.array(colormaps[SCALE](np.linspace(0.0, 1.0, SHADES)))[:, :3]
+    place = np.clip(np.atleast_1d(np.asarray(values, dtype=float)) / top, 0.0, 1.0) * (SHADES - 1)
+    rgb = [np.interp(place, np.arange(SHADES), column) for column in table.T]
     return np.column_stack([*rgb, np.ones(len(place))]).astype(np.float32)
 
 

@@ -9,8 +9,18 @@ import numpy as np
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.names import side_of, wheel_words
-from vehicle.rendering.figure import COLOURS, UNDRIVEN, frf_axes, saved_figure, shade, wrapped_phase
-from vehicle.rendering.recorded_run import RecordedRun, dampers_of, liveliest, wheels_of
+from vehicle.rendering.figure import (
+    COLOURS,
+    FADED,
+    LINES,
+    UNDRIVEN,
+    fading,
+    frf_axes,
+    saved_figure,
+    shade,
+    wrapped_phase,
+)
+from vehicle.rendering.recorded_run import RecordedRun, dampers_of, level_words, liveliest, wheels_of
 
 REGION = 1.96
 """Half width of the band around a magnitude, in standard errors: 95 % of all records lie within it."""
@@ -24,7 +34,7 @@ DETAIL = 2.0
 LEGEND_ROOM = 0.22
 """Share of the height of a panel kept free for its legend."""
 
-SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", "#8c2f39", "#fff3c4"
+SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", COLOURS[1], "#fff3c4"
 
 
 def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption: str, title: str = "") -> None:
@@ -54,24 +64,25 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
     inside = np.asarray(np.isfinite(response.response).any(axis=0))
     shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels]])
     with saved_figure(
-        path, (13.0, 8.6), title or f"FRFs to the plate under the {wheel_words(wheel, wheels)}", caption
+        path, (13.0, 8.6), title or f"FRFs to the plate under the {wheel_words(wheel, wheels)}", f"{caption}; {FADED}"
     ) as figure:
         axes = figure.subplots(3, 2, sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9))
         for column, (title, labels) in enumerate(groups.items()):
             magnitude, phase, coherence = axes[:, column]
             for number, (name, label) in enumerate(labels.items()):
                 # The mount stands in both columns and looks the same in both.
-                style = {"color": COLOURS[4] if name in mount else COLOURS[number]}
+                place = 4 if name in mount else number
+                style = {"color": COLOURS[place], "linestyle": LINES[place]}
                 row = rows[name]
                 values, error = np.abs(response.response[row]), REGION * response.random_error[row]
                 low = np.maximum(values - error, 0.01 * values)
-                magnitude.fill_between(frequency, low, values + error, alpha=0.25, linewidth=0.0, **style)
-                magnitude.plot(frequency, values, label=label, **style)
+                magnitude.fill_between(frequency, low, values + error, alpha=0.25, linewidth=0.0, color=COLOURS[place])
+                fading(magnitude, frequency, values, response.coherence[row], label, **style)
                 phase.plot(frequency, wrapped_phase(response.response[row]), **style)
                 coherence.plot(frequency, response.coherence[row], **style)
             magnitude.set_title(title)
             for axis in axes[:, column]:
-                shade(axis, frequency, ~inside, UNDRIVEN, "no FRF: no input")
+                shade(axis, frequency, ~inside, UNDRIVEN, None if inside.all() else "no FRF: no input")
             if labels:
                 magnitude.legend(loc="upper left")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
@@ -112,7 +123,7 @@ def plot_time(path: Path, run: RecordedRun) -> None:
     end = min(start + DETAIL, float(time[-1]))
     inside = (time >= start) & (time <= end)
     caption = (
-        f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}; "
+        f"{Path(run.signal.source).name}, {level_words(recording, wheel, run.signal.rms(wheel))} at wheel {wheel}; "
         f"dashed: slip velocity ±{1e3 * slip:g} mm/s, red: {side} damper in slip"
     )
     with saved_figure(path, (15.0, 9.2), "Main time histories", caption) as figure:
@@ -121,13 +132,13 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         axes = histories.subplots(len(panels), 2, sharey="row", width_ratios=(2.0, 1.6))
         for (whole, detail), (unit, scale, lines) in zip(axes, panels, strict=True):
             for number, (name, label) in enumerate(lines.items()):
-                style = {"color": COLOURS[number], "zorder": 2.5 - 0.1 * number}
+                style = {"color": COLOURS[number], "linestyle": LINES[number], "zorder": 2.5 - 0.1 * number}
                 values = scale * recording[name]
                 whole.plot(time, values, linewidth=0.5, label=label, **style)
                 detail.plot(time[inside], values[inside], **style)
             lowest, highest = whole.get_ylim()
             whole.set(ylim=(lowest, highest + LEGEND_ROOM * (highest - lowest)), ylabel=unit)
-            if lines:
+            if len(lines) > 1 or "acceleration" in unit:
                 whole.legend(loc="upper right", ncols=2)
             whole.axvspan(start, end, color=MAGNIFIED, zorder=0)
             whole.set_xlim(time[0], time[-1])

@@ -81,6 +81,25 @@ def hub_channel(composition: Composition, wheel: str) -> str:
     return f"{names[0]}_acc_z" if names else f"tyre_{wheel}_force_z"
 
 
+def level_words(recording: Recording, wheel: str, rms: float) -> str:
+    """How large a plate moves, in words: a bump by its height, what goes on by its RMS.
+
+    Args:
+        recording: the run.
+        wheel: whose plate.
+        rms: of its displacement [m].
+    """
+    plate = 1e3 * recording[f"plate_{wheel}_displacement"]
+    largest = float(np.max(np.abs(plate)))
+    if np.mean(np.abs(plate) > 0.01 * largest) < BUMP_SHARE:
+        return f"{largest:.3g} mm bump"
+    return f"RMS {1e3 * rms:.3g} mm"
+
+
+BUMP_SHARE = 0.5
+"""Share of the record below which a plate that moves is one single event."""
+
+
 def liveliest(time: Vector, values: Vector, length: float) -> float:
     """Start [s] of the stretch of a given length with the largest mean square of a channel.
 

@@ -10,11 +10,8 @@ import numpy as np
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.spectra import power_spectral_density
-from vehicle.rendering.figure import COLOURS, FRF_BAND, FRF_TICKS, frf_axes, saved_figure, wrapped_phase
+from vehicle.rendering.figure import COLOURS, FRF_BAND, FRF_TICKS, LINES, fading, frf_axes, saved_figure, wrapped_phase
 from vehicle.rendering.recorded_run import RecordedRun
-
-LINES = ("-", "--", "-.", ":")
-"""Beside the colours, so that print in black tells runs apart."""
 
 WINDOW, AVERAGES = 4.0, 4.0
 """Length of the windows of a density [s]; a shorter record has this many windows' length in it."""
@@ -43,7 +40,8 @@ def plot_responses(
             for (name, (run, response)), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
                 row = run.car.model.vehicle.acceleration_channels.index(channel)
                 style = {"color": colour, "linestyle": line}
-                column[0].plot(response.frequency, np.abs(response.response[row]), label=name, **style)
+                size = np.abs(response.response[row])
+                fading(column[0], response.frequency, size, response.coherence[row], name, **style)
                 column[1].plot(response.frequency, wrapped_phase(response.response[row]), **style)
                 column[2].plot(response.frequency, response.coherence[row], **style)
             column[0].set_title(words)

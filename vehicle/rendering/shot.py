@@ -15,7 +15,15 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import side_of, wheel_words
 from vehicle.rendering.motion import Coil, Motion, Wireframe
 from vehicle.rendering.overlay import Layout, Overlay, Trace, colours, round_factor, round_up
-from vehicle.rendering.recorded_run import RecordedRun, dampers_of, excerpt_start, hub_channel, hub_of, wheels_of
+from vehicle.rendering.recorded_run import (
+    RecordedRun,
+    dampers_of,
+    excerpt_start,
+    hub_channel,
+    hub_of,
+    level_words,
+    wheels_of,
+)
 from vehicle.rendering.road_strip import RoadStrip
 from vehicle.rendering.rolling import RollingRim
 from vehicle.rendering.stage import OPACITY, Canvas, Picture, close_up, stage_model, whole_car
@@ -203,6 +211,7 @@ class Shot:
     def _heading(self, slow: float) -> list[str]:
         """Input and level; factors and excerpt."""
         run, cut = self.run, self.cut
+        level = level_words(run.recording, run.wheel, run.signal.rms(run.wheel))
         speed = "real time" if slow == 1.0 else f"slow motion 1 : {slow:g}"
         highest = 0.5 / cut.interval
         if highest < FASTEST_MOTION:
@@ -212,8 +221,7 @@ class Shot:
             road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
             exaggerated = "motion and road"
         return [
-            f"{Path(run.signal.source).name}: RMS {1e3 * run.signal.rms(run.wheel):.3g} mm under the "
-            f"{wheel_words(run.wheel, self.wheels)}",
+            f"{Path(run.signal.source).name}: {level} under the {wheel_words(run.wheel, self.wheels)}",
             f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
