@@ -236,7 +236,7 @@ def _hypercube(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed
             axes.set_xlabel(f"{_short(one.path)} [{unit_of(load_vehicle(), one.path)}]", fontsize=7)
             axes.tick_params(labelsize=7)
         for axes in panels[:, 0]:
-            axes.set_ylabel("comfort value [m/s2]", fontsize=8)
+            axes.set_ylabel("comfort value [m/s²],\nlower is better", fontsize=8)
     known = [None if np.isnan(value) else value for value in comfort.tolist()]
     return {"points": points, "comfort": known}, "Every run is a row of `table.csv`."
 

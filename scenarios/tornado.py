@@ -237,7 +237,7 @@ def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
                         fontsize=7,
                     )
             axis.axvline(0.0, color="#222222", linewidth=0.8)
-            axis.set(title=f"{road} road", xlabel="change of the comfort value [%]")
+            axis.set(title=f"{road} road", xlabel="change of the comfort value [%], lower is better")
             axis.grid(visible=False, axis="y")
             axis.margins(x=0.16)
         axes[0].set_yticks(height, [bar.label for bar in bars])

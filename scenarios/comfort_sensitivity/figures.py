@@ -98,7 +98,7 @@ def draw_variation(
             relative.set_xlabel(variation.label)
         axes[0, 0].set_ylabel("seat rail, z [m/s²]")
         axes[1, 0].set_ylabel("PSD of the seat rail, z [(m/s²)²/Hz]")
-        axes[2, 0].set_ylabel("relative comfort value [%]")
+        axes[2, 0].set_ylabel("relative comfort value [%],\nlower is better")
         figure.align_ylabels(axes[:, 0])
 
 
@@ -206,7 +206,7 @@ def setting(comfort: ComfortRuns) -> list[str]:
 def curve_table(label: str, curves: Curves) -> str:
     """Relative comfort of a variation on both roads as a Markdown table."""
     columns = (
-        "relative comfort value [%]",
+        "relative comfort value [%],\nlower is better",
         "comfort value [m/s²]",
         "slip shares [%]",
         "lowest load [N] (time below 0)",

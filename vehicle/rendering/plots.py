@@ -12,6 +12,7 @@ from vehicle.names import side_of, wheel_words
 from vehicle.rendering.figure import (
     COLOURS,
     FADED,
+    INK,
     LINES,
     UNDRIVEN,
     fading,
@@ -34,7 +35,7 @@ DETAIL = 2.0
 LEGEND_ROOM = 0.22
 """Share of the height of a panel kept free for its legend."""
 
-SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", COLOURS[1], "#fff3c4"
+SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", INK, "#fff3c4"
 
 
 def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption: str, title: str = "") -> None:

@@ -92,7 +92,7 @@ def level_words(recording: Recording, wheel: str, rms: float) -> str:
     plate = 1e3 * recording[f"plate_{wheel}_displacement"]
     largest = float(np.max(np.abs(plate)))
     if np.mean(np.abs(plate) > 0.01 * largest) < BUMP_SHARE:
-        return f"{largest:.3g} mm bump"
+        return f"{largest:.2g} mm bump"
     return f"RMS {1e3 * rms:.3g} mm"
 
 
