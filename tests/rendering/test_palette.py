@@ -49,7 +49,7 @@ def linear(colour: np.ndarray) -> np.ndarray:
 
 
 def oklab(colour: np.ndarray) -> np.ndarray:
-    return TO_LAB @ np.cbrt(TO_CONES @ colour)
+    return np.asarray(TO_LAB @ np.cbrt(TO_CONES @ colour))
 
 
 def distance(one: np.ndarray, other: np.ndarray, sight: np.ndarray) -> float:
@@ -64,7 +64,7 @@ def test_colours_are_told_apart(sight):
     assert min(distance(one, other, SIGHT[sight]) for one, other in pairs) > APART
     assert min(distance(rgb(text), np.ones(3), SIGHT[sight]) for text in COLOURS) > 2.0 * APART
     lamps = [np.array(colour) / 255.0 for colour in (overlay.STICK_COLOUR, overlay.SLIP_COLOUR)]
-    assert distance(*lamps, SIGHT[sight]) > APART
+    assert distance(lamps[0], lamps[1], SIGHT[sight]) > APART
 
 
 def test_red_and_green_of_equal_lightness_would_be_refused():
