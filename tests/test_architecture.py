@@ -22,7 +22,7 @@ ROOMS: dict[str, set[str]] = {
     "laws": {"compiler", "parameters"},
     "records": {"analysis"},
     "excitation": {"records"},
-    "flexbody": {"parameters"},
+    "flexbody": {"parameters", "records"},
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},
@@ -39,7 +39,7 @@ ROOMS: dict[str, set[str]] = {
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
     "replication": {"car", "excitation", "records", "reduced"},
     "report": {"analysis", "car", "linear", "parameters", "records", "rendering", "simulation"},
-    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "output", "parameters"}
+    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "output", "parameters"}
     | {"records", "rendering", "replication", "report", "simulation", "sweeps"},
     "threads": set(),
     "compiler": set(),

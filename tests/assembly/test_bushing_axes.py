@@ -64,7 +64,9 @@ def test_the_matrices_hold_the_turned_stiffness():
     with installed(rows):
         mujoco.mj_forward(model, data)
     own = rows.layout.bushings.rows[rows.names.index("bushing/link")]
-    np.testing.assert_allclose(rows.state.explicit[own], -turn.T @ np.diag(STIFFNESS) @ turn @ shift, rtol=1e-9)
+    np.testing.assert_allclose(
+        turn.T @ rows.state.explicit[own], -turn.T @ np.diag(STIFFNESS) @ turn @ shift, rtol=1e-9
+    )
 
 
 def test_a_run_with_turned_axes_balances_its_energy(tmp_path, high_piece):

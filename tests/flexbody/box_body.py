@@ -32,7 +32,7 @@ def box_fields(modes=4):
         "frequencies": frequencies,
         "damping_ratio": np.full(modes, 0.02),
         "shapes": shapes,
-        "attachment_stiffness": {"corner_1": np.array([1e7, 2e7, 3e7])},
+        "residual": {"corner_1": np.diag([1e-7, 5e-8, 4e-8])},
         "mode_names": tuple(f"mode {i + 1}" for i in range(modes)),
         "provenance": "computed for a test",
     }

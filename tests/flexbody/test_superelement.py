@@ -28,7 +28,7 @@ def test_arrays_cannot_be_changed_afterwards():
     with pytest.raises(ValueError, match="read-only"):
         body.shapes[0, 0, 0] = 1.0
     with pytest.raises(TypeError):
-        body.attachment_stiffness["corner_0"] = np.ones(3)  # type: ignore[index]
+        body.residual["corner_0"] = np.ones((3, 3))  # type: ignore[index]
 
 
 def test_unknown_node_lists_the_names():
@@ -84,8 +84,12 @@ BAD = {
     "ragged positions": (put("positions", [[0.0, 1.0], [1.0]]), "positions: not a regular array of numbers"),
     "node twice": (put("nodes", lambda n: (n[1], *n[1:])), "nodes: 'corner_1' given more than once"),
     "edge to nowhere": (at("edges", (0, 0), 8), "edges: index 0 to 8; allowed are 0 to 7"),
-    "stiffness at no node": (put("attachment_stiffness", {"nose": np.ones(3)}), "attachment_stiffness: no node 'nose'"),
-    "stiffness zero": (put("attachment_stiffness", {"corner_1": np.zeros(3)}), "of 'corner_1': [0.0, 0.0, 0.0] N/m"),
+    "flexibility at no node": (put("residual", {"nose": np.eye(3)}), "residual: no node 'nose'"),
+    "flexibility of three numbers": (put("residual", {"corner_1": np.ones(3)}), "of 'corner_1': shape (3,); three"),
+    "flexibility one-sided": (put("residual", {"corner_1": np.eye(3, k=1) * 1e-7}), "m/N is not symmetric"),
+    "flexibility negative": (put("residual", {"corner_1": -1e-7 * np.eye(3)}), "value is -1e-07 m/N, must not be"),
+    "flexibility in mm/N": (put("residual", {"corner_1": 1e-3 * np.eye(3)}), "looks like mm/N"),
+    "flexibility NaN": (put("residual", {"corner_1": np.full((3, 3), np.nan)}), "every number must be finite"),
     "NaN in a shape": (at("shapes", (1, 2, 0), np.nan), "shapes[1, 2, 0]: nan; every number must be finite"),
     "infinite mass": (at("node_mass", 3, np.inf), "node_mass[3]: inf"),
     "negative mass": (at("node_mass", 3, -1.0), "node_mass of 'corner_3': -1 kg; masses must not be negative"),

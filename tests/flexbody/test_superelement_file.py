@@ -26,7 +26,7 @@ def test_round_trip_keeps_every_digit(path):
         np.testing.assert_array_equal(getattr(read, name), getattr(written, name))
     for name in ("name", "nodes", "mode_names", "provenance"):
         assert getattr(read, name) == getattr(written, name)
-    assert {k: v.tolist() for k, v in read.attachment_stiffness.items()} == {"corner_1": [1e7, 2e7, 3e7]}
+    assert {k: v.tolist() for k, v in read.residual.items()} == {"corner_1": np.diag([1e-7, 5e-8, 4e-8]).tolist()}
     assert [file.name for file in path.parent.iterdir()] == ["box.toml"]
 
 
@@ -57,7 +57,7 @@ BAD = {
         '["corner_0", "nose"]',
         "edges: ['corner_0', 'nose'] is no pair of node names",
     ),
-    "format": ("modal superelement 1", "modal superelement 7", "format is 'modal superelement 7'"),
+    "format": ("modal superelement 2", "modal superelement 7", "format is 'modal superelement 7'"),
     "node renamed, edges not": ('"corner_7"\n', '"corner_6"\n', "edges: "),
 }
 

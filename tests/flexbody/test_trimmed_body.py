@@ -45,9 +45,9 @@ def test_the_exported_file_is_what_the_design_gives_on_the_shipped_car(body, fra
     np.testing.assert_allclose(built.node_mass, body.node_mass, rtol=1e-9)
     np.testing.assert_allclose(built.frequencies, body.frequencies, rtol=1e-8)
     np.testing.assert_allclose(built.shapes, body.shapes, atol=1e-6)
-    assert set(body.attachment_stiffness) == set(built.attachment_stiffness)
-    for node, stiffness in built.attachment_stiffness.items():
-        np.testing.assert_array_equal(body.attachment_stiffness[node], stiffness)
+    assert set(body.residual) == set(built.residual)
+    for node, flexibility in built.residual.items():
+        np.testing.assert_array_equal(body.residual[node], flexibility)
 
 
 def test_published_counts_frequencies_and_mass_properties(body):
@@ -90,7 +90,7 @@ def test_the_body_is_nearly_the_same_on_both_sides(body):
             continue
         if "seat" not in name:  # the seat itself hangs on the left one only
             assert body.node_mass[i] == pytest.approx(body.node_mass[j], rel=0.03), name
-        if name not in body.attachment_stiffness:
+        if name not in body.residual:
             continue
         for mode, (one, other) in enumerate(np.linalg.norm(body.shapes[:, [i, j]], axis=2)):
             if max(one, other) > 0.018:  # where it moves: half of the mean motion 813^-1/2
@@ -106,7 +106,7 @@ def test_the_body_is_nearly_the_same_on_both_sides(body):
 def test_no_mode_is_the_lone_wobble_of_an_interface(body):
     energy = body.node_mass * np.sum(body.shapes**2, axis=2)  # (modes, nodes), each row sums to one
     np.testing.assert_allclose(energy.sum(axis=1), 1.0, rtol=1e-6)
-    for node in body.attachment_stiffness:
+    for node in body.residual:
         share = energy[:, body.node_index(node)].max()
         assert share < 0.10, f"{node} alone has {share:.0%} of the kinetic energy of a mode"
         amplitude = np.linalg.norm(body.shape_at(node), axis=0).max()

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.assembly.coupled_attachment import STRUCTURAL_LOSS_TIME, coupled_law, is_coupled
 from vehicle.flexbody.superelement import Superelement, attached_nodes
 from vehicle.laws.kelvin import Kelvin
 from vehicle.laws.maxwell import Maxwell
@@ -17,12 +18,6 @@ from vehicle.parameters.composition import PlacedConnection
 from vehicle.parameters.elements import Bushing, Hydromount
 
 Vector = npt.NDArray[np.float64]
-
-STRUCTURAL_LOSS_TIME = 1e-4
-"""Damping over stiffness [s] of the local stiffness behind an ideal joint.
-
-Assumed: a loss factor of 2 % at 30 Hz, usual for welded steel structures.
-"""
 
 
 def _zeros() -> Vector:
@@ -46,6 +41,7 @@ class ElementLaw:
         averaged: True where the stiffness is too high for the explicit step and is averaged over three steps
             (Newmark with beta 1/4); False for the fourth-order average (beta 1/12).
         local: stiffness of the attachment [N/m], in series with what is a table; (3,).
+        directions: P, the directions that replace the axes, a row each; (3, 3). None: the axes of the carrier.
     """
 
     stiffness: Vector
@@ -55,6 +51,7 @@ class ElementLaw:
     rotational_stiffness: float = 0.0
     averaged: bool = False
     local: Vector = field(default_factory=_rigid)
+    directions: Vector | None = None
 
 
 def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> ElementLaw | None:
@@ -73,12 +70,22 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
     local = None
     if body.attachment_flexibility and "body" in (connection.moving, connection.carrier):
         node = attached_nodes(superelement, {connection.point: connection.at}).get(connection.at, "")
-        local = superelement.attachment_stiffness.get(node)
-        if local is not None and connection.axes is not None and connection.law is not None:
-            # Along each axis of the law alone: what the attachment yields across it is left out.
-            local = 1.0 / np.sum(np.square(connection.axes) / local, axis=1)
+        flexibility = superelement.residual.get(node)
+        if flexibility is not None and (connection.axes is not None or is_coupled(flexibility)):
+            stiffness, damping, branch, time, directions = coupled_law(connection, flexibility)
+            return ElementLaw(
+                stiffness=stiffness,
+                damping=damping,
+                branch_stiffness=branch,
+                branch_time=time,
+                rotational_stiffness=0.0 if connection.law is None else connection.law.rotational_stiffness,
+                averaged=connection.law is None,
+                directions=directions,
+            )
+        local = None if flexibility is None else 1.0 / np.diag(flexibility)
     if connection.law is not None:
-        return _bushing_law(connection.law, local)
+        law = _bushing_law(connection.law, local)
+        return law if connection.axes is None else replace(law, directions=np.array(connection.axes))
     return None if local is None else ElementLaw(stiffness=local, damping=STRUCTURAL_LOSS_TIME * local, averaged=True)
 
 

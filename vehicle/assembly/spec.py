@@ -226,7 +226,7 @@ class _Builder:
         name = f"{'ball' if connection.law is None else 'bushing'}/{connection.name}"
         sites = (f"{name}/moving", f"{name}/carrier")
         self._site(sites[0], connection.moving, connection.at)
-        self._carrier(sites[1], connection)
+        self._site(sites[1], connection.carrier, connection.at)
         row = self.spec.add_equality(
             name=name,
             type=mujoco.mjtEq.mjEQ_CONNECT,
@@ -249,23 +249,10 @@ class _Builder:
             if getattr(connection.law, "one_sided", False):
                 self._numeric(f"one_sided/{name}", 1.0)
             self._numeric(f"law/{name}", [*constants, law.rotational_stiffness, float(law.averaged)])
+            if law.directions is not None:
+                self._numeric(f"directions/{name}", law.directions)
         if on_body:
             self._node_shape(name, connection.at)
-
-    def _carrier(self, name: str, connection: PlacedConnection) -> None:
-        """The site on the carrier; laws with axes of their own are carried by a turned frame without mass on it."""
-        if connection.axes is None or connection.law is None:
-            self._site(name, connection.carrier, connection.at)
-            return
-        turn, frame = np.zeros(4), f"axes/{connection.name}"
-        mujoco.mju_mat2Quat(turn, np.array(connection.axes).T.ravel())
-        origin = np.array(connection.at)
-        body = self.bodies[connection.carrier].add_body(
-            name=frame, pos=origin - self.origins[connection.carrier], quat=turn
-        )
-        self.bodies[frame], self.origins[frame] = body, origin
-        # The site stays parallel to the car: torques are those of the carrier.
-        body.add_site(name=name, quat=turn * [1.0, -1.0, -1.0, -1.0], size=[0.012, 0.012, 0.012], group=4)
 
     def add_spring(self, spring: PlacedSpring) -> None:
         """Spring as a tendon between its ends, held by an equality row that the callback gives its law."""

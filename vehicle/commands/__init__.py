@@ -10,6 +10,7 @@ COMMANDS = (
     "road",
     "inspect",
     "loads",
+    "body",
     "compare",
     "report",
     "drive",

@@ -9,25 +9,25 @@ import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError
-from vehicle.flexbody.modes import fix_signs, rigid_shapes
+from vehicle.flexbody.modes import fix_signs
 from vehicle.flexbody.superelement import Superelement
 
 
 def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]) -> Superelement:
     """The body with point masses fixed rigidly to its nodes, inside the space of its rigid-body and elastic modes.
 
-    With T = [R | Phi] and the new diagonal mass M, the reduced mass is T^T M T and the reduced stiffness diag(0, w^2).
-    Rigid coordinates have no stiffness, so they follow exactly, r = -M_rr^-1 M_rf q, which leaves
+    With T = [R | Phi], T' M T = 1 of the body alone, a mass m at node n adds m T_n' T_n. Rigid coordinates have no
+    stiffness, so they follow exactly, r = -M_rr^-1 M_rf q, which leaves
     (diag(w^2) - W^2 (M_ff - M_fr M_rr^-1 M_rf)) q = 0. Damping: the diagonal of the transformed modal damping.
-    The local stiffness of an attachment point is not between the mass and the node.
+    The residual flexibility of an attachment point is not between the mass and the node.
 
     Args:
         superelement: the body.
         masses: node name -> mass to add [kg], not negative.
 
     Returns:
-        A superelement with the new node masses, frequencies, damping ratios and mode shapes. A new mode keeps the name
-        of the old one that it is mostly made of.
+        A superelement with the new mass properties, frequencies, damping ratios and mode shapes. A new mode keeps the
+        name of the old one that it is mostly made of.
 
     Raises:
         DataError: no node of this name.
@@ -35,31 +35,40 @@ def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]
 
     Source: R. R. Craig and A. J. Kurdila, Fundamentals of Structural Dynamics, 2006, chapter 17, free-interface modes.
     """
-    node_mass = superelement.node_mass.copy()
     for node, mass in masses.items():
         if not (np.isfinite(mass) and mass >= 0.0):
             raise ConfigurationError(
                 f"mass attached to body node {node!r}: {mass} kg; it must be finite and not negative."
             )
-        node_mass[superelement.node_index(node)] += mass
-    count = len(superelement.frequencies)
-    cog = node_mass @ superelement.positions / node_mass.sum()
-    rigid = rigid_shapes(superelement.positions, cog).reshape(6, -1)
-    flexible = superelement.shapes.reshape(count, -1)
-    weight = np.repeat(node_mass, 3)
-    follow = np.linalg.solve((rigid * weight) @ rigid.T, (rigid * weight) @ flexible.T)  # (6, modes)
-    free = flexible - follow.T @ rigid  # orthogonal to the new rigid-body modes, (modes, 3 n)
+    where = np.array([superelement.node_index(node) for node in masses], dtype=int)
+    added = np.array(list(masses.values()), dtype=float)
+    count, places = len(superelement.frequencies), superelement.positions
+    rigid, turns = superelement.rigid.rigid_motions(places)
+    both = np.concatenate([rigid[:, where], superelement.shapes[:, where]])  # (6 + modes, masses, 3)
+    total = np.eye(6 + count) + np.einsum("ank,bnk,n->ab", both, both, added)
+    follow = np.linalg.solve(total[:6, :6], total[:6, 6:])  # (6, modes)
     omega = 2.0 * np.pi * superelement.frequencies
-    squared, mix = scipy.linalg.eigh(np.diag(omega**2), (free * weight) @ free.T)
-    shapes = fix_signs((mix.T @ free).reshape(count, -1, 3))
+    squared, mix = scipy.linalg.eigh(np.diag(omega**2), total[6:, 6:] - total[6:, :6] @ follow)
+    rest = mix.T @ follow.T  # the rigid motion in each new mode, (modes, 6)
+    shapes = np.tensordot(mix.T, superelement.shapes, 1) - np.tensordot(rest, rigid, 1)
+    signed = fix_signs(shapes)
+    sign = np.where(np.einsum("ank,ank->a", signed, shapes) < 0.0, -1.0, 1.0)[:, None]
+    turned = {node: sign * (mix.T @ own - rest @ turns) for node, own in superelement.rotations.items()}
     new_omega = np.sqrt(squared)
     damping = np.einsum("im,i,im->m", mix, 2.0 * superelement.damping_ratio * omega, mix)
     mostly = np.abs(mix).argmax(axis=0)
+    node_mass, own = superelement.node_mass, superelement.mass_properties
+    if node_mass is not None:
+        node_mass = node_mass.copy()
+        np.add.at(node_mass, where, added)
     return replace(
         superelement,
         node_mass=node_mass,
+        mass_properties=None if own is None else own.with_points(added, places[where]),
         frequencies=new_omega / (2.0 * np.pi),
         damping_ratio=damping / (2.0 * new_omega),
-        shapes=shapes,
+        shapes=signed,
+        rotations=turned,
         mode_names=tuple(superelement.mode_names[i] for i in mostly),
+        derived=True,
     )

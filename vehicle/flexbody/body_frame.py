@@ -33,6 +33,12 @@ class BodyFrame:
     group_stiffness: Mapping[str, FloatArray]
     """member group -> stiffness at factor 1, shape (6 n, 6 n)"""
 
+    @property
+    def node_mass(self) -> FloatArray:
+        """Lumped masses [kg], shape (n,)."""
+        assert self.skeleton.node_mass is not None
+        return self.skeleton.node_mass
+
     def modes(self, factors: Mapping[str, float], count: int) -> tuple[FloatArray, FloatArray]:
         """Free-free modes.
 
@@ -47,7 +53,7 @@ class BodyFrame:
         for group, matrix in self.group_stiffness.items():
             stiffness += factors[group] * matrix
         condensed, _ = condense_rotations(stiffness)
-        return free_free_modes(condensed, self.skeleton.node_mass, self.skeleton.positions, count)
+        return free_free_modes(condensed, self.node_mass, self.skeleton.positions, count)
 
     def superelement(self, factors: Mapping[str, float] | None = None) -> Superelement:
         """The modal superelement of the frame; factors of the member groups: by default those of the design."""
@@ -58,7 +64,7 @@ class BodyFrame:
             frequencies=frequencies,
             damping_ratio=np.full(count, self.design.damping_ratio),
             shapes=shapes,
-            mode_names=mode_names(shapes, rest.nodes, rest.positions, rest.node_mass),
+            mode_names=mode_names(shapes, rest.nodes, rest.positions, self.node_mass),
         )
 
 
@@ -88,8 +94,10 @@ def skeleton(design: BodyDesign, points: Mapping[str, Point]) -> Superelement:
         damping_ratio=np.zeros(0),
         shapes=np.zeros((0, len(places), 3)),
         mode_names=(),
-        attachment_stiffness={
-            node: np.array(entry.attachment) for node, entry in entries.items() if entry.attachment is not None
+        residual={
+            node: np.diag(1.0 / np.array(entry.attachment))
+            for node, entry in entries.items()
+            if entry.attachment is not None
         },
         provenance=design.provenance,
     )
@@ -137,10 +145,10 @@ def body_frame(design: BodyDesign, points: Mapping[str, Point], body: TrimmedBod
         if stays.axial > 0.0:
             fixed += frame_stiffness(positions, [(a, b, stays) for a, b in ends])
     freedom = np.array([design.nodes[name].freedom for name, made in placed.items() for _ in made])
+    assert rest.node_mass is not None
     masses = body_masses(rest.node_mass, freedom, positions, body)
-    return BodyFrame(
-        design=design, skeleton=replace(rest, node_mass=masses), fixed_stiffness=fixed, group_stiffness=groups
-    )
+    loaded = replace(rest, node_mass=masses)
+    return BodyFrame(design=design, skeleton=loaded, fixed_stiffness=fixed, group_stiffness=groups)
 
 
 def design_superelement(

@@ -41,7 +41,7 @@ def with_carried_nodes(body: Superelement, places: Mapping[str, Point]) -> Super
             nodes=(*body.nodes, name if name not in body.nodes else f"{name}_attached"),
             positions=np.vstack([body.positions, point]),
             edges=np.vstack([body.edges, [(count, carrier) for carrier in carriers[:3]]]),
-            node_mass=np.append(body.node_mass, 0.0),
+            node_mass=None if body.node_mass is None else np.append(body.node_mass, 0.0),
             shapes=np.concatenate([body.shapes, shape[:, None]], axis=1),
         )
     return body
@@ -59,12 +59,27 @@ def carried_by(positions: FloatArray, point: FloatArray) -> tuple[NDArray[np.int
     """
     gap = np.linalg.norm(positions - point, axis=1)
     nearest = np.argsort(gap, kind="stable")[:CARRIERS]
-    weight = 1.0 / gap[nearest] ** 2
-    center = weight @ positions[nearest] / weight.sum()
-    rows = np.concatenate([_motion(place - center) for place in positions[nearest]])  # (3 k, 6)
+    return nearest, rigid_fit(positions[nearest], 1.0 / gap[nearest] ** 2, point)[:3]
+
+
+def rigid_fit(positions: FloatArray, weight: FloatArray, point: FloatArray) -> FloatArray:
+    """Motion of a point with the rigid motion t + theta x (r - c) that fits nodes best.
+
+    Args:
+        positions: of the nodes [m], shape (k, 3).
+        weight: of each [1], shape (k,).
+        point: [m], shape (3,).
+
+    Returns:
+        N, displacement and rotation of the point by the displacements of the nodes, sum over k of N[:, k] u_k;
+        shape (6, k, 3).
+    """
+    center = weight @ positions / weight.sum()
+    rows = np.concatenate([_motion(place - center) for place in positions])  # (3 k, 6)
     scale = np.repeat(weight, 3)[:, None]
     fitted = np.linalg.pinv(rows.T @ (scale * rows)) @ (scale * rows).T  # (6, 3 k)
-    return nearest, np.asarray((_motion(point - center) @ fitted).reshape(3, len(nearest), 3))
+    moved = _motion(point - center) @ fitted
+    return np.asarray(np.vstack([moved, fitted[3:]]).reshape(6, len(positions), 3))
 
 
 def _motion(arm: FloatArray) -> FloatArray:

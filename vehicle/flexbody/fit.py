@@ -67,8 +67,8 @@ def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> 
     body = frame.skeleton
     frequencies, shapes = frame.modes(factors, MODE_COUNT + 1)
     kept = shapes[:MODE_COUNT]
-    likeness = parity(shapes, body.positions, body.node_mass)
-    twist = modal_assurance(kept, global_patterns(body.positions, body.node_mass)["torsion"], body.node_mass)
+    likeness = parity(shapes, body.positions, frame.node_mass)
+    twist = modal_assurance(kept, global_patterns(body.positions, frame.node_mass)["torsion"], frame.node_mass)
     torsion = int(twist.argmax())
     first = int((likeness > 0.0).argmax())
     missed = frequencies[[first, MODE_COUNT - 1, torsion]] - (FIRST_HZ, LAST_HZ, TORSION_HZ)
@@ -84,19 +84,19 @@ def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> 
             150.0 * np.maximum(0.0, np.delete(tower - _TOWER, torsion)),
             4.0 * np.maximum(0.0, _PARITY - np.abs(likeness[:MODE_COUNT])),
             0.6 / _FACTOR * np.log([factors[group] for group in frame.design.fitted_groups]),
-            _excess_motion(body, kept),
+            _excess_motion(body, frame.node_mass, kept),
         ]
     )
 
 
-def _excess_motion(body: Superelement, shapes: FloatArray) -> FloatArray:
+def _excess_motion(body: Superelement, node_mass: FloatArray, shapes: FloatArray) -> FloatArray:
     """Penalties [1] for a loud seat rail, nodes that move far more than the body around them, and lopsided pairs."""
     amplitude = np.linalg.norm(shapes, axis=2)  # (modes, n)
     facing = mirror_nodes(body.positions)
     interface = np.array([name.startswith(_INTERFACES) for name in body.nodes])
     rail, other = (np.abs(shapes[:, body.node_index(name)]) for name in ("seat_rail", "seat_rail_right"))  # (modes, 3)
     right = np.flatnonzero((facing >= 0) & (body.positions[:, 1] > 0.0))
-    energy = body.node_mass * amplitude**2
+    energy = node_mass * amplitude**2
     sides = amplitude[:, right], amplitude[:, facing[right]]
     difference = 2.0 * np.abs(sides[0] - sides[1]) / np.maximum(sides[0] + sides[1], 0.02)  # 0.01 counts as little
     return np.concatenate(

@@ -66,6 +66,18 @@ def own_body_file(vehicle: Vehicle, folder: Path) -> Path | None:
     return None if found is None or found.parent == PACKAGE_FOLDER else found
 
 
+def body_file(vehicle: Vehicle, folder: Path | None = None) -> Path:
+    """The body design or superelement that a vehicle names.
+
+    Raises:
+        ConfigurationError: it names none, or there is no such file.
+    """
+    file = None if vehicle.body.superelement is None else _find(vehicle.body.superelement, folder)
+    if file is None:
+        raise ConfigurationError(f"body.superelement: {vehicle.body.superelement}, no such file; name a body design")
+    return file
+
+
 def _find(name: str, folder: Path | None) -> Path | None:
     """A file by its name, which parameter validation keeps free of folders; None where there is none."""
     for place in (folder, PACKAGE_FOLDER):
@@ -83,7 +95,7 @@ def _find(name: str, folder: Path | None) -> Path | None:
 @lru_cache(maxsize=8)
 def _read_once(file: Path, modified: int, size: int) -> BodyDesign | Superelement:
     """Read a file again only where it has changed."""
-    is_design = _DESIGN.search(file.read_text(encoding="utf-8", errors="replace"))
+    is_design = file.suffix != ".npz" and _DESIGN.search(file.read_text(encoding="utf-8", errors="replace"))
     return read_design(file) if is_design else read_superelement(file)
 
 

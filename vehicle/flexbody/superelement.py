@@ -1,22 +1,26 @@
-"""The modal superelement: a flexible body as nodes with lumped masses and mass-normalised free-free modes.
+"""The modal superelement: a flexible body as mass properties, free-free modes at nodes, and residual flexibility.
 
-Nodes carry translational masses only; rotations of the frame behind them are massless and condensed exactly. So the
-mass matrix is diagonal in the file, and any reader can check mass, CoG, inertia and normalisation without the model
-behind it.
+A displacement of a node is that of the rigid body plus Phi_n q, with q'' + 2 zeta w q' + w^2 q = Phi_n' f. What the
+modes above those that are kept give way to a force is the residual flexibility of its node, G_n = sum of phi phi' / w^2
+[m/N], in series with what is fixed there. So no mass matrix is needed: mass properties, modal masses of one, shapes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.errors import DataError
 from vehicle.flexbody.beam import FloatArray
+from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.superelement_checks import LARGEST_TOLERANCE, check_superelement
 from vehicle.parameters.hardpoints import Point
+
+ARRAYS = ("positions", "node_mass", "frequencies", "damping_ratio", "shapes")
 
 
 def _frozen(array: object, dtype: type = float) -> FloatArray:
@@ -39,30 +43,38 @@ class Superelement:
     """node names, all different"""
     positions: FloatArray
     """node positions in the vehicle frame [m], shape (n, 3)"""
-    edges: FloatArray
+    edges: npt.NDArray[np.intp] | FloatArray
     """wireframe lines as pairs of node indices, shape (m, 2), integers"""
-    node_mass: FloatArray
-    """lumped translational masses [kg], shape (n,)"""
+    node_mass: FloatArray | None = None
+    """lumped translational masses, where the body is nothing else [kg], shape (n,); the checks are exact with them"""
+    mass_properties: MassProperties | None = None
+    """mass, CoG and inertia, where no masses of nodes are known"""
     frequencies: FloatArray
     """natural frequencies of the free body, ascending [Hz], shape (modes,); none of a rigid body"""
     damping_ratio: FloatArray
     """share of critical damping of each mode [1], shape (modes,)"""
     shapes: FloatArray
     """mass-normalised mode shapes, translations in the vehicle frame [kg^-1/2], shape (modes, n, 3)"""
-    attachment_stiffness: Mapping[str, FloatArray] = field(default_factory=dict)
-    """node -> local stiffness in series with what is fixed there, along x, y, z [N/m], shape (3,)"""
+    rotations: Mapping[str, FloatArray] = field(default_factory=dict)
+    """node -> its rotation in the same modes, where it is known [rad m^-1 kg^-1/2], shape (modes, 3)"""
+    residual: Mapping[str, FloatArray] = field(default_factory=dict)
+    """node -> residual flexibility, symmetric [m/N], shape (3, 3)"""
     mode_names: tuple[str, ...]
     """one name for each mode"""
     provenance: str
-    """where the numbers come from, in words"""
+    """where the numbers come from, in words: program, units and frame of the source, what was scaled"""
     hardpoint_tolerance: float = 1e-3
     """largest distance of a node from the hardpoint that it is measured for [m]"""
+    derived: bool = field(default=False, repr=False)
+    """made from a body that has been checked, which is not repeated for every car of a sweep"""
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
             object.__setattr__(self, name, value)
 
-        for name in ("positions", "node_mass", "frequencies", "damping_ratio", "shapes"):
+        for name in ARRAYS:
+            if getattr(self, name) is None:
+                continue
             try:
                 put(name, _frozen(getattr(self, name)))
             except (TypeError, ValueError) as error:
@@ -73,26 +85,33 @@ class Superelement:
         put("edges", _frozen(np.asarray(self.edges, dtype=int).reshape(-1, 2), int))
         put("nodes", tuple(self.nodes))
         put("mode_names", tuple(self.mode_names))
-        stiffness = {node: _frozen(value) for node, value in self.attachment_stiffness.items()}
-        put("attachment_stiffness", MappingProxyType(stiffness))
-        check_superelement(self)
+        for name in ("rotations", "residual"):
+            put(name, MappingProxyType({node: _frozen(value) for node, value in getattr(self, name).items()}))
+        if not self.derived:
+            check_superelement(self)
+
+    @property
+    def rigid(self) -> MassProperties:
+        """Mass, CoG and inertia: those of the node masses, or those given."""
+        if self.node_mass is not None:
+            return MassProperties.of_points(self.node_mass, self.positions)
+        assert self.mass_properties is not None
+        return self.mass_properties
 
     @property
     def mass(self) -> float:
-        """Mass of the body, sum of m [kg]."""
-        return float(self.node_mass.sum())
+        """Mass of the body [kg]."""
+        return self.rigid.mass
 
     @property
     def cog(self) -> FloatArray:
-        """Centre of gravity, sum of m r / m [m], shape (3,)."""
-        return np.asarray(self.node_mass @ self.positions / self.mass)
+        """Centre of gravity [m], shape (3,)."""
+        return self.rigid.cog
 
     @property
     def inertia(self) -> FloatArray:
-        """Inertia tensor about the CoG, sum of m (|r|^2 1 - r r^T) [kg m2], shape (3, 3)."""
-        arm = self.positions - self.cog
-        moments = (arm.T * self.node_mass) @ arm
-        return np.asarray(np.trace(moments) * np.eye(3) - moments)
+        """Inertia tensor about the CoG [kg m2], shape (3, 3)."""
+        return self.rigid.inertia
 
     def node_index(self, name: str) -> int:
         """Index of a node.
@@ -114,8 +133,43 @@ class Superelement:
     def without_modes(self) -> Superelement:
         """The same body, rigid."""
         none = np.zeros(0)
-        shapes = np.zeros((0, len(self.nodes), 3))
-        return replace(self, frequencies=none, damping_ratio=none, shapes=shapes, mode_names=())
+        return replace(
+            self,
+            frequencies=none,
+            damping_ratio=none,
+            shapes=np.zeros((0, len(self.nodes), 3)),
+            rotations={},
+            mode_names=(),
+            derived=True,
+        )
+
+    def up_to(self, frequency: float, kept: Collection[str]) -> Superelement:
+        """The body with its modes up to a frequency; the others as residual flexibility of the nodes that are used.
+
+        A mode at f_i that answers statically is wrong by (f/f_i)^2 / (1 - (f/f_i)^2) of its own share at f.
+
+        Args:
+            frequency: modes above are left out [Hz].
+            kept: names of the nodes where something acts on the body.
+        """
+        count = int(np.searchsorted(self.frequencies, frequency, side="right"))
+        if count == len(self.frequencies):
+            return self
+        compliance = 1.0 / (2.0 * np.pi * self.frequencies[count:]) ** 2
+        residual = dict(self.residual)
+        for node in kept:
+            shape = self.shapes[count:, self.node_index(node)]
+            residual[node] = residual.get(node, np.zeros((3, 3))) + (shape.T * compliance) @ shape
+        return replace(
+            self,
+            frequencies=self.frequencies[:count],
+            damping_ratio=self.damping_ratio[:count],
+            shapes=self.shapes[:count],
+            rotations={node: turns[:count] for node, turns in self.rotations.items()},
+            mode_names=self.mode_names[:count],
+            residual=residual,
+            derived=True,
+        )
 
 
 def attached_nodes(body: Superelement, places: Mapping[str, Point]) -> dict[Point, str]:

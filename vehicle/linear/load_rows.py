@@ -91,7 +91,8 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
             static = frame.T @ preload[own]
         else:
             index = with_law[int(own[0])]
-            along = frame.T @ jacobian[own]
+            way = places.oblique.get(int(own[0]))
+            along = frame.T @ jacobian[own] if way is None else jacobian[own]
             terms = {
                 "displacement": -bushings.stiffness[index][:, None] * along,
                 "velocity": -bushings.damping[index][:, None] * along,
@@ -105,6 +106,8 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
                 terms["height"][2, tyres[index]] = bushings.stiffness[index, 2]
                 terms["height_rate"][2, tyres[index]] = bushings.damping[index, 2]
             static = preload[own]
+            if way is not None:
+                static, terms = way.T @ static, {key: way.T @ term for key, term in terms.items()}
         for axis, letter in enumerate("xyz"):
             found[f"{name}_force_{letter}"] = float(static[axis]), {key: term[axis] for key, term in terms.items()}
     for (name, row), stiffness in zip(places.springs, rows.layout.springs.stiffness, strict=True):

@@ -98,7 +98,8 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
         mujoco.mj_forward(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    jacobian = rows.in_axes(data.efc_J.reshape(e.row_count, model.nv))
+    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
+    # In the design position all carriers are parallel to the vehicle frame, so rows are element axes.
     row_damping = np.zeros(e.row_count)
     row_damping[bushings.rows] = bushings.damping
     damping = jacobian.T @ (row_damping[:, None] * jacobian)

@@ -45,6 +45,7 @@ class Tie:
         twist: rotational stiffness [N m/rad].
         torque: in the design position [N m], (3,).
         bent: axes whose law is a curve.
+        directions: those of the law in the axes of the carrier, a row each, (3, 3); None where they are these.
     """
 
     moving: int
@@ -54,6 +55,7 @@ class Tie:
     twist: float
     torque: Vector
     bent: Mapping[int, Bent]
+    directions: Vector | None = None
 
     def pull(self, gap: Vector) -> tuple[Vector, Vector]:
         """Force [N] and stiffness [N/m] of a bushing at a displacement r [m], along its axes."""
@@ -167,6 +169,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             soft = law.size > 0 and not ideal
             curves = {axis: _curve(model, f"{name}/{letter}") for axis, letter in enumerate(AXES)} if soft else {}
             one, other = ends[name]
+            way = numeric(model, f"directions/{name}") if soft else None
             ties.append(
                 Tie(
                     moving=one,
@@ -176,6 +179,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
                     twist=float(law[12]) if soft else 0.0,
                     torque=torque,
                     bent={axis: _standing(one, force[axis]) for axis, one in curves.items() if one is not None},
+                    directions=None if way is None else way.reshape(3, 3),
                 )
             )
         elif kinds[index] == tendon and law.size:

@@ -156,8 +156,9 @@ class AxleStatics:
         """Displacement r [m] and turn [rad] of the moving part against the carrier in its axes, and Jacobians."""
         data, bodies = self.data, self.model.site_bodyid
         one, other = tie.moving, tie.carrier
-        # Forces in the axes of the law, turns in those of the car.
-        own, frame = data.xmat[bodies[other]].reshape(3, 3), data.site_xmat[other].reshape(3, 3)
+        # Forces along the directions of the law, turns about the axes of the car.
+        frame = data.site_xmat[other].reshape(3, 3)
+        own = frame if tie.directions is None else frame @ tie.directions.T
         # Seen from the carrier: its own point is the one that lies under the moving part.
         moved, turned = self.jacobian(int(bodies[one]), data.site_xpos[one])
         carried, rotated = self.jacobian(int(bodies[other]), data.site_xpos[one])

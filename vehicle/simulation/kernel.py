@@ -107,6 +107,33 @@ def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
 
 
 @jitable
+def oblique_rows(d: Fields, efc: Efc, e: Layout) -> None:
+    """Rows along directions of their own, P R' (J, r, r'), instead of the axes of the world."""
+    b = e.bushings
+    for k in range(b.oblique.shape[0]):
+        n = b.oblique[k]
+        frame, way, row = d.xmat[b.carriers[n]], b.directions[k], b.rows[n, 0]
+        for column in range(efc.J.shape[1] + 2):
+            if column < efc.J.shape[1]:
+                x, y, z = efc.J[row, column], efc.J[row + 1, column], efc.J[row + 2, column]
+            elif column == efc.J.shape[1]:
+                x, y, z = efc.pos[row], efc.pos[row + 1], efc.pos[row + 2]
+            else:
+                x, y, z = efc.vel[row], efc.vel[row + 1], efc.vel[row + 2]
+            u = frame[0] * x + frame[3] * y + frame[6] * z
+            v = frame[1] * x + frame[4] * y + frame[7] * z
+            w = frame[2] * x + frame[5] * y + frame[8] * z
+            for i in range(3):
+                along = way[3 * i] * u + way[3 * i + 1] * v + way[3 * i + 2] * w
+                if column < efc.J.shape[1]:
+                    efc.J[row + i, column] = along
+                elif column == efc.J.shape[1]:
+                    efc.pos[row + i] = along
+                else:
+                    efc.vel[row + i] = along
+
+
+@jitable
 def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
     """Residual and rate of every element in its own axes, with the velocity of the plates taken off."""
     b = e.bushings
@@ -123,6 +150,10 @@ def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
         for i in range(3):
             s.residual[n, i] = frame[i] * x + frame[3 + i] * y + frame[6 + i] * z
             s.rate[n, i] = frame[i] * u + frame[3 + i] * v + frame[6 + i] * w
+    for k in range(b.oblique.shape[0]):
+        n = b.oblique[k]
+        for i in range(3):
+            s.residual[n, i], s.rate[n, i] = efc.pos[b.rows[n, i]], efc.vel[b.rows[n, i]]
 
 
 @jitable
@@ -175,6 +206,10 @@ def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
             s.explicit[row] = frame[3 * i] * x + frame[3 * i + 1] * y + frame[3 * i + 2] * z
             efc.D[row] = c.impedance[n, i]
             efc.aref[row] = 0.0
+    for k in range(b.oblique.shape[0]):
+        n = b.oblique[k]
+        for i in range(3):
+            s.explicit[b.rows[n, i]] = s.force[n, i]
     lift_off(efc, e, c, s)
 
 
@@ -278,6 +313,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     """Rewrite the rows of one state."""
     if e.modes.size > 0:
         modal_rows(d, efc, e, s)
+    oblique_rows(d, efc, e)
     local_axes(d, efc, e, s)
     control(time, d, e, s)
     advance_branches(time, c, s)

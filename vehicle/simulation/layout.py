@@ -77,6 +77,8 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     balls = [name for name in ends if name not in springs]
     carriers = _whole([model.site_bodyid[ends[name][1]] for name in names])
     laws = np.array([numeric(model, f"law/{name}") for name in names]).reshape(-1, 14)
+    ways = {index: numeric(model, f"directions/{name}") for index, name in enumerate(names)}
+    oblique = {index: way for index, way in ways.items() if way is not None}
     turning = [name for name, law in zip(names, laws, strict=True) if law[12] > 0.0]
     plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
     return Layout(
@@ -89,6 +91,8 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=laws[:, 6:9] > 0.0),
             averaged=_whole(laws[:, 13] > 0.0),
             one_sided=_whole([i for i, name in enumerate(names) if numeric(model, f"one_sided/{name}") is not None]),
+            oblique=_whole(list(oblique)),
+            directions=np.array(list(oblique.values())).reshape(-1, 9),
         ),
         rotations=Rotations(
             sites=_whole([ends[name] for name in turning], 2),

@@ -32,6 +32,7 @@ class LoadPlaces:
     Attributes:
         names: of the channels.
         connections: name, rows in world axes, and id of the carrier of each connection.
+        oblique: first row of those whose rows follow directions of their own, and P of these.
         springs: name and row of each main spring.
         joints: channel, stiffness, damping [N/m or N m/rad, and s of these] and unstrained place of each joint spring.
         coordinates: place and velocity coordinate of each of these joints; (j, 2).
@@ -50,6 +51,8 @@ class LoadPlaces:
             if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT:
                 carrier = int(model.site_bodyid[model.eq_obj2id[index]])
                 self.connections.append((name.rpartition("/")[2], row + np.arange(3), carrier))
+        own_rows = rows.layout.bushings.rows
+        self.oblique = {int(own_rows[index, 0]): way for index, way in rows.directions.items()}
         self.springs = [(spring.name, first[spring.name]) for spring in own.springs]
         self.joints, coordinates = [], []
         for spring in own.joint_springs:
@@ -86,7 +89,10 @@ class LoadPlaces:
         places = dict(zip(self.bodies, np.split(frames, len(self.bodies), axis=1), strict=True))
         found: dict[str, Vector] = {}
         for name, own, carrier in self.connections:
-            force = np.einsum("nji,nj->ni", places[carrier][:, 3:].reshape(-1, 3, 3), total[:, own])
+            if int(own[0]) in self.oblique:
+                force = total[:, own] @ self.oblique[int(own[0])]
+            else:
+                force = np.einsum("nji,nj->ni", places[carrier][:, 3:].reshape(-1, 3, 3), total[:, own])
             found |= {f"{name}_force_{axis}": force[:, column] for column, axis in enumerate(AXES)}
         found |= {f"{name}_force": total[:, row] for name, row in self.springs}
         for number, (name, stiffness, damping, unstrained) in enumerate(self.joints):

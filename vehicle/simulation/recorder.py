@@ -55,10 +55,6 @@ class Recorder:
         self.step = model.opt.timestep
         self.samples, self.every, self.pose_every = samples, every, pose_every
         e, modes = rows.layout, rows.layout.modes
-        design = mujoco.MjData(model)
-        mujoco.mj_kinematics(model, design)
-        frames = design.xmat[e.bushings.carriers].reshape(-1, 3, 3)
-        self.turned = None if np.allclose(frames, np.eye(3), atol=1e-9) else frames
         self.shapes = {}
         self.places = [output.name for output in car.vehicle.composition.outputs]
         self.wheels, self.dampers = car.vehicle.wheels, [damper.name for damper in car.vehicle.composition.dampers]
@@ -216,9 +212,8 @@ class Recorder:
         return past + self.rows.weights.slope * self._row_acceleration(solved)
 
     def _local(self, forces: Vector) -> Vector:
-        """Forces of the element rows; the car turns too little for their axes to differ from those at rest here."""
-        own = forces[:, self.rows.layout.bushings.rows]
-        return own if self.turned is None else np.einsum("nji,tnj->tni", self.turned, own)
+        """Forces of the element rows; the car turns too little for world and element axes to differ here."""
+        return np.asarray(forces[:, self.rows.layout.bushings.rows])
 
     def flush(self, motion: PlateArrays, index: int, every: int) -> None:
         """Turn the buffered samples into channels and add up the energies."""

@@ -29,6 +29,8 @@ class Bushings(NamedTuple):
         branch_stiffness, branch_time: Maxwell branch K2 [N/m] and tau [s]; (n, 3).
         averaged: 1 where the stiffness is averaged over three steps; (n,).
         one_sided: positions of the k elements that do not pull along z; (k,).
+        oblique: elements whose rows follow directions of their own; (k,).
+        directions: these directions in the axes of the carrier, a row each, P row by row; (k, 9).
     """
 
     rows: Indices
@@ -39,6 +41,8 @@ class Bushings(NamedTuple):
     branch_time: Table
     averaged: Index
     one_sided: Index
+    oblique: Index
+    directions: Table
 
 
 class Rotations(NamedTuple):

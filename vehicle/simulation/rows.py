@@ -81,6 +81,12 @@ class Rows:
         self.weights = weights(model, self.layout, force)
         self.state = _at_rest(self.layout)
 
+    @property
+    def directions(self) -> dict[int, Vector]:
+        """P of the elements whose rows follow directions of their own, by number; (3, 3)."""
+        b = self.layout.bushings
+        return {int(index): way.reshape(3, 3) for index, way in zip(b.oblique, b.directions, strict=True)}
+
     def anew(self, preload: Vector | None = None) -> Rows:
         """The same rows at rest with a state of their own, under these static forces; under the same by default."""
         other = copy.copy(self)
@@ -116,14 +122,6 @@ class Rows:
         """No control acts on a damper; installed as `mjcb_act_gain`."""
         return 0.0
 
-    def in_axes(self, values: Vector) -> Vector:
-        """Rows of the elements, in world axes in the design position, in the axes of their laws.
-
-        Args:
-            values: one for each row, or an array of them; (rows, ...).
-        """
-        return in_axes(self.model, self.layout, values)
-
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""
         frames = data.site_xmat[self.layout.rotations.sites].reshape(-1, 2, 3, 3)
@@ -136,18 +134,6 @@ class Rows:
         element, dof, sign = self.layout.rotations.turning.T
         found[element, :, dof] = sign[:, None] * data.cdof[dof, :3]
         return found
-
-
-def in_axes(model: mujoco.MjModel, layout: Layout, values: Vector) -> Vector:
-    """As `Rows.in_axes`."""
-    found, b = values.copy(), layout.bushings
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    for own, frame in zip(b.rows, data.xmat[b.carriers].reshape(-1, 3, 3), strict=True):
-        # Carriers of laws without axes of their own are parallel to the car.
-        if np.max(np.abs(frame - np.eye(3)), initial=0.0) > 1e-9:
-            found[own] = frame.T @ values[own]
-    return found
 
 
 def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
@@ -208,7 +194,10 @@ def _row_masses(model: mujoco.MjModel, layout: Layout) -> Vector:
     mujoco.mj_fwdPosition(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
-    rows = in_axes(model, layout, data.efc_J.reshape(-1, model.nv))[layout.bushings.rows.ravel()]
+    rows = data.efc_J.reshape(-1, model.nv)[layout.bushings.rows.ravel()]
+    for index, way in zip(layout.bushings.oblique, layout.bushings.directions, strict=True):
+        own = slice(3 * index, 3 * index + 3)
+        rows[own] = way.reshape(3, 3) @ rows[own]
     inverse = np.einsum("ij,ji->i", rows, np.linalg.solve(mass, rows.T))
     # A row that nothing can move moves an infinite mass.
     moved = np.divide(1.0, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0.0)

@@ -67,20 +67,17 @@ def trim(rows: Rows) -> StaticTrim:
     with installed(rows):
         mujoco.mj_forward(model, data)
     e, twist = rows.layout, rows.layout.rotations.stiffness
-    jacobian = rows.in_axes(data.efc_J.reshape(e.row_count, model.nv))
+    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
     gravity = _unsolved(rows, data)
-    row_stiffness = np.zeros(e.row_count)
-    row_stiffness[e.bushings.rows] = e.bushings.stiffness
-    row_stiffness[e.bushings.rows[ground_contacts(rows), :2]] *= SLIDING_SHARE
-    row_stiffness[e.springs.rows] = e.springs.stiffness
+    row_stiffness = _row_stiffness(rows)
     turned = rows.rotation_jacobian(data)
-    stiffness = jacobian.T @ (row_stiffness[:, None] * jacobian)
+    stiffness = jacobian.T @ (row_stiffness @ jacobian)
     stiffness += np.einsum("n,nij,nik->jk", twist, turned, turned)
     joint_stiffness = joint_springs(model)
     stiffness[np.diag_indices(model.nv)] += joint_stiffness
     hard = jacobian[e.joints.ravel()]
     displacement, reaction = _settle(stiffness, hard, gravity)
-    preload = -row_stiffness * (jacobian @ displacement)
+    preload = -row_stiffness @ (jacobian @ displacement)
     preload[e.joints.ravel()] = -reaction
     torque = -twist[:, None] * (turned @ displacement)
     preload = np.concatenate([preload, torque.ravel()])
@@ -90,6 +87,24 @@ def trim(rows: Rows) -> StaticTrim:
             position = model.jnt_qposadr[joint]
             model.qpos_spring[position] = model.qpos0[position] - displacement[dof]
     return _loads(rows.anew(preload), stiffness, hard)
+
+
+def _row_stiffness(rows: Rows) -> Vector:
+    """Stiffness of all rows [N/m], diagonal but for contacts with the ground along directions of their own."""
+    e, b = rows.layout, rows.layout.bushings
+    ground = ground_contacts(rows)
+    found = np.zeros(e.row_count)
+    found[b.rows] = b.stiffness
+    found[b.rows[ground, :2]] *= SLIDING_SHARE
+    found[e.springs.rows] = e.springs.stiffness
+    whole = np.diag(found)
+    slide = np.diag(np.sqrt([SLIDING_SHARE, SLIDING_SHARE, 1.0]))
+    for index, way in rows.directions.items():
+        if index in ground:
+            own, back = b.rows[index], np.linalg.inv(way)
+            level = slide @ (way.T * b.stiffness[index]) @ way @ slide
+            whole[np.ix_(own, own)] = back.T @ level @ back
+    return whole
 
 
 def _unsolved(rows: Rows, data: mujoco.MjData) -> Vector:
@@ -128,7 +143,10 @@ def _loads(rows: Rows, stiffness: Vector, hard: Vector) -> StaticTrim:
         mujoco.mj_forward(rows.model, data)
     preload = rows.weights.preload
     remaining, _ = _settle(stiffness, hard, _unsolved(rows, data))
-    vertical, tyres = preload[rows.layout.bushings.rows][:, 2], rows.layout.tyres
+    force, tyres = preload[rows.layout.bushings.rows], rows.layout.tyres
+    for index, way in rows.directions.items():
+        force[index] = way.T @ force[index]
+    vertical = force[:, 2]
     others = [index for index in ground_contacts(rows) if index not in tyres]
     return StaticTrim(
         preload=preload,

@@ -1,0 +1,73 @@
+"""A car-size frame of solid elements with point masses, as an input deck of CalculiX."""
+
+from __future__ import annotations
+
+import itertools
+import subprocess
+
+CELL = 0.3
+NX, NY, NZ = 13, 5, 5
+DENSITY, POINT_MASS = 100.0, 16.4
+CORNERS = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
+MIDDLES = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0), (1, 0, 2), (2, 1, 2), (1, 2, 2), (0, 1, 2)]
+MIDDLES += [(0, 0, 1), (2, 0, 1), (2, 2, 1), (0, 2, 1)]
+
+
+def bar(one, other):
+    """Cells of a straight bar."""
+    return itertools.product(*(range(min(a, b), max(a, b) + 1) for a, b in zip(one, other, strict=True)))
+
+
+def cells():
+    found = set()
+    for j in (0, NY - 1):
+        found |= {*bar((0, j, 0), (NX - 1, j, 0)), *bar((3, j, NZ - 1), (NX - 1, j, NZ - 1))}
+        found |= {cell for i in (0, 1, 3, 8, NX - 1) for cell in bar((i, j, 0), (i, j, 2 if i < 3 else NZ - 1))}
+        found |= {*bar((0, j, 2), (3, j, 2))}
+    found |= {cell for i in (0, 1, 2, 3, 5, 6, 8, 10, NX - 1) for cell in bar((i, 0, 0), (i, NY - 1, 0))}
+    found |= {cell for i in (3, 8, NX - 1) for cell in bar((i, 0, NZ - 1), (i, NY - 1, NZ - 1))}
+    found |= {cell for i in (0, 1, 3) for cell in bar((i, 0, 2), (i, NY - 1, 2))}
+    found |= {cell for i in range(NX) for cell in bar((i, 0, 0), (i, NY - 1, 0))}  # floor
+    found |= {cell for j in (0, NY - 1) for k in range(3) for cell in bar((0, j, k), (2, j, k))}  # aprons
+    found |= {cell for k in range(3) for cell in bar((3, 0, k), (3, NY - 1, k))}  # bulkhead
+    return sorted(found)
+
+
+def mesh():
+    """Places of the nodes in half cells, by number from 1; elements of twenty nodes."""
+    nodes: dict[tuple[int, ...], int] = {}
+    elements = []
+    for cell in cells():
+        places = [tuple(2 * c + d for c, d in zip(cell, corner, strict=True)) for corner in CORNERS + MIDDLES]
+        elements.append([nodes.setdefault(place, len(nodes) + 1) for place in places])
+    return nodes, elements
+
+
+def mass():
+    nodes, elements = mesh()
+    return len(elements) * CELL**3 * DENSITY + len(range(0, len(nodes), 41)) * POINT_MASS
+
+
+def write_deck(path, modulus=1.7e8, matrices=True):
+    """The deck, in m, kg and N; `matrices`: K and M are stored, else 30 modes are computed."""
+    nodes, elements = mesh()
+    lines = ["*NODE,NSET=NALL"]
+    for (i, j, k), number in nodes.items():
+        x, y, z = 0.35 + i * CELL / 2, (j - NY) * CELL / 2, 0.42 + k * CELL / 2
+        lines.append(f"{number},{x:.6f},{y:.6f},{z:.6f}")
+    lines.append("*ELEMENT,TYPE=C3D20,ELSET=EALL")
+    for number, own in enumerate(elements, 1):
+        lines += [f"{number},{','.join(map(str, own[:10]))},", ",".join(map(str, own[10:]))]
+    lines.append("*ELEMENT,TYPE=MASS,ELSET=POINTS")
+    heavy = list(nodes.values())[::41]
+    lines += [f"{len(elements) + i},{node}" for i, node in enumerate(heavy, 1)]
+    lines += ["*MASS,ELSET=POINTS", f"{POINT_MASS}", "*MATERIAL,NAME=FOAM", "*ELASTIC", f"{modulus:g},0.3"]
+    lines += ["*DENSITY", f"{DENSITY}", "*SOLID SECTION,ELSET=EALL,MATERIAL=FOAM", "*STEP"]
+    lines += [f"*FREQUENCY{',SOLVER=MATRIXSTORAGE' if matrices else ''}", "40", "*NODE FILE", "U", "*END STEP"]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def run(folder, name):
+    """Run CalculiX on a deck; what it printed where it failed."""
+    done = subprocess.run(["ccx", name], cwd=folder, capture_output=True, text=True, timeout=300)
+    assert "Job finished" in done.stdout, done.stdout[-2000:]

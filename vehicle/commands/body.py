@@ -1,0 +1,280 @@
+"""`python -m vehicle body import | build | show | compare`: body models for a car."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.command_line import Parser, command
+from vehicle.commands.options import command_parser, message_options, vehicle_options
+from vehicle.errors import ConfigurationError, DataError
+
+if TYPE_CHECKING:
+    from vehicle.flexbody.superelement import Superelement
+    from vehicle.parameters.vehicle import Vehicle
+
+LENGTHS = {"m": 1.0, "mm": 1e-3, "in": 0.0254}
+MASSES = {"kg": 1.0, "t": 1000.0, "g": 1e-3, "lbf s2/in": 175.126835}
+"""Units of mass that go with them: in mm, s and N a mass is in tonnes, in inches, s and lbf in lbf s2/in."""
+
+REFUSED = {
+    ".op2": "Nastran OP2: no reader of it works with today's numpy; export modes as a universal file (datasets 15, 55) "
+    "through the pre-processor, or punch K and M (DMIG) and convert them to Matrix Market",
+    ".rst": "ANSYS results: export K and M with HBMAT or *EXPORT,MMF (Matrix Market), or modes as a universal file",
+    ".full": "ANSYS full file: export K and M as Matrix Market with *SMAT and *EXPORT,MMF",
+    ".odb": "Abaqus database: write K and M with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT",
+    ".mnf": "Adams modal neutral file: export modes as a universal file from the program that made it",
+}
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser(
+        "body", "Body models: import one from finite elements or a modal test, build, show, compare."
+    )
+    tasks = found.add_subparsers(dest="task", required=True, metavar="import|build|show|compare")
+    taken = tasks.add_parser("import", help="make a body model of matrices, computed modes or a modal test")
+    taken.add_argument(
+        "file",
+        type=Path,
+        metavar="FILE",
+        help="JOB.sti of CalculiX (with .mas, .dof, .inp); stiffness as Matrix Market, FILE.mat:K or text, with --mass,"
+        " --dofs, --nodes; modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
+    )
+    taken.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
+    taken.add_argument("--dofs", type=Path, metavar="FILE", help="table node,direction (1 to 6) of the rows of K and M")
+    taken.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z, or an input deck with *NODE")
+    taken.add_argument("--length-unit", choices=LENGTHS, default="m", help="unit of length of matrices and .frd; m")
+    taken.add_argument("--mass-unit", choices=MASSES, default="kg", help="unit of mass of the matrices; kg, with mm: t")
+    taken.add_argument(
+        "--axes",
+        default="x,y,z",
+        metavar="X,Y,Z",
+        help="the source's names of the vehicle's x (to the rear), y (to the driver's right), z (up): -x,-y,z of a "
+        "source with x forward and y to the left; x,y,z by default",
+    )
+    taken.add_argument(
+        "--origin", default="0,0,0", metavar="X,Y,Z", help="source's origin in the vehicle frame [m]; 0,0,0 by default"
+    )
+    taken.add_argument(
+        "--up-to", type=float, default=100.0, metavar="HZ", help="highest mode kept [Hz]; 100 by default"
+    )
+    taken.add_argument(
+        "--damping", type=float, default=0.02, metavar="RATIO", help="modal damping ratio; 0.02 by default"
+    )
+    taken.add_argument("--tolerance", type=float, default=1.0, metavar="MM", help="farthest node of a point [mm]; 1")
+    taken.add_argument(
+        "--spread",
+        type=float,
+        default=0.0,
+        metavar="MM",
+        help="nodes within this radius carry a point together [mm]; 0",
+    )
+    taken.add_argument("--map", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car")
+    taken.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
+    taken.add_argument("--name", help="name of the body; that of the file by default")
+    built = tasks.add_parser("build", help="compute the frame of a body design on the points of a car")
+    built.add_argument("--design", type=Path, metavar="FILE.toml", help="body design; that of the vehicle by default")
+    shown = tasks.add_parser("show", help="frequencies, participation of attachments, mass properties, residuals")
+    shown.add_argument("file", type=Path, nargs="?", metavar="FILE", help="body model; that of the vehicle by default")
+    compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
+    compared.add_argument("file", type=Path, metavar="FILE")
+    compared.add_argument("other", type=Path, metavar="OTHER")
+    for task in (taken, built):
+        task.add_argument(
+            "--output", type=Path, required=True, metavar="FILE", help="body model to write, .toml or .npz"
+        )
+        task.add_argument("--force", action="store_true", help="replace the file")
+    for task in (taken, built, shown, compared):
+        vehicle_options(task)
+        message_options(task)
+    return found
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.parameters.vehicle import load_vehicle
+
+    vehicle = load_vehicle(options.vehicle, options.overrides)
+    {"import": _import, "build": _build, "show": _show, "compare": _compare}[options.task](options, vehicle)
+
+
+def _import(options: argparse.Namespace, vehicle: Vehicle) -> None:
+    from vehicle.flexbody.sources.interfaces import interfaces
+    from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
+
+    _check_output(options)
+    places = vehicle.composition.attachments()
+    near = {"tolerance": 1e-3 * options.tolerance, "spread": 1e-3 * options.spread, "named": _map(options.map)}
+    origin = _origin(options.origin)
+    matrices = _matrices(options)
+    if matrices is not None:
+        body = matrices.scaled(LENGTHS[options.length_unit], MASSES[options.mass_unit]).placed(options.axes, origin)
+        found = interfaces(body, places, **near)
+        modes = modes_of_matrices(body, options.up_to, found)
+    else:
+        from vehicle.flexbody.sources.mode_shapes import normalised
+
+        given = _given_modes(options).placed(options.axes, origin)
+        found = interfaces(given.body, places, **near)
+        modes = normalised(given, _vehicle_mass(vehicle), options.modal_mass, options.up_to)
+    model = superelement_of(modes, found, name=options.name or options.file.stem, damping=options.damping)
+    _write(options, model)
+    print("\n".join(report(model, vehicle)))
+    print("points of the car")
+    for place in found:
+        which = f"{place.nodes} nodes, the nearest" if place.nodes > 1 else "a node"
+        print(f"  {place.name:<28} {which} {1e3 * place.distance:.2f} mm away")
+
+
+def _matrices(options: argparse.Namespace) -> Any:
+    """K and M in the units of the source; None where the file holds modes."""
+    file: Path = options.file
+    if file.suffix in REFUSED:
+        raise DataError(f"{file}: {REFUSED[file.suffix]}.")
+    if file.suffix == ".sti":
+        from vehicle.flexbody.sources.calculix import read_calculix
+
+        return read_calculix(file)
+    if options.mass is None:
+        return None
+    if options.nodes is None:
+        raise ConfigurationError("--mass: a stiffness and a mass matrix need --nodes too, where their nodes are")
+    from vehicle.flexbody.sources.matrix_files import read_matrices
+
+    return read_matrices(file, options.mass, options.dofs, options.nodes)
+
+
+def _given_modes(options: argparse.Namespace) -> Any:
+    from vehicle.flexbody.sources.frd import read_frd
+    from vehicle.flexbody.sources.mode_shapes import modes_of_measurement
+    from vehicle.records.reader import read_record
+
+    if options.file.suffix == ".frd":
+        return read_frd(options.file, LENGTHS[options.length_unit])
+    if options.file.suffix in (".mtx", ".mat"):
+        raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs beside it")
+    return modes_of_measurement(read_record(options.file))
+
+
+def _vehicle_mass(vehicle: Vehicle) -> Any:
+    """Mass properties of the trimmed body in the vehicle file."""
+    from vehicle.flexbody.mass_properties import MassProperties
+    from vehicle.flexbody.rigid_body import rigid_body
+
+    own = rigid_body(vehicle.body)
+    return MassProperties(mass=own.mass, cog=own.cog, inertia=own.inertia)
+
+
+def _map(path: Path | None) -> dict[str, str]:
+    if path is None:
+        return {}
+    try:
+        lines = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"{path}: cannot be read ({error}).") from error
+    bad = [",".join(words) for words in lines if len(words) != 2]
+    if bad:
+        raise DataError(f"{path}: {bad[0]!r} is no line point,node.")
+    return {point.strip(): node.strip() for point, node in lines if point.strip() != "point"}
+
+
+def _origin(text: str) -> tuple[float, float, float]:
+    try:
+        x, y, z = (float(word) for word in text.split(","))
+    except ValueError:
+        raise ConfigurationError(f"--origin {text}: needed are three numbers in metres, as 1.2,0,0.35") from None
+    return x, y, z
+
+
+def _build(options: argparse.Namespace, vehicle: Vehicle) -> None:
+    from vehicle.flexbody.body_design import read_design
+    from vehicle.flexbody.body_frame import design_superelement
+    from vehicle.flexbody.library import body_file
+
+    _check_output(options)
+    file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)
+    design = read_design(file)
+    model = design_superelement(design, vehicle.points, vehicle.composition.attachments(), vehicle.body)
+    _write(options, model)
+    print("\n".join(report(model, vehicle)))
+
+
+def _show(options: argparse.Namespace, vehicle: Vehicle) -> None:
+    print("\n".join(report(_model(options.file, options, vehicle), vehicle)))
+
+
+def _model(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:
+    from vehicle.flexbody.library import body_model
+    from vehicle.flexbody.superelement_file import read_superelement
+
+    if file is None:
+        return body_model(vehicle, options.vehicle.parent if options.vehicle else None)
+    return read_superelement(file)
+
+
+def _compare(options: argparse.Namespace, vehicle: Vehicle) -> None:
+    import numpy as np
+
+    from vehicle.flexbody.superelement import attached_nodes
+    from vehicle.flexbody.superelement_checks import assurance
+
+    models = [_model(file, options, vehicle) for file in (options.file, options.other)]
+    places = vehicle.composition.attachments()
+    shapes = []
+    for model in models:
+        nodes = attached_nodes(model, places)
+        shapes.append(np.array([model.shape_at(nodes[place]).T for place in places.values()]).transpose(1, 0, 2))
+    mac = assurance(*shapes)
+    print(
+        f"{'mode':>4} {'Hz':>8}   {'mode':>4} {'Hz':>8} {'change':>8} {'MAC':>6}   at {len(places)} points of the car"
+    )
+    for i, row in enumerate(mac):
+        j = int(row.argmax())
+        one, other = models[0].frequencies[i], models[1].frequencies[j]
+        change = 100.0 * (other / one - 1.0)
+        print(f"{i + 1:>4} {one:>8.3f}   {j + 1:>4} {other:>8.3f} {change:>+7.2f}% {row[j]:>6.3f}")
+
+
+def report(model: Superelement, vehicle: Vehicle) -> list[str]:
+    """What a model is: mass properties against the vehicle, modes, where they are loud, residuals."""
+    import numpy as np
+
+    own, lines = vehicle.body, [f"{model.name}: {len(model.nodes)} nodes, {len(model.frequencies)} modes"]
+    lines.append(f"  {model.provenance}")
+    lines.append(f"{'':<12} {'model':>10} {'vehicle':>10}")
+    lines.append(f"{'mass [kg]':<12} {model.mass:>10.2f} {own.mass:>10.2f}")
+    for axis, mine, theirs in zip("xyz", model.cog, own.cog, strict=True):
+        lines.append(f"{f'CoG {axis} [m]':<12} {mine:>10.4f} {theirs:>10.4f}")
+    if not model.frequencies.size:
+        return [*lines, "rigid"]
+    places = [name for name in vehicle.composition.attachments() if name in model.nodes]
+    lines.append(f"{'mode':>4} {'Hz':>8} {'damping':>8}  loudest places [kg^-1/2], name")
+    for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True)):
+        level = {name: float(np.linalg.norm(model.shapes[i, model.node_index(name)])) for name in places}
+        loud = sorted(level, key=lambda name: -level[name])[:3]
+        text = ", ".join(f"{name} {level[name]:.4f}" for name in loud)
+        lines.append(f"{i + 1:>4} {frequency:>8.3f} {100 * ratio:>6.2f} %  {text}; {model.mode_names[i]}")
+    if model.residual:
+        lines.append("residual flexibility [m/N], principal values")
+        for name, flexibility in model.residual.items():
+            values = ", ".join(f"{value:.3g}" for value in np.linalg.eigvalsh(flexibility))
+            lines.append(f"  {name:<28} {values}")
+    return lines
+
+
+def _check_output(options: argparse.Namespace) -> None:
+    if options.output.suffix not in (".toml", ".npz"):
+        raise ConfigurationError(f"--output {options.output}: a body model is written as .toml or .npz")
+    if options.output.exists() and not options.force:
+        raise ConfigurationError(f"--output {options.output}: exists; give another name, or --force")
+
+
+def _write(options: argparse.Namespace, model: Superelement) -> None:
+    from vehicle.flexbody.superelement_file import write_superelement
+
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    write_superelement(options.output, model)
+
+
+main = command(parser, _job)

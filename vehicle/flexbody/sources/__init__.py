@@ -1,0 +1,1 @@
+"""Where body models come from: finite-element matrices, computed modes, modal tests."""

@@ -1,0 +1,149 @@
+"""Where the car is fixed to a finite-element body: a node of it, or the nodes around the place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy
+
+from vehicle.errors import DataError
+from vehicle.flexbody.beam import FloatArray
+from vehicle.flexbody.carried_nodes import rigid_fit
+from vehicle.flexbody.sources.matrices import BodyNodes
+from vehicle.parameters.hardpoints import Point
+
+_FLAT = 1e-3
+"""Width of the nodes around a place over their length, below which they lie on one line and hold no rotation."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Interface:
+    """A place of the car on the body.
+
+    Attributes:
+        name: of the point.
+        place: of the point [m], shape (3,).
+        moved: N of its displacement u = N' x by the degrees of freedom x; sparse, shape (dofs, 3).
+        turned: the same of its rotation; None where the model does not know it.
+        distance: of the nearest node that was used [m].
+        nodes: how many nodes move it.
+    """
+
+    name: str
+    place: FloatArray
+    moved: Any
+    turned: Any
+    distance: float
+    nodes: int
+
+
+def interfaces(
+    body: BodyNodes,
+    places: Mapping[str, Point],
+    *,
+    tolerance: float,
+    spread: float = 0.0,
+    named: Mapping[str, str] | None = None,
+) -> list[Interface]:
+    """The interfaces of a body at the points of a car.
+
+    Args:
+        body: the body, in the vehicle frame.
+        places: points of the car where something acts on the body or is measured, by name [m].
+        tolerance: largest distance of the nearest node from its point [m].
+        spread: radius of the nodes that carry a point together, as the interpolation element RBE3: they move it with
+            the rigid motion that fits them best [m]; 0: the nearest node alone.
+        named: node for a point, chosen by the user, at any distance.
+
+    Raises:
+        DataError: nodes farther away than allowed, all of them listed with their distances; a node that does not exist;
+            nodes within the radius that lie on a line.
+    """
+    chosen = dict(named or {})
+    for point in chosen:
+        if point not in places:
+            raise DataError(f"map: no point {point!r} of the car; its points are {', '.join(places)}.")
+    found, far = [], []
+    moving = np.unique(body.node[body.direction < 3])  # of a point mass or a reference node there may be rotations only
+    for name, place in places.items():
+        gap = np.linalg.norm(body.positions[moving] - np.array(place), axis=1)
+        if name in chosen:
+            if chosen[name] not in body.nodes:
+                raise DataError(f"map: no node {chosen[name]!r} for {name}; the body has {len(body.nodes)} nodes.")
+            found.append(_of_node(body, name, place, body.nodes.index(chosen[name])))
+            continue
+        near = moving[gap <= spread]
+        if spread > 0.0 and near.size:
+            found.append(_of_nodes(body, name, place, near))
+            continue
+        best = int(moving[gap.argmin()])
+        if gap.min() > max(tolerance, spread):
+            far.append(f"{name}: node {body.nodes[best]}, {1e3 * gap.min():.1f} mm")
+        found.append(_of_node(body, name, place, best))
+    if far:
+        raise DataError(
+            f"{len(far)} points of the car have no node within {1e3 * max(tolerance, spread):g} mm; the nearest are "
+            f"{'; '.join(far)}. Choose nodes with --map, a radius with --spread, or a --tolerance up to 50 mm; check "
+            "frame and unit of the model with --axes, --origin and --length-unit."
+        )
+    return found
+
+
+def _of_node(body: BodyNodes, name: str, place: Point, node: int) -> Interface:
+    """A place that moves with one node."""
+    own = body.node == node
+    at = [np.flatnonzero(own & (body.direction == axis)) for axis in range(6)]
+    size = len(body.node)
+
+    def columns(axes: range) -> Any:
+        rows = [int(at[axis][0]) for axis in axes if at[axis].size]
+        columns = [i for i, axis in enumerate(axes) if at[axis].size]
+        return scipy.sparse.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(size, 3))
+
+    return Interface(
+        name=name,
+        place=np.array(place),
+        moved=columns(range(3)),
+        turned=columns(range(3, 6)) if all(at[axis].size for axis in range(3, 6)) else None,
+        distance=float(np.linalg.norm(body.positions[node] - np.array(place))),
+        nodes=1,
+    )
+
+
+def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface:
+    """A place that moves as the nodes around it."""
+    positions = body.positions[nodes]
+    widths = np.linalg.svd(positions - positions.mean(axis=0), compute_uv=False) if len(nodes) > 2 else np.zeros(3)
+    if widths[1] <= _FLAT * widths[0] or widths[0] == 0.0:
+        raise DataError(
+            f"{name}: the {len(nodes)} nodes within the radius lie on one line and hold no rotation; give a larger "
+            "--spread, or a node with --map."
+        )
+    fit = rigid_fit(positions, np.ones(len(nodes)), np.array(place))  # (6, k, 3)
+    row = {
+        (int(node), int(direction)): i
+        for i, (node, direction) in enumerate(zip(body.node, body.direction, strict=True))
+        if direction < 3
+    }
+    dofs = np.array([[row.get((int(node), axis), -1) for axis in range(3)] for node in nodes])
+    if np.any(dofs < 0):
+        raise DataError(f"{name}: a node within the radius lacks a displacement; choose a node with --map.")
+
+    def columns(part: FloatArray) -> Any:
+        values = part.reshape(3, -1)
+        rows = np.broadcast_to(dofs.ravel(), values.shape)
+        axes = np.repeat(np.arange(3), values.shape[1])
+        return scipy.sparse.csc_matrix((values.ravel(), (rows.ravel(), axes)), shape=(len(body.node), 3))
+
+    gap = np.linalg.norm(positions - np.array(place), axis=1)
+    return Interface(
+        name=name,
+        place=np.array(place),
+        moved=columns(fit[:3]),
+        turned=columns(fit[3:]),
+        distance=float(gap.min()),
+        nodes=len(nodes),
+    )

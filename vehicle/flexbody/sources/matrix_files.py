@@ -1,0 +1,102 @@
+"""K and M as files of their own: Matrix Market, MATLAB, Abaqus, with tables of degrees of freedom and of nodes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.flexbody.sources.calculix import assembled
+from vehicle.flexbody.sources.deck import read_deck
+from vehicle.flexbody.sources.matrices import BodyMatrices
+from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole
+
+
+def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -> BodyMatrices:
+    """Matrices of a body, in the units of the source.
+
+    Args:
+        stiffness, mass: `.mtx` of Matrix Market; `.mat` of MATLAB, "FILE.mat:NAME" where it holds several matrices;
+            `.mtx` or text of Abaqus' `*MATRIX OUTPUT`, rows "node, direction, node, direction, value", which need no
+            list of degrees of freedom; text "row column value".
+        dofs: table "node,direction" of each row of the matrices, direction 1 to 6.
+        nodes: table "node,x,y,z", or an input deck.
+
+    Raises:
+        ConfigurationError: no list of degrees of freedom where one is needed.
+        DataError: a file is missing or damaged, or they do not belong together.
+    """
+    deck = read_deck(nodes)
+    by_node = _is_by_node(stiffness)
+    if by_node:
+        table, other = rows_of_numbers(stiffness, 1, columns=5), rows_of_numbers(mass, 1, columns=5)
+        pairs = np.unique(np.vstack([table[:, :2], table[:, 2:4], other[:, :2], other[:, 2:4]]).astype(int), axis=0)
+        index = {(int(node), int(direction)): i for i, (node, direction) in enumerate(pairs)}
+        matrices = [_of_pairs(one, index) for one in (table, other)]
+        identity, direction = pairs[:, 0], pairs[:, 1] - 1
+    else:
+        if dofs is None:
+            raise ConfigurationError(
+                f"{stiffness.name}: needs --dofs, a table node,direction (1 to 3 displacements, 4 to 6 rotations) with "
+                "a line for each row of the matrices"
+            )
+        listed = rows_of_numbers(dofs, 1, columns=2)
+        identity, direction = listed[:, 0].astype(int), listed[:, 1].astype(int) - 1
+        matrices = [_matrix(file, len(identity)) for file in (stiffness, mass)]
+    if direction.min() < 0 or direction.max() > 5:
+        raise DataError(f"directions {direction.min() + 1} to {direction.max() + 1} of the list; allowed are 1 to 6.")
+    return assembled(stiffness, matrices[0], matrices[1], identity, direction, deck, "finite elements")
+
+
+def _is_by_node(path: Path) -> bool:
+    """Rows of five numbers, as Abaqus writes them."""
+    if path.suffix == ".mat" or ":" in path.name:
+        return False
+    try:
+        with path.open(encoding="ascii") as file:
+            for line in file:
+                if line.strip() and not line.startswith(("%", "*", "#")):
+                    return len(line.replace(",", " ").split()) == 5
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"{path}: cannot be read as text ({error}).") from error
+    return False
+
+
+def _of_pairs(table: Any, index: dict[tuple[int, int], int]) -> Any:
+    row = [index[int(node), int(direction)] for node, direction in table[:, :2]]
+    column = [index[int(node), int(direction)] for node, direction in table[:, 2:4]]
+    return whole(scipy.sparse.coo_matrix((table[:, 4], (row, column)), shape=(len(index), len(index))).tocsc())
+
+
+def _matrix(path: Path, size: int) -> Any:
+    """A symmetric sparse matrix of any of the formats."""
+    name, _, variable = path.name.partition(":")
+    file = path.with_name(name)
+    if file.suffix == ".mat":
+        return _of_matlab(file, variable)
+    try:
+        with file.open("rb") as stream:
+            market = stream.read(14) == b"%%MatrixMarket"
+        if not market:
+            return coordinate_matrix(file, size)
+        return whole(scipy.sparse.csc_matrix(scipy.io.mmread(file)))
+    except (OSError, ValueError, OverflowError) as error:
+        raise DataError(f"{file}: no matrix that can be read ({error}).") from error
+
+
+def _of_matlab(file: Path, variable: str) -> Any:
+    try:
+        content = {key: value for key, value in scipy.io.loadmat(file).items() if not key.startswith("__")}
+    except (OSError, ValueError, NotImplementedError, TypeError) as error:
+        raise DataError(f"{file}: no MAT file of version 5 ({error}); save it with -v7.") from error
+    square = {
+        key: value for key, value in content.items() if getattr(value, "ndim", 0) == 2 and len(set(value.shape)) == 1
+    }
+    if variable and variable not in content:
+        raise DataError(f"{file}: no variable {variable!r}; it has {', '.join(content)}.")
+    if not variable and len(square) != 1:
+        raise DataError(f"{file}: {len(square)} square matrices ({', '.join(square)}); choose one as {file.name}:NAME.")
+    return whole(scipy.sparse.csc_matrix(content[variable] if variable else next(iter(square.values()))))
