@@ -30,9 +30,11 @@ ROOMS: dict[str, set[str]] = {
     "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation"},
     "analysis": set(),
     "lumped": {"parameters", "laws", "linear"},
-    "comparison": {"analysis", "car", "linear", "records"},
-    "rendering": {"comparison", "simulation", "analysis", "assembly", "parameters", "shapes"},
-    "car": {"analysis", "excitation", "flexbody", "linear", "parameters", "reduced", "simulation"},
+    "comparison": {"analysis", "car", "linear", "records", "rendering"},
+    "notebook": {"analysis", "rendering", "simulation"},
+    "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes"},
+    "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "reduced", "rendering"}
+    | {"simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
     | {"replication"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},

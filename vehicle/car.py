@@ -14,13 +14,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
 from vehicle.analysis.dependence import what_moves
-from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.input_floor import rounding_step
 from vehicle.analysis.motion_response import MotionResponse, motion_responses
 from vehicle.analysis.slip import first_slip, slip_share
@@ -35,6 +35,9 @@ from vehicle.linear.modes import Mode, car_modes, require_stable
 from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.step_error import require_accurate_step
 from vehicle.names import AXES, ENGINES
+from vehicle.notebook.frames import recording_dataset, recording_frame
+from vehicle.notebook.picture import Picture, card, frame_drawing, line_drawing, picture
+from vehicle.notebook.run_response import RunResponse, named
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.reduced.march import has_compiler
@@ -88,6 +91,24 @@ class Car:
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
         return car
+
+    def __repr__(self) -> str:
+        """One line."""
+        changes = f", {'; '.join(self.overrides)}" if self.overrides else ""
+        return f"Car({self.vehicle.name}, wheels {', '.join(self.vehicle.wheels)}{changes})"
+
+    def _repr_html_(self) -> str:
+        from vehicle.rendering.wireframe import car_wireframe
+
+        own, static = self.vehicle, self.model.static
+        rows = {
+            "changes": "; ".join(self.overrides) or "none",
+            "mass of the trimmed body": f"{own.body.mass:g} kg",
+            "tyre loads": ", ".join(f"{wheel} {load:.0f} N" for wheel, load in static.tyre_load.items()),
+            "channels": f"{len(own.channels)}, and {len(own.load_channels)} loads",
+        }
+        wire = car_wireframe(self.model)
+        return card(f"Car {own.name}", rows, frame_drawing(wire.points, wire.lines, "seen from the right"))
 
     @cached_property
     def trimmed_body(self) -> Superelement:
@@ -218,6 +239,41 @@ class Run:
     recording: Recording
     engine_reason: str = "asked for"
 
+    def __repr__(self) -> str:
+        """One line."""
+        engine = self.recording.statistics.engine
+        source = Path(self.signal.source).name
+        short = source if len(source) < 50 else f"{source[:47]}..."
+        return f"Run({short}, {self.signal.duration:g} s, {engine}, {self.car!r})"
+
+    def _repr_html_(self) -> str:
+        shares = {wheel: self.slip_share(wheel) for wheel in self.car.vehicle.wheels}
+        rows = {
+            "signal": f"{Path(self.signal.source).name}, {self.signal.duration:g} s, "
+            f"RMS {1e3 * self.signal.rms(self.wheel):.3g} mm at wheel {self.wheel}",
+            "car": repr(self.car),
+            "engine": self.recording.statistics.engine,
+            "time in slip": ", ".join(f"{wheel} {100 * share:.1f} %" for wheel, share in shares.items()),
+        }
+        shown = next(name for name in ("seat_rail_acc_z", *self.recording.channels) if name in self.recording.channels)
+        if "seat_rail_acc_x" in self.recording.channels:
+            rows["comfort, seat rail"] = f"{self.comfort().overall:.3g} m/s² RMS, 2 to 50 Hz; lower is better"
+        return card("Run", rows, line_drawing(self.time, self[shown], f"{shown} over {self.signal.duration:g} s"))
+
+    def plot(self) -> Picture:
+        """The main time histories as a figure that a notebook shows."""
+        from vehicle.rendering.plots import plot_time
+
+        return picture(lambda path: plot_time(path, self))
+
+    def to_dataframe(self) -> Any:
+        """All channels as a pandas table over the time [s]; `attrs["units"]` has their units."""
+        return recording_frame(self.recording)
+
+    def to_xarray(self) -> Any:
+        """All channels as an xarray dataset over the time, each with its unit."""
+        return recording_dataset(self.recording)
+
     def __getitem__(self, channel: str) -> npt.NDArray[np.float64]:
         """Time history of a channel; names are those of `interface.md`, units in `recording.units`."""
         return self.recording[channel]
@@ -234,7 +290,7 @@ class Run:
 
     def frf(
         self, channels: Sequence[str] | None = None, *, window: float | None = None, wheel: str | None = None
-    ) -> FrequencyResponse:
+    ) -> RunResponse:
         """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
 
         Where several plates move independently, the FRF is that to the plate of one wheel alone, the coherence that
@@ -261,7 +317,10 @@ class Run:
         chosen = next(number for number, group in enumerate(found) if asked in group.motion)
         note = what_moves([group.motion for group in found], chosen)
         response = found[chosen].response
-        return dataclasses.replace(response, reasons=(*([note] if note else []), *response.reasons))
+        names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
+        plate = " and ".join(f"plate_{one}_displacement" for one in found[chosen].motion)
+        reasons = (*([note] if note else []), *response.reasons)
+        return named(dataclasses.replace(response, reasons=reasons), names, plate)
 
     def frfs(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> tuple[MotionResponse, ...]:
         """FRFs of acceleration channels to each plate that moves by itself, separated; arguments as of `frf`.

@@ -203,8 +203,8 @@ def _simulated(
 def _modes(options: argparse.Namespace, measurement: Measurement, choice: Choice) -> tuple[dict[str, Any], str]:
     """Mode shapes beside those of the car."""
     from vehicle.comparison.mode_comparison import compare_modes
+    from vehicle.comparison.pictures import plot_mac
     from vehicle.output.folder import output_folder, write_json, write_whole
-    from vehicle.rendering.comparison_plot import plot_mac
 
     found = compare_modes(_car(options), measurement, dict(choice.channels), options.damper)
     name = measurement.path.name

@@ -5,6 +5,9 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Sequence
 
+MANY = 30
+"""Rows from which on a table is folded."""
+
 
 class Markup(str):
     """Text that is HTML already."""
@@ -51,25 +54,22 @@ def table(heads: Sequence[object], rows: Iterable[Sequence[object]], *, caption:
     def cells(name: str, row: Sequence[object]) -> Markup:
         return tag("tr", *(tag(name, cell, class_=None if i < words else "number") for i, cell in enumerate(row)))
 
+    body = list(rows)
     return tag(
         "div",
         tag(
             "table",
             *([tag("caption", caption)] if caption else []),
             tag("thead", cells("th", heads)),
-            tag("tbody", *(cells("td", row) for row in rows)),
+            tag("tbody", *(cells("td", row) for row in body)),
         ),
-        class_="table",
+        class_="table whole" if len(body) <= MANY else "table",
     )
 
 
 def folded(title: str, *content: object) -> Markup:
     """What is shown when it is asked for, and in print."""
     return tag("details", tag("summary", title), *content)
-
-
-MANY = 30
-"""Rows from which on a table is folded."""
 
 
 def shortened(title: str, heads: Sequence[object], rows: Sequence[Sequence[object]], *, words: int = 1) -> Markup:

@@ -72,12 +72,12 @@ def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         tag("div", canvas, controls, class_="modes"),
         tag("div", id="mode-gallery", class_="gallery"),
     ]
-    heads = ("frequency [Hz]", "damping ratio [%]", "what moves")
+    heads = ("what moves", "frequency [Hz]", "damping ratio [%]")
     for run, own in zip(runs, modes, strict=True):
         for state, found in own.items():
-            rows = [(f"{one.frequency:.3f}", f"{100 * one.damping_ratio:.2f}", one.description) for one in found]
+            rows = [(one.description, f"{one.frequency:.3f}", f"{100 * one.damping_ratio:.2f}") for one in found]
             title = f"{len(rows)} modes up to {HIGHEST_MODE:g} Hz, dampers {state}" + (
                 f": {run.name}" if len(runs) > 1 else ""
             )
-            parts.append(folded(title, table(heads, rows, words=0)))
+            parts.append(folded(title, table(heads, rows)))
     return joined(parts)

@@ -11,6 +11,7 @@ import numpy as np
 
 from vehicle.linear.modes import Mode
 from vehicle.names import side_of
+from vehicle.parameters.shipped import VEHICLES
 from vehicle.rendering.plots import plot_time
 from vehicle.report.comfort_class import reactions
 from vehicle.report.comparison import changed_parameters, default_of
@@ -84,7 +85,7 @@ def what_was_run(run: FinishedRun) -> Markup:
     ]
     car = [
         ("name", vehicle.name),
-        ("file", run.summary["vehicle"]["file"] or "shipped with the program"),
+        ("file", _origin(run)),
         ("wheels on plates", ", ".join(vehicle.wheels)),
         ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
@@ -99,6 +100,14 @@ def what_was_run(run: FinishedRun) -> Markup:
     else:
         parts.append(tag("p", f"All parameters are those of the shipped car {default.name}."))
     return joined(parts)
+
+
+def _origin(run: FinishedRun) -> str:
+    """File of the car; of a shipped one no path, which is another on every machine."""
+    file = run.summary["vehicle"]["file"]
+    if file is None or Path(file).resolve().parent.parent == VEHICLES.resolve():
+        return "shipped with the program"
+    return str(file)
 
 
 def time_figure(run: FinishedRun) -> Markup:

@@ -1,0 +1,1 @@
+"""How the objects of a car look in a notebook, and their values as tables of other libraries."""

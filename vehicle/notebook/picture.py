@@ -1,0 +1,102 @@
+"""What a notebook shows: pictures, small drawings beside a table."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+
+WIDTH, HEIGHT = 330, 110
+"""Size of a small drawing [pixel]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure; a notebook shows it where it is the last value of a cell."""
+
+    png: bytes
+    """content of the file"""
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+    def __repr__(self) -> str:
+        return f"Picture({len(self.png) / 1024:.0f} kB)"
+
+    def save(self, path: Path | str) -> None:
+        """Write the figure as PNG."""
+        Path(path).write_bytes(self.png)
+
+
+def picture(plot: Callable[[Path], object]) -> Picture:
+    """The figure that a function of `rendering` writes.
+
+    Args:
+        plot: writes PNG at the path it is given.
+    """
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "figure.png"
+        plot(path)
+        return Picture(path.read_bytes())
+
+
+def card(title: str, rows: Mapping[str, str], drawing: str) -> str:
+    """Title and table with a drawing at their right, as HTML."""
+    cells = "".join(f"<tr><td>{html.escape(name)}</td><td>{html.escape(text)}</td></tr>" for name, text in rows.items())
+    return (
+        f'<div style="display:flex;gap:1.5em;align-items:center"><div><b>{html.escape(title)}</b>'
+        f"<table>{cells}</table></div>{drawing}</div>"
+    )
+
+
+def line_drawing(along: Vector, values: Vector, label: str) -> str:
+    """A line over its whole length as SVG, from its least to its largest value in each column.
+
+    Args:
+        along: where the values are, rising, (n,).
+        values: (n,); what is not finite is left out.
+        label: under the line.
+    """
+    kept = np.isfinite(values) & np.isfinite(along)
+    along, values = along[kept], values[kept]
+    if along.size < 2 or np.ptp(along) == 0.0:
+        return ""
+    across = (WIDTH - 4) * (along - along[0]) / np.ptp(along) + 2
+    up = 16 + (HEIGHT - 36) * (values.max() - values) / (np.ptp(values) or 1.0)
+    places = []
+    for column in np.unique(across.astype(int)):
+        inside = up[across.astype(int) == column]
+        places += [(column, inside.max()), (column, inside.min())] if inside.size > 1 else [(column, inside[0])]
+    points = " ".join(f"{x},{y:.1f}" for x, y in places)
+    return _svg(f'<polyline points="{points}" fill="none" stroke="#1f5fa8"/>', label)
+
+
+def frame_drawing(points: Vector, lines: npt.NDArray[np.intp], label: str) -> str:
+    """Lines between points seen from the right, front at the left, as SVG.
+
+    Args:
+        points: x to the rear, y right, z up [m], (n, 3).
+        lines: pairs of points, (m, 2).
+        label: under the lines.
+    """
+    seen = points[:, [0, 2]]
+    low, size = seen.min(axis=0), np.ptp(seen, axis=0)
+    scale = min((WIDTH - 8) / size[0], (HEIGHT - 24) / size[1])
+    places = np.column_stack([4 + scale * (seen[:, 0] - low[0]), HEIGHT - 20 - scale * (seen[:, 1] - low[1])])
+    path = "".join(
+        f"M{places[i, 0]:.1f} {places[i, 1]:.1f}L{places[j, 0]:.1f} {places[j, 1]:.1f}" for i, j in lines.tolist()
+    )
+    return _svg(f'<path d="{path}" fill="none" stroke="#1f5fa8" stroke-width=".8"/>', label)
+
+
+def _svg(content: str, label: str) -> str:
+    style = 'font-size="11" fill="#5a6672" font-family="sans-serif"'
+    words = f'<text x="4" y="{HEIGHT - 4}" {style}>{html.escape(label)}</text>'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}">{content}{words}</svg>'
