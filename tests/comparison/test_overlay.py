@@ -61,7 +61,7 @@ def run(tmp_path_factory, measured):
     """A short run of the car of the vehicle file, with the measurement beside it."""
     folder = tmp_path_factory.mktemp("overlay")
     signal = read_signal(find_input("low.csv"))
-    table = [signal.time[:10001], signal.displacement["fr"][:10001]]
+    table = [signal.time[:6001], signal.displacement["fr"][:6001]]
     write_table(folder / "short.csv", ["time [s]", "displacement [m]"], table, [])
     arguments = [
         "--input",
@@ -99,7 +99,7 @@ def test_the_table_of_a_run_names_the_worst_channel_and_band(run, car):
     worst = max(exact, key=lambda key: exact[key])
     assert (rows[0]["channel"], rows[0]["low_hz"]) == worst
     assert [row["error"] for row in rows] == sorted((row["error"] for row in rows), reverse=True)
-    # Noise of 3 % in both parts and the estimate from 10 s add to what the mounts make.
+    # Noise of 3 % in both parts and the estimate from 6 s add to what the mounts make.
     assert rows[0]["error"] == pytest.approx(exact[worst], rel=0.15)
     for one in content["responses"]:
         assert 0.5 < one["frac"] <= one["scaled_frac"] <= 1.0
@@ -154,7 +154,7 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
         for path, bounds in ((MOUNT, "4e5:9e5:6.5e5"), (ENGINE, "3e5:8e5:5.5e5"))
         for word in ("--fit", f"{path}={bounds}")
     ]
-    arguments = ["--frf", str(measured), "--level", "low", *MAP, *fits, "--spacing", "0.75", "--quick"]
+    arguments = ["--frf", str(measured), "--level", "low", *MAP, *fits, "--spacing", "1", "--quick"]
     assert tuning([*arguments, "--output", str(tmp_path / "fit")]) == 0
     content = json.loads((tmp_path / "fit" / "results.json").read_text())
     for path, value in HIDDEN.items():
