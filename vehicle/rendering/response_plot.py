@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.rendering.figure import COLOURS, frf_axes, saved_figure, wrapped_phase
+from vehicle.rendering.figure import COLOURS, LINES, frf_axes, saved_figure, wrapped_phase
 
 
 def plot_response(
@@ -25,11 +25,12 @@ def plot_response(
     """
     with saved_figure(path, (8.0, 7.2), title, caption) as figure:
         axes = figure.subplots(3, 1, sharex=True, height_ratios=(2.2, 1.0, 0.9), squeeze=False)
-        for row, (name, colour) in enumerate(zip(names, cycle(COLOURS), strict=False)):
+        for row, (name, colour, line) in enumerate(zip(names, cycle(COLOURS), cycle(LINES), strict=False)):
+            style = {"color": colour, "linestyle": line}
             magnitude, phase, coherence = axes[:, 0]
-            magnitude.plot(response.frequency, np.abs(response.response[row]), color=colour, label=name)
-            phase.plot(response.frequency, wrapped_phase(response.response[row]), color=colour)
-            coherence.plot(response.frequency, response.coherence[row], color=colour)
+            magnitude.plot(response.frequency, np.abs(response.response[row]), label=name, **style)
+            phase.plot(response.frequency, wrapped_phase(response.response[row]), **style)
+            coherence.plot(response.frequency, response.coherence[row], **style)
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
         if len(names) <= 12:
             axes[0, 0].legend(loc="upper left")
