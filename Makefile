@@ -18,7 +18,7 @@ shaker: setup
 	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --report --force; \
 	fi
 
-test: setup .stamps/browser check
+test: setup .stamps/for-tests check
 	$(BIN)/python -m pytest -n 2
 
 check: setup
@@ -40,10 +40,10 @@ setup: .stamps/system .stamps/python
 	@bash tools/system-libraries.sh
 	@touch $@
 
-# A browser, for the test of the report alone.
-.stamps/browser: tools/system-libraries.sh
+# What tests alone need: a browser for the report, CalculiX for bodies.
+.stamps/for-tests: tools/system-libraries.sh
 	@mkdir -p .stamps
-	@bash tools/system-libraries.sh browser
+	@bash tools/system-libraries.sh tests
 	@touch $@
 
 .stamps/python: constraints.txt pyproject.toml tools/environment.sh

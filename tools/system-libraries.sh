@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs what pip cannot, on Debian, as root: the off-screen OpenGL library (OSMesa) and the venv module; with the
-# word "browser" Chromium and its driver, which open the report in a test.
+# word "tests" what tests alone need: Chromium and its driver, which open the report, and CalculiX, which makes bodies.
 set -u
 PATH=$PATH:/sbin:/usr/sbin
 wanted=()
-if [ "${1:-}" = browser ]; then
-  without="the test of the report in a browser is skipped"
+if [ "${1:-}" = tests ]; then
+  without="the tests of the report in a browser and of bodies from CalculiX are skipped"
   [ -x /usr/bin/chromium ] || wanted+=(chromium)
   [ -x /usr/bin/chromedriver ] || wanted+=(chromium-driver)
+  command -v ccx >/dev/null || wanted+=(calculix-ccx)
 else
   without="without libosmesa6 there are no films"
   ldconfig -p 2>/dev/null | grep -q 'libOSMesa\.so' || wanted+=(libosmesa6)
