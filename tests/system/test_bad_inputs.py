@@ -165,7 +165,7 @@ def test_item_38_interrupt(tmp_path):
 
 
 def test_item_39_full_disk(shaker, short_signal, tmp_path, monkeypatch):
-    def full(path, *_):
+    def full(path, *_, **__):
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
     monkeypatch.setattr("vehicle.output.run_files.write_frf", full)
