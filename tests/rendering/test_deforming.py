@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from tests.rendering.test_palette import linear, oklab
-from vehicle.rendering.motion import Coil, Motion, Wireframe
+from vehicle.rendering.motion import Coil, RecordedMotion, Wireframe
 from vehicle.rendering.overlay import colours, round_up
 
 
 @pytest.fixture(scope="module")
 def motion(stage, run):
-    return Motion(stage, run.recording, 0.0, 0.3)
+    return RecordedMotion(stage, run.recording, 0.0, 0.3)
 
 
 @pytest.mark.parametrize(
@@ -23,13 +23,15 @@ def test_nodes_are_where_the_recorder_measures(car, stage, run, motion, place):
     data = mujoco.MjData(stage)
     data.qpos[:] = run.recording.poses[7]
     mujoco.mj_kinematics(stage, data)
-    modal = np.array([data.qpos[stage.joint(f"mode_{number}").qposadr[0]] for number in range(1, motion.modes + 1)])
+    modal = np.array(
+        [data.qpos[stage.joint(f"mode_{number}").qposadr[0]] for number in range(1, len(motion.modal) + 1)]
+    )
     shape = stage.numeric(f"shape/place/{place}").data.reshape(3, -1)
     turn = data.xmat[stage.body("body").id].reshape(3, 3)
     measured = data.site(f"place/{place}").xpos + turn @ shape @ modal
     node = place.replace("suspension_mount", "strut_top")
     places = Wireframe(car, motion).places(motion.at(run.recording.pose_time[7]), 1.0)
-    assert motion.modes == 9
+    assert len(motion.modal) == 9
     # Rounding only; the modal part is 1e-4 m here.
     np.testing.assert_allclose(places[car.superelement.node_index(node)], measured, atol=1e-9)
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.rendering.conftest import fabricated
-from vehicle.rendering.motion import Motion
+from vehicle.rendering.motion import RecordedMotion
 from vehicle.rendering.overlay import round_factor
 
 EXACT = 1e-9
@@ -17,7 +17,7 @@ EXACT = 1e-9
 
 @pytest.fixture(scope="module")
 def motion(stage, run):
-    return Motion(stage, run.recording, 0.0, 0.3)
+    return RecordedMotion(stage, run.recording, 0.0, 0.3)
 
 
 def kinematics(stage, recording, index):
@@ -73,7 +73,7 @@ def test_between_poses_the_motion_is_smooth(stage, car, motion):
 
 
 def test_an_open_shutter_averages(stage, car):
-    motion = Motion(stage, fabricated(car, 2.0), 0.0, 2.0)
+    motion = RecordedMotion(stage, fabricated(car, 2.0), 0.0, 2.0)
     body = stage.body("body").id
     instant = motion.at(1.1).translation[body, 2]
     # The mean of sin over T is sin(w T/2)/(w T/2) of its value in the middle, here with w T = pi/2 ...

@@ -13,7 +13,7 @@ from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.car import Car
 from vehicle.names import side_of, wheel_words
 from vehicle.rendering.backend import choose_backend
-from vehicle.rendering.motion import Motion
+from vehicle.rendering.motion import RecordedMotion
 from vehicle.rendering.overlay import Layout
 from vehicle.rendering.recorded_run import hub_channel
 from vehicle.rendering.road_strip import RoadStrip
@@ -84,7 +84,7 @@ def test_the_road_passes_in_the_film(road_run):
 def test_rims_roll_with_the_road(road_car, road_run):
     """The car drives towards -x: seen along y a rim turns by V t / r backwards about its moved centre."""
     model = stage_model(road_car, (320, 180), road=True)
-    motion = Motion(model, road_run.recording, 0.0, 1.0)
+    motion = RecordedMotion(model, road_run.recording, 0.0, 1.0)
     wheel = road_car.vehicle.composition.wheels[2]
     state, data = motion.at(0.4), mujoco.MjData(model)
     data.geom_xpos[:], data.geom_xmat[:] = motion.geoms(state, 1.0)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
+import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import FORCE_HELP, command_parser, message_options, vehicle_options
+from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.options import FORCE_HELP, command_parser, film_name, message_options, vehicle_options
 from vehicle.errors import ConfigurationError
 
 
@@ -25,12 +28,24 @@ def parser() -> Parser:
         help="write the places of the car, lines between them and the complex mode shapes as a universal file "
         "(datasets 15, 82 and 55), for Testlab, ME'scope or `python -m vehicle compare`",
     )
+    found.add_argument(
+        "--animate", type=float, metavar="HZ", help="with --video: show the mode nearest to this frequency [Hz]"
+    )
+    found.add_argument(
+        "--video",
+        nargs="?",
+        const="",
+        metavar="FILE.mp4",
+        help="write the mode of --animate as a film of three cycles, 4 s, that can be repeated without a seam; "
+        "runs/mode_<frequency>_hz.mp4 by default",
+    )
     found.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(found)
     return found
 
 
 def _job(options: argparse.Namespace) -> None:
+    _check_film_options(options)
     from vehicle.car import Car
 
     if options.uff is not None and options.uff.exists():
@@ -45,7 +60,59 @@ def _job(options: argparse.Namespace) -> None:
         from vehicle.output.mode_file import write_modes
 
         write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
+    if options.animate is not None:
+        found["film"] = _film(options, car)
     print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+
+
+def _check_film_options(options: argparse.Namespace) -> None:
+    """Refuse what cannot be filmed, before anything is computed; chooses the OpenGL library before MuJoCo is imported.
+
+    Raises:
+        ConfigurationError: half of the pair, no frequency, or a film that is there.
+        MissingPartError: what films need is missing.
+    """
+    if options.animate is None:
+        if options.video is not None:
+            raise ConfigurationError("--video: of which mode? Give its frequency too, as --animate 28")
+        return
+    if not 0.0 < options.animate < math.inf:
+        raise ConfigurationError(f"--animate {options.animate:g}: must be a frequency above 0 Hz, as --animate 28")
+    if options.video is None:
+        raise ConfigurationError(f"--animate {options.animate:g}: shows a mode as a film; give --video [FILE.mp4] too")
+    from vehicle.output.folder import check_film
+    from vehicle.rendering.backend import require_film
+
+    if options.video:
+        check_film(film_name(options.video, ""), force=options.force)
+    require_film()
+
+
+def nearest(modes: Sequence[Any], frequency: float) -> Any:
+    """The mode whose natural frequency [Hz] is nearest; motions that grow are none.
+
+    Raises:
+        ConfigurationError: the car has no mode.
+    """
+    swinging = [mode for mode in modes if mode.frequency > 0.0 and not mode.grows]
+    if not swinging:
+        raise ConfigurationError(f"--animate {frequency:g}: this car has no mode up to 60 Hz")
+    return min(swinging, key=lambda mode: abs(mode.frequency - frequency))
+
+
+def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
+    """Write the film; what it shows, and where it is."""
+    from vehicle.output.folder import check_film, write_whole
+    from vehicle.rendering.mode_film import mode_film
+
+    mode = nearest(car.modes(options.damper), options.animate)
+    path = film_name(options.video, f"runs/mode_{mode.frequency:.2f}_hz.mp4")
+    if not options.video:
+        path.parent.mkdir(exist_ok=True)
+        check_film(path, force=options.force)
+    shown = dataclasses.replace(mode, description=_named(mode.description, car.model.superelement.mode_names))
+    write_whole(path, lambda file: mode_film(car.model, shown, file, progress=ProgressLine("film      ", enabled=True)))
+    return {"file": str(path), "asked_hz": options.animate, "frequency_hz": mode.frequency}
 
 
 def modes_table(car: Any, damper: str) -> dict[str, Any]:
@@ -102,6 +169,9 @@ def report(found: dict[str, Any]) -> str:
         lines.append("free trimmed body")
     for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):
         lines.append(f"{frequency:8.3f}           {name}")
+    if "film" in found:
+        film = found["film"]
+        lines.append(f"{film['file']}: mode at {film['frequency_hz']:.3f} Hz, the nearest to {film['asked_hz']:g} Hz")
     return "\n".join(lines)
 
 

@@ -230,6 +230,22 @@ def output_options(parser: argparse.ArgumentParser, folder: Path | None, *, defa
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
+def film_name(given: str, default: str) -> Path:
+    """Name of a film.
+
+    Args:
+        given: behind --video; empty for the default.
+        default: the name without it.
+
+    Raises:
+        ConfigurationError: it does not end in .mp4.
+    """
+    name = Path(given or default)
+    if name.suffix != ".mp4":
+        raise ConfigurationError(f"--video {name}: a film is written as .mp4; give FILE.mp4")
+    return name
+
+
 def engine_option(parser: argparse.ArgumentParser, default: str) -> None:
     """Add --engine: what computes a run.
 

@@ -17,6 +17,7 @@ from vehicle.commands.options import (
     command_parser,
     drives_on_road,
     engine_option,
+    film_name,
     message_options,
     output_options,
     record_choice,
@@ -234,9 +235,7 @@ def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
     """Where the film goes: a plain name lies in the folder of the run."""
     from vehicle.output.folder import check_film
 
-    name = Path(options.video) if options.video else Path(f"{stem}.mp4")
-    if name.suffix != ".mp4":
-        raise ConfigurationError(f"--video {name}: a film is written as .mp4; give FILE.mp4")
+    name = film_name(options.video, f"{stem}.mp4")
     return _beside(name, "--video", output, lambda: check_film(name, force=options.force))
 
 

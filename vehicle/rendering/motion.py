@@ -1,6 +1,6 @@
-"""Motion of a recording about the design position, exaggerated; wireframe of the flexible body, coil of a spring.
+"""Motion about the design position, exaggerated; wireframe of the flexible body, coil of a spring.
 
-Every body has a design pose (p0, R0) and, at each stored pose, a displacement u and a rotation vector theta. Shown is
+Every body has a design pose (p0, R0) and, in a state of motion, a displacement u and a rotation vector theta. Shown is
 
     p = p0 + k u,    R = exp(k [theta]) R0,
 
@@ -52,6 +52,49 @@ class State:
 
 
 class Motion:
+    """Places of everything on the bodies in a state of motion.
+
+    Args:
+        model: the model, or one with the same joints.
+
+    Attributes:
+        modal: numbers of the joints that are modal coordinates of the flexible body.
+        position, orientation: design pose of every body, (bodies, 3) [m] and (bodies, 3, 3).
+        geom_position, geom_orientation: the same for the geoms inside their bodies.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self.model = model
+        self.modal = [joint for joint in range(model.njnt) if model.joint(joint).name.startswith("mode_")]
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        self.position = data.xpos.copy()
+        self.orientation = data.xmat.reshape(-1, 3, 3).copy()
+        self.geom_position = model.geom_pos.copy()
+        self.geom_orientation = scipy.spatial.transform.Rotation.from_quat(
+            model.geom_quat, scalar_first=True
+        ).as_matrix()
+
+    def poses(self, state: State, factor: float) -> tuple[Vector, Vector]:
+        """Exaggerated poses of all bodies: positions [m], (bodies, 3), and orientations, (bodies, 3, 3)."""
+        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation).as_matrix()
+        return self.position + factor * state.translation, turned @ self.orientation
+
+    def geoms(self, state: State, factor: float) -> tuple[Vector, Vector]:
+        """Exaggerated poses of all geoms: positions [m], (geoms, 3), and orientations, (geoms, 9)."""
+        position, orientation = self.poses(state, factor)
+        body = self.model.geom_bodyid
+        where = position[body] + np.einsum("gij,gj->gi", orientation[body], self.geom_position)
+        return where, (orientation[body] @ self.geom_orientation).reshape(-1, 9)
+
+    def moved(self, state: State, factor: float, body: int, points: Vector) -> Vector:
+        """Exaggerated places [m] of points that sit at `points` [m] in the design position, both (n, 3)."""
+        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
+        arm = points - self.position[body]
+        return np.asarray(self.position[body] + factor * state.translation[body] + arm @ turned.T)
+
+
+class RecordedMotion(Motion):
     """Motion of every body over a stretch of a recording, smooth between the stored poses.
 
     Args:
@@ -61,27 +104,17 @@ class Motion:
 
     Attributes:
         time: times of the stored poses of the stretch [s], (f,).
-        position, orientation: design pose of every body, (bodies, 3) [m] and (bodies, 3, 3).
-        geom_position, geom_orientation: the same for the geoms inside their bodies.
     """
 
     def __init__(self, model: mujoco.MjModel, recording: Recording, start: float, end: float) -> None:
-        self.model = model
+        super().__init__(model)
         # One pose more on each side keeps the ends of the interpolation out of sight.
         first = max(int(np.searchsorted(recording.pose_time, start, side="right")) - 2, 0)
         last = min(int(np.searchsorted(recording.pose_time, end)) + 2, len(recording.pose_time))
         self.time = recording.pose_time[first:last]
-        modal = [joint for joint in range(model.njnt) if model.joint(joint).name.startswith("mode_")]
-        columns = [int(model.jnt_qposadr[joint]) for joint in modal]
-        self.modes = len(columns)
+        columns = model.jnt_qposadr[self.modal]
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
-        self.position = data.xpos.copy()
-        self.orientation = data.xmat.reshape(-1, 3, 3).copy()
-        self.geom_position = model.geom_pos.copy()
-        self.geom_orientation = scipy.spatial.transform.Rotation.from_quat(
-            model.geom_quat, scalar_first=True
-        ).as_matrix()
         plates = {wheel: int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in wheels_of(recording)}
         rest, rows = data.mocap_pos.copy(), []
         for index in range(first, last):
@@ -122,24 +155,6 @@ class Motion:
             modal=values[2 * bodies :],
         )
 
-    def poses(self, state: State, factor: float) -> tuple[Vector, Vector]:
-        """Exaggerated poses of all bodies: positions [m], (bodies, 3), and orientations, (bodies, 3, 3)."""
-        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation).as_matrix()
-        return self.position + factor * state.translation, turned @ self.orientation
-
-    def geoms(self, state: State, factor: float) -> tuple[Vector, Vector]:
-        """Exaggerated poses of all geoms: positions [m], (geoms, 3), and orientations, (geoms, 9)."""
-        position, orientation = self.poses(state, factor)
-        body = self.model.geom_bodyid
-        where = position[body] + np.einsum("gij,gj->gi", orientation[body], self.geom_position)
-        return where, (orientation[body] @ self.geom_orientation).reshape(-1, 9)
-
-    def moved(self, state: State, factor: float, body: int, points: Vector) -> Vector:
-        """Exaggerated places [m] of points that sit at `points` [m] in the design position, both (n, 3)."""
-        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
-        arm = points - self.position[body]
-        return np.asarray(self.position[body] + factor * state.translation[body] + arm @ turned.T)
-
 
 class Wireframe:
     """Nodes and members of the superelement, coloured by how far each node moves.
@@ -155,7 +170,7 @@ class Wireframe:
         self.body = int(motion.model.body("body").id)
         self.rest = np.asarray(element.positions)
         self.edges = np.asarray(element.edges, dtype=int)
-        self.shapes = np.asarray(element.shapes)[: motion.modes]  # (modes, n, 3); none where the body is rigid
+        self.shapes = np.asarray(element.shapes)[: len(motion.modal)]  # (modes, n, 3); none where the body is rigid
 
     def places(self, state: State, factor: float) -> Vector:
         """Exaggerated positions of the nodes [m], (n, 3)."""

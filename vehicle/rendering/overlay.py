@@ -80,6 +80,20 @@ class Layout:
         return round(0.19 * self.width)
 
 
+class OneView(Layout):
+    """Frame that the whole car fills: nothing beside or below it."""
+
+    @property
+    def view_height(self) -> int:
+        """Height of the view of the car [pixel]."""
+        return self.height
+
+    @property
+    def main_width(self) -> int:
+        """Its width [pixel]."""
+        return self.width
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Trace:
     """A channel that runs along under the picture."""
@@ -95,21 +109,72 @@ class Trace:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Overlay:
-    """Draws onto frames of one size."""
+class Caption:
+    """Writes a heading and the scale of the colours onto pictures of one size."""
 
     layout: Layout
     """where things are"""
     heading: Sequence[str]
     """lines at the upper left; the first is bold"""
+    scale_top: float
+    """displacement at the top of the colour bar [mm]"""
+    scale_words: str = "true displacement of the body [mm]"
+    """quantity and unit of the colour bar"""
+
+    def write(self, picture: Picture) -> Picture:
+        """Put them onto a view of the car, (height, width, 3)."""
+        image = Image.fromarray(np.ascontiguousarray(picture))
+        self._head(ImageDraw.Draw(image))
+        self._scale(image)
+        return np.asarray(image)
+
+    def _px(self, length: float) -> int:
+        """A length of the 720 line picture in this picture [pixel]."""
+        return max(round(length * self.layout.height / 720.0), 1)
+
+    def _font(self, size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
+        return font(max(round(size * self.layout.height / 720.0), 6), bold)
+
+    def _head(self, pen: ImageDraw.ImageDraw, last: str | None = None) -> None:
+        """Heading, and a bold last line."""
+        x, y = self._px(16), self._px(12)
+        for number, line in enumerate((*self.heading, *([] if last is None else [last]))):
+            bold = number in (0, len(self.heading))
+            pen.text((x, y), line, fill=INK, font=self._font(21 if number == 0 else 17, bold))
+            y += self._px(28 if number == 0 else 24)
+
+    def _scale(self, image: Image.Image) -> None:
+        """The colour bar at the lower left of the car."""
+        place = self.layout.view_height - self.colour_bar.height - self._px(10)
+        image.paste(self.colour_bar, (self._px(16), place))
+
+    @cached_property
+    def colour_bar(self) -> Image.Image:
+        """Scale of the wireframe's colours on a white plate."""
+        width, height = self._px(384), self._px(56)
+        image = Image.new("RGB", (width, height), PAPER)
+        pen = ImageDraw.Draw(image)
+        words = f"{self.scale_words}; grey: at rest"
+        pen.text((self._px(8), self._px(4)), words, fill=INK, font=self._font(14))
+        left, right, top, bottom = self._px(10), width - self._px(10), self._px(23), self._px(35)
+        shades = (255.0 * colours(np.linspace(0.0, 1.0, right - left), 1.0)[:, :3]).astype(np.uint8)
+        image.paste(Image.fromarray(np.repeat(shades[None], bottom - top, axis=0)), (left, top))
+        for share, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
+            place = (left + share * (right - left), bottom + self._px(3))
+            pen.text(place, f"{share * self.scale_top:.3g}", fill=INK, font=self._font(13), anchor=anchor)
+        return image
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Overlay(Caption):
+    """Draws onto frames of a run."""
+
     time: Vector
     """sample times of the traces [s], (n,)"""
     traces: Sequence[Trace]
     """what runs along"""
     visible: float
     """length of the traces on the screen [s]"""
-    scale_top: float
-    """displacement at the top of the colour bar [mm]"""
 
     def draw(self, picture: Picture, time: float, lamps: Mapping[str, bool]) -> Picture:
         """Finish a frame.
@@ -125,27 +190,12 @@ class Overlay:
         layout, image = self.layout, self.backdrop.copy()
         image.paste(Image.fromarray(np.ascontiguousarray(picture)), (0, 0))
         pen = ImageDraw.Draw(image)
-        self._head(pen, time)
+        self._head(pen, f"t = {time:.3f} s")
         self._lamps(pen, lamps)
-        image.paste(self.colour_bar, (self._px(16), layout.view_height - self.colour_bar.height - self._px(10)))
+        self._scale(image)
         pen.line([(layout.main_width, 0), (layout.main_width, layout.view_height)], fill=PAPER, width=self._px(3))
         self._run(image, time)
         return np.asarray(image)
-
-    def _px(self, length: float) -> int:
-        """A length of the 720 line picture in this picture [pixel]."""
-        return max(round(length * self.layout.height / 720.0), 1)
-
-    def _font(self, size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
-        return font(max(round(size * self.layout.height / 720.0), 6), bold)
-
-    def _head(self, pen: ImageDraw.ImageDraw, time: float) -> None:
-        """Input and level, time, factors."""
-        x, y = self._px(16), self._px(12)
-        for number, line in enumerate((*self.heading, f"t = {time:.3f} s")):
-            bold = number in (0, len(self.heading))
-            pen.text((x, y), line, fill=INK, font=self._font(21 if number == 0 else 17, bold))
-            y += self._px(28 if number == 0 else 24)
 
     def _lamps(self, pen: ImageDraw.ImageDraw, lamps: Mapping[str, bool]) -> None:
         """One lamp for each damper on a white plate above the close-up."""
@@ -161,22 +211,6 @@ class Overlay:
             pen.ellipse([x - radius, y - radius, x + radius, y + radius], fill=colour, outline=INK)
             pen.text((x + self._px(20), y), label, fill=INK, font=self._font(16), anchor="lm")
             pen.text((right - self._px(12), y), word, fill=colour, font=self._font(16, True), anchor="rm")
-
-    @cached_property
-    def colour_bar(self) -> Image.Image:
-        """Scale of the wireframe's colours on a white plate."""
-        width, height = self._px(384), self._px(56)
-        image = Image.new("RGB", (width, height), PAPER)
-        pen = ImageDraw.Draw(image)
-        words = "true displacement of the body [mm]; grey: at rest"
-        pen.text((self._px(8), self._px(4)), words, fill=INK, font=self._font(14))
-        left, right, top, bottom = self._px(10), width - self._px(10), self._px(23), self._px(35)
-        shades = (255.0 * colours(np.linspace(0.0, 1.0, right - left), 1.0)[:, :3]).astype(np.uint8)
-        image.paste(Image.fromarray(np.repeat(shades[None], bottom - top, axis=0)), (left, top))
-        for share, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
-            place = (left + share * (right - left), bottom + self._px(3))
-            pen.text(place, f"{share * self.scale_top:.3g}", fill=INK, font=self._font(13), anchor=anchor)
-        return image
 
     @cached_property
     def backdrop(self) -> Image.Image:

@@ -13,8 +13,9 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import side_of, wheel_words
-from vehicle.rendering.motion import Coil, Motion, Wireframe
-from vehicle.rendering.overlay import Layout, Overlay, Trace, colours, round_factor, round_up
+from vehicle.rendering.drawing import Drawing
+from vehicle.rendering.motion import RecordedMotion, Wireframe
+from vehicle.rendering.overlay import Layout, Overlay, Trace, round_factor, round_up
 from vehicle.rendering.recorded_run import (
     RecordedRun,
     dampers_of,
@@ -132,7 +133,7 @@ class Shot:
         length = min(length, record - start)
         frames = max(int(length * take.slow * FPS + 1e-9), 1)
         self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
-        self.motion = Motion(self.model, recording, start, start + length)
+        self.motion = RecordedMotion(self.model, recording, start, start + length)
         self.wireframe = Wireframe(run.car.model, self.motion)
         largest, node = self._largest(start + np.arange(frames) / (FPS * take.slow), interval)
         factor = round_factor(VISIBLE_TRAVEL / largest) if take.exaggeration is None else take.exaggeration
@@ -151,32 +152,21 @@ class Shot:
 
     def frames(self, backend: str) -> Iterator[Picture]:
         """Draw all frames, (height, width, 3) each."""
-        layout, model, factor = self.layout, self.model, self.cut.exaggeration
-        data = mujoco.MjData(model)
-        # Lights and cameras take their places once; the geoms are then placed frame by frame.
-        for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
-            place(model, data)
-        coils = [Coil(self.motion, self.composition, spring) for spring in self.composition.springs]
+        layout, factor = self.layout, self.cut.exaggeration
         rims = [
             RollingRim(self.motion, wheel, self.speed) for wheel in self.composition.wheels if self.speed is not None
         ]
         views = self._views()
-        with closing(Canvas(model, (layout.width, layout.view_height), backend)) as canvas:
+        with closing(Canvas(self.model, (layout.width, layout.view_height), backend)) as canvas:
+            drawing = Drawing(canvas, self.motion, self.wireframe, self.composition, self.scale_top)
             for number in range(self.cut.frames):
                 time = self.cut.start + number * self.cut.interval
                 state = self.motion.at(time, self.cut.interval)
-                data.geom_xpos[:], data.geom_xmat[:] = self.motion.geoms(state, factor)
+                drawing.pose(state, factor)
                 for rim in rims:
-                    rim.turn(data, state, factor, time)
-                for coil in coils:
-                    coil.write(data, coil.places(state, factor))
-                    canvas.upload(coil.mesh)
-                places = self.wireframe.places(state, factor)
-                shades = colours(self.wireframe.displacement(state), self.scale_top)
+                    rim.turn(drawing.data, state, factor, time)
                 for camera, viewport, opacity in views:
-                    model.mat_rgba[:, 3] = opacity
-                    canvas.update(data, camera)
-                    self.wireframe.draw(canvas.scene, places, shades)
+                    drawing.see(camera, opacity)
                     if self.road is not None:
                         self.road.draw(canvas.scene, time, self.cut.interval, factor)
                     canvas.render(viewport)

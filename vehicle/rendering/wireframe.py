@@ -48,6 +48,21 @@ class CarWireframe:
         return np.asarray(self.motion @ shape)
 
 
+def unit_factor(displacement: npt.NDArray[np.complex128]) -> complex:
+    """Number that scales and turns a shape so that its farthest point moves 1, its largest component in phase.
+
+    Args:
+        displacement: of points, (n, 3), not all zero.
+
+    Returns:
+        The number; times the displacements no point moves farther than 1.
+    """
+    size = np.linalg.norm(displacement, axis=1)
+    farthest = displacement[int(np.argmax(size))]
+    largest = farthest[int(np.argmax(np.abs(farthest)))]
+    return complex(np.conj(largest) / np.abs(largest) / size.max())
+
+
 def car_wireframe(car: CarModel) -> CarWireframe:
     """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, and the plates.
 

@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.linear.modes import Mode
 from vehicle.rendering.overlay import colours
-from vehicle.rendering.wireframe import GROUPS, CarWireframe
+from vehicle.rendering.wireframe import GROUPS, CarWireframe, unit_factor
 
 FULL = 999
 """Largest displacement of a mode in the numbers of the page: a thousandth is finer than a dot on the screen."""
@@ -44,7 +43,8 @@ def mode_set(name: str, wheel: str, wire: CarWireframe, modes: Mapping[str, Sequ
 
 def _mode(wire: CarWireframe, mode: Mode) -> dict[str, Any]:
     """A mode, scaled and turned so that its largest displacement is real and `FULL`."""
-    moved = normalised(wire.displacement(mode.shape))
+    moved = wire.displacement(mode.shape)
+    moved = unit_factor(moved) * moved
     return {
         "hz": round(mode.frequency, 4),
         "zeta": round(mode.damping_ratio, 5),
@@ -53,21 +53,6 @@ def _mode(wire: CarWireframe, mode: Mode) -> dict[str, Any]:
         "re": np.rint(FULL * moved.real).astype(int).ravel().tolist(),
         "im": np.rint(FULL * moved.imag).astype(int).ravel().tolist(),
     }
-
-
-def normalised(displacement: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
-    """The same shape with the amplitude of its largest component, in the point that moves farthest, equal to 1.
-
-    Args:
-        displacement: of points, (n, 3), not all zero.
-
-    Returns:
-        Displacements, (n, 3); no point moves farther than 1.
-    """
-    farthest = int(np.argmax(np.linalg.norm(displacement, axis=1)))
-    largest = displacement[farthest, int(np.argmax(np.abs(displacement[farthest])))]
-    turned = displacement * (np.conj(largest) / np.abs(largest))
-    return np.asarray(turned / np.linalg.norm(turned, axis=1).max())
 
 
 def _largest(energy: Mapping[str, float]) -> list[tuple[str, float]]:
