@@ -5,9 +5,11 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+import scipy
 
 from vehicle.flexbody.beam import BeamSection, frame_stiffness
 from vehicle.flexbody.modes import condense_rotations, free_free_modes
+from vehicle.flexbody.sources.matrices import BodyMatrices
 
 SECTION = BeamSection(axial=2.0e7, torsion=2.0e4, bending_y=2.5e4, bending_z=2.5e4)
 POSITIONS = np.array(list(itertools.product([0.0, 2.0], [-0.5, 0.5], [0.4, 1.3])))
@@ -36,3 +38,25 @@ def box_fields(modes=4):
         "mode_names": tuple(f"mode {i + 1}" for i in range(modes)),
         "provenance": "computed for a test",
     }
+
+
+def matrices(positions, pairs, section, masses):
+    """K and M of a frame of beams with point masses, six degrees of freedom a node."""
+    count = len(positions)
+    mass = np.zeros((count, 6))
+    mass[:, :3] = masses[:, None]
+    return BodyMatrices(
+        stiffness=scipy.sparse.csc_matrix(frame_stiffness(positions, [(a, b, section) for a, b in pairs])),
+        mass=scipy.sparse.diags(mass.ravel()).tocsc(),
+        nodes=tuple(str(10 * i + 1) for i in range(count)),  # numbers of nodes need not be dense
+        positions=positions,
+        node=np.repeat(np.arange(count), 6),
+        direction=np.tile(np.arange(6), count),
+        edges=np.array(pairs),
+        source="a box",
+    )
+
+
+def box_matrices():
+    """K and M of the box with all six degrees of freedom of its corners."""
+    return matrices(POSITIONS, PAIRS, SECTION, MASSES)

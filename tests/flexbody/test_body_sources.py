@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 import scipy
 
-from tests.flexbody.box_body import MASSES, PAIRS, POSITIONS, SECTION, box_stiffness
+from tests.flexbody.box_body import MASSES, POSITIONS, box_matrices, box_stiffness, matrices
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.flexbody.beam import BeamSection, frame_stiffness
+from vehicle.flexbody.beam import BeamSection
 from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.modes import free_free_modes
 from vehicle.flexbody.sources.interfaces import interfaces
-from vehicle.flexbody.sources.matrices import BodyMatrices
 from vehicle.flexbody.sources.matrix_files import read_matrices
 from vehicle.flexbody.sources.mode_shapes import GivenModes, normalised
 from vehicle.flexbody.sources.reduction import free_modes
@@ -24,26 +23,9 @@ from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superele
 PLACES = {"a": tuple(POSITIONS[1]), "b": tuple(POSITIONS[6])}
 
 
-def matrices(positions, pairs, section, masses):
-    """K and M of a frame of beams with point masses, six degrees of freedom a node."""
-    count = len(positions)
-    mass = np.zeros((count, 6))
-    mass[:, :3] = masses[:, None]
-    return BodyMatrices(
-        stiffness=scipy.sparse.csc_matrix(frame_stiffness(positions, [(a, b, section) for a, b in pairs])),
-        mass=scipy.sparse.diags(mass.ravel()).tocsc(),
-        nodes=tuple(str(10 * i + 1) for i in range(count)),  # numbers of nodes need not be dense
-        positions=positions,
-        node=np.repeat(np.arange(count), 6),
-        direction=np.tile(np.arange(6), count),
-        edges=np.array(pairs),
-        source="a box",
-    )
-
-
 @pytest.fixture(scope="module")
 def box():
-    return matrices(POSITIONS, PAIRS, SECTION, MASSES)
+    return box_matrices()
 
 
 def modes_of(body, up_to=60.0):

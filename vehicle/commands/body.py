@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -100,12 +101,17 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _import(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    from vehicle.flexbody.sources.interfaces import interfaces
+    from vehicle.flexbody.sources.interfaces import interfaces, read_map
     from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
 
     _check_output(options)
+    _check_numbers(options)
     places = vehicle.composition.attachments()
-    near = {"tolerance": 1e-3 * options.tolerance, "spread": 1e-3 * options.spread, "named": _map(options.map)}
+    near = {
+        "tolerance": 1e-3 * options.tolerance,
+        "spread": 1e-3 * options.spread,
+        "named": read_map(options.map) if options.map else {},
+    }
     origin = _origin(options.origin)
     matrices = _matrices(options)
     if matrices is not None:
@@ -130,8 +136,8 @@ def _import(options: argparse.Namespace, vehicle: Vehicle) -> None:
 def _matrices(options: argparse.Namespace) -> Any:
     """K and M in the units of the source; None where the file holds modes."""
     file: Path = options.file
-    if file.suffix in REFUSED:
-        raise DataError(f"{file}: {REFUSED[file.suffix]}.")
+    if file.suffix.lower() in REFUSED:
+        raise DataError(f"{file}: {REFUSED[file.suffix.lower()]}.")
     if file.suffix == ".sti":
         from vehicle.flexbody.sources.calculix import read_calculix
 
@@ -166,22 +172,11 @@ def _vehicle_mass(vehicle: Vehicle) -> Any:
     return MassProperties(mass=own.mass, cog=own.cog, inertia=own.inertia)
 
 
-def _map(path: Path | None) -> dict[str, str]:
-    if path is None:
-        return {}
-    try:
-        lines = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
-    except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"{path}: cannot be read ({error}).") from error
-    bad = [",".join(words) for words in lines if len(words) != 2]
-    if bad:
-        raise DataError(f"{path}: {bad[0]!r} is no line point,node.")
-    return {point.strip(): node.strip() for point, node in lines if point.strip() != "point"}
-
-
 def _origin(text: str) -> tuple[float, float, float]:
     try:
         x, y, z = (float(word) for word in text.split(","))
+        if not all(map(math.isfinite, (x, y, z))):
+            raise ValueError
     except ValueError:
         raise ConfigurationError(f"--origin {text}: needed are three numbers in metres, as 1.2,0,0.35") from None
     return x, y, z
@@ -261,6 +256,27 @@ def report(model: Superelement, vehicle: Vehicle) -> list[str]:
             values = ", ".join(f"{value:.3g}" for value in np.linalg.eigvalsh(flexibility))
             lines.append(f"  {name:<28} {values}")
     return lines
+
+
+def _check_numbers(options: argparse.Namespace) -> None:
+    """The numbers of an import; NaN is in none of the ranges."""
+    from vehicle.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
+
+    most = 1e3 * LARGEST_TOLERANCE
+    for name, value, allowed, text in (
+        ("--up-to", options.up_to, 0.0 < options.up_to < math.inf, "a frequency above 0 Hz"),
+        ("--damping", options.damping, 0.0 <= options.damping <= HIGHEST_DAMPING, f"0 to {HIGHEST_DAMPING:g}"),
+        ("--tolerance", options.tolerance, 0.0 < options.tolerance <= most, f"above 0, up to {most:g} mm"),
+        ("--spread", options.spread, 0.0 <= options.spread < math.inf, "0 mm or a radius"),
+        (
+            "--modal-mass",
+            options.modal_mass,
+            options.modal_mass is None or 0.0 < options.modal_mass < math.inf,
+            "a mass above 0 kg",
+        ),
+    ):
+        if not allowed:
+            raise ConfigurationError(f"{name} {value:g}: allowed is {text}")
 
 
 def _check_output(options: argparse.Namespace) -> None:

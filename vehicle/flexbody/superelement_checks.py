@@ -21,7 +21,8 @@ _SOFTEST_RESIDUAL = 1e-4  # m/N; towers and mounts of car bodies are stiffer tha
 _SYMMETRY = 1e-6  # of a residual flexibility; exports have seven digits
 _LARGEST_BODY = 30.0  # m; a road vehicle in millimetres is thousands
 _SMALLEST_BODY = 0.05  # m; a road vehicle in kilometres is below
-_HIGHEST_DAMPING = 0.3  # trimmed bodies have 0.01 to 0.08; ten times that is no vibration any more
+HIGHEST_DAMPING = 0.3
+"""Largest damping ratio [1]: trimmed bodies have 0.01 to 0.08; ten times that is no vibration any more."""
 LARGEST_TOLERANCE = 0.05
 """Largest distance of a node from its point [m]: half that of the two interface nodes nearest to each other."""
 _HIGHEST_FIRST_MODE = 90.0  # Hz; trimmed bodies begin between 15 and 60 Hz, which is 94 rad/s and more
@@ -145,12 +146,12 @@ def _check_values(body: Superelement) -> None:
             f"frequencies: mode {i + 2} ({body.frequencies[i + 1]:g} Hz) is below mode {i + 1} "
             f"({body.frequencies[i]:g} Hz). Sort the modes by frequency, their shapes and damping with them.",
         )
-    bad = np.flatnonzero((body.damping_ratio < 0.0) | (body.damping_ratio > _HIGHEST_DAMPING))
+    bad = np.flatnonzero((body.damping_ratio < 0.0) | (body.damping_ratio > HIGHEST_DAMPING))
     if bad.size:
         i = int(bad[0])
         _refuse(
             body,
-            f"damping_ratio[{i}]: {body.damping_ratio[i]:g}; allowed is 0 to {_HIGHEST_DAMPING:g}. Give the share of "
+            f"damping_ratio[{i}]: {body.damping_ratio[i]:g}; allowed is 0 to {HIGHEST_DAMPING:g}. Give the share of "
             "critical damping, 0.02 for 2 %.",
         )
 
@@ -218,6 +219,9 @@ def _check_likeness(body: Superelement) -> None:
     motions, _ = body.rigid.rigid_motions(body.positions)
     basis, _ = np.linalg.qr(motions.reshape(6, -1).T)
     flat = body.shapes.reshape(len(body.shapes), -1)
+    still = np.flatnonzero(~flat.any(axis=1))
+    if still.size:
+        _refuse(body, f"shapes: mode {still[0] + 1} is zero at all nodes. Leave it out, or give nodes that it moves.")
     share = np.sum((flat @ basis) ** 2, axis=1) / np.sum(flat**2, axis=1)
     if share.max() > _RIGID_LIKENESS:
         mode = int(share.argmax())

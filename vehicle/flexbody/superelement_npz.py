@@ -6,6 +6,7 @@ import difflib
 import io
 import json
 import zipfile
+import zlib
 from typing import Any
 
 import numpy as np
@@ -36,9 +37,9 @@ def of_arrays(raw: bytes) -> Superelement:
     """
     try:
         with np.load(io.BytesIO(raw), allow_pickle=False) as file:
-            found = {name: file[name] for name in file.files}
+            found = {name: np.asarray(file[name]) for name in file.files}
         head = json.loads(str(found.get("head", "null")))
-    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, NotImplementedError) as error:
+    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError) as error:
         raise DataError(f"no valid npz, perhaps cut off: {error}. Write the file again.") from error
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         was = head.get("format") if isinstance(head, dict) else None
@@ -55,9 +56,15 @@ def of_arrays(raw: bytes) -> Superelement:
             raise DataError(
                 f"array {name!r}: of type {found[name].dtype}, needed are {'names' if kinds == 'U' else 'numbers'}."
             )
+    for name, shape in {**dict.fromkeys(_NAMES, 1), "edges": 2, **dict.fromkeys(_OWNED.values(), 3)}.items():
+        if found[name].ndim != shape or (name == "edges" and found[name].shape[1] != 2):
+            raise DataError(f"array {name!r}: shape {found[name].shape}; {shape} indices are needed, edges in pairs.")
     missing = [key for key in ("name", "provenance", "hardpoint_tolerance_m") if key not in head]
     if missing:
         raise DataError(f"head: key {missing[0]!r} is missing. The file is incomplete; write it again.")
+    tolerance = numbers(head["hardpoint_tolerance_m"], "hardpoint_tolerance_m")
+    if tolerance.shape != ():
+        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, needed is one number.")
     owned = {}
     for kind, key in _OWNED.items():
         owners, values = found[f"{kind}_nodes"], found[key]
@@ -67,12 +74,12 @@ def of_arrays(raw: bytes) -> Superelement:
     return Superelement(
         name=str(head["name"]),
         nodes=tuple(found["nodes"].tolist()),
-        edges=found["edges"].reshape(-1, 2),
+        edges=found["edges"],
         mass_properties=given_rigid({key: head[key] for key in RIGID if key in head}),
         residual=owned["residual"],
         mode_names=tuple(found["mode_names"].tolist()),
         provenance=str(head["provenance"]),
-        hardpoint_tolerance=float(numbers(head["hardpoint_tolerance_m"], "hardpoint_tolerance_m")),
+        hardpoint_tolerance=float(tolerance),
         positions=found["position_m"],
         node_mass=found.get("node_mass_kg"),
         frequencies=found["frequency_hz"],

@@ -50,14 +50,16 @@ def of_tables(content: dict[str, Any]) -> Superelement:
         raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, needed is one number.")
     index = {name: i for i, name in enumerate(names)}
     edges = []
-    for edge in content.get("edges", []):
-        if not (isinstance(edge, list) and len(edge) == 2 and all(end in index for end in edge)):
+    listed = content.get("edges", [])
+    for edge in listed if isinstance(listed, list) else [listed]:
+        if not (isinstance(edge, list) and len(edge) == 2 and all(str(end) in index for end in edge)):
             raise DataError(f"edges: {edge!r} is no pair of node names.")
-        edges.append([index[end] for end in edge])
+        edges.append([index[str(end)] for end in edge])
     for i, mode in enumerate(modes):
-        if np.shape(numbers(mode["shape_per_sqrt_kg"], f"mode {i + 1}, shape_per_sqrt_kg")) != (len(names), 3):
+        shape = numbers(mode["shape_per_sqrt_kg"], f"mode {i + 1}, shape_per_sqrt_kg").shape
+        if shape != (len(names), 3):
             raise DataError(
-                f"mode {i + 1}, shape_per_sqrt_kg: {len(mode['shape_per_sqrt_kg'])} rows; {len(names)} nodes need "
+                f"mode {i + 1}, shape_per_sqrt_kg: {shape[0] if shape else 0} rows; {len(names)} nodes need "
                 f"{len(names)} rows of three numbers."
             )
     residual = {}

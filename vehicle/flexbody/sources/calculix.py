@@ -10,7 +10,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.flexbody.sources.deck import Deck, read_deck
 from vehicle.flexbody.sources.matrices import BodyMatrices, IntArray
-from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers
+from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole_numbers
 
 
 def read_calculix(path: Path) -> BodyMatrices:
@@ -31,7 +31,7 @@ def read_calculix(path: Path) -> BodyMatrices:
                 f"input deck .inp has the places of the nodes ({suffix} is missing)."
             )
     numbers = rows_of_numbers(files["dof"], 1, separator=".", columns=2)
-    identity, direction = numbers[:, 0].astype(int), numbers[:, 1].astype(int) - 1
+    identity, direction = (whole_numbers(files["dof"], numbers[:, i]) - i for i in (0, 1))
     if direction.min() < 0 or direction.max() > 5:
         raise DataError(
             f"{files['dof']}: directions {direction.min() + 1} to {direction.max() + 1}; allowed are 1 to 6."
@@ -68,13 +68,16 @@ def assembled(
         )
     index = {int(number): i for i, number in enumerate(numbers)}
     edges = sorted({(index[a], index[b]) for a, b in deck.edges if a in index and b in index})
-    return BodyMatrices(
-        stiffness=stiffness,
-        mass=mass,
-        nodes=tuple(str(number) for number in numbers),
-        positions=np.array([deck.places[int(number)] for number in numbers]),
-        node=np.array([index[int(number)] for number in identity]),
-        direction=direction,
-        edges=np.array(edges, dtype=int).reshape(-1, 2),
-        source=f"{program}, K and M of {path.name}",
-    )
+    try:
+        return BodyMatrices(
+            stiffness=stiffness,
+            mass=mass,
+            nodes=tuple(str(number) for number in numbers),
+            positions=np.array([deck.places[int(number)] for number in numbers]),
+            node=np.array([index[int(number)] for number in identity]),
+            direction=direction,
+            edges=np.array(edges, dtype=int).reshape(-1, 2),
+            source=f"{program}, K and M of {path.name}",
+        )
+    except DataError as error:
+        raise DataError(f"{path}: {error}") from error

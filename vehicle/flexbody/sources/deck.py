@@ -6,6 +6,8 @@ import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from vehicle.errors import DataError
 from vehicle.parameters.hardpoints import Point
 
@@ -50,8 +52,13 @@ def read_deck(path: Path) -> Deck:
         fields = [field for field in text.split(",") if field.strip()]
         try:
             if block == "*node":
-                x, y, z = (float(field) for field in [*fields[1:4], "0", "0", "0"][:3])
-                places[int(fields[0])] = (x, y, z)
+                # A deck may leave out coordinates of zero at the end of a line, a table may not.
+                rest = ["0"] * 3 if path.suffix != ".csv" and len(fields) > 1 else []
+                x, y, z = (float(field) for field in [*fields[1:4], *rest][:3])
+                if not np.isfinite([x, y, z]).all():
+                    raise ValueError("a coordinate is not finite")
+                if places.setdefault(int(fields[0]), (x, y, z)) != (x, y, z):
+                    raise ValueError(f"node {fields[0].strip()} was at {list(places[int(fields[0])])} before")
             elif block == "*element" and corners:
                 pending += [int(field) for field in fields]
                 if not text.endswith(","):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -90,6 +91,26 @@ def interfaces(
             "frame and unit of the model with --axes, --origin and --length-unit."
         )
     return found
+
+
+def read_map(path: Path) -> dict[str, str]:
+    """Nodes that a user chose for points of the car: a table "point,node".
+
+    Raises:
+        DataError: unreadable, a line that is none, or a point given twice.
+    """
+    try:
+        lines = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"{path}: cannot be read ({error}).") from error
+    bad = [",".join(words) for words in lines if len(words) != 2]
+    if bad:
+        raise DataError(f"{path}: {bad[0]!r} is no line point,node.")
+    found = [(point.strip(), node.strip()) for point, node in lines if point.strip() != "point"]
+    twice = [point for i, (point, _) in enumerate(found) if point in dict(found[:i])]
+    if twice:
+        raise DataError(f"{path}: point {twice[0]!r} is given twice; give one node for it.")
+    return dict(found)
 
 
 def _of_node(body: BodyNodes, name: str, place: Point, node: int) -> Interface:

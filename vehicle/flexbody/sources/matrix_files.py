@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.flexbody.sources.calculix import assembled
 from vehicle.flexbody.sources.deck import read_deck
 from vehicle.flexbody.sources.matrices import BodyMatrices
-from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole
+from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole, whole_numbers
 
 
 def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -> BodyMatrices:
@@ -33,7 +33,8 @@ def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -
     by_node = _is_by_node(stiffness)
     if by_node:
         table, other = rows_of_numbers(stiffness, 1, columns=5), rows_of_numbers(mass, 1, columns=5)
-        pairs = np.unique(np.vstack([table[:, :2], table[:, 2:4], other[:, :2], other[:, 2:4]]).astype(int), axis=0)
+        named = [whole_numbers(file, one[:, :4]) for file, one in ((stiffness, table), (mass, other))]
+        pairs = np.unique(np.vstack(named).reshape(-1, 2), axis=0)
         index = {(int(node), int(direction)): i for i, (node, direction) in enumerate(pairs)}
         matrices = [_of_pairs(one, index) for one in (table, other)]
         identity, direction = pairs[:, 0], pairs[:, 1] - 1
@@ -44,7 +45,7 @@ def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -
                 "a line for each row of the matrices"
             )
         listed = rows_of_numbers(dofs, 1, columns=2)
-        identity, direction = listed[:, 0].astype(int), listed[:, 1].astype(int) - 1
+        identity, direction = (whole_numbers(dofs, listed[:, i]) - i for i in (0, 1))
         matrices = [_matrix(file, len(identity)) for file in (stiffness, mass)]
     if direction.min() < 0 or direction.max() > 5:
         raise DataError(f"directions {direction.min() + 1} to {direction.max() + 1} of the list; allowed are 1 to 6.")
@@ -82,8 +83,8 @@ def _matrix(path: Path, size: int) -> Any:
             market = stream.read(14) == b"%%MatrixMarket"
         if not market:
             return coordinate_matrix(file, size)
-        return whole(scipy.sparse.csc_matrix(scipy.io.mmread(file)))
-    except (OSError, ValueError, OverflowError) as error:
+        return _real(file, scipy.io.mmread(file))
+    except (OSError, ValueError, OverflowError, TypeError) as error:
         raise DataError(f"{file}: no matrix that can be read ({error}).") from error
 
 
@@ -99,4 +100,11 @@ def _of_matlab(file: Path, variable: str) -> Any:
         raise DataError(f"{file}: no variable {variable!r}; it has {', '.join(content)}.")
     if not variable and len(square) != 1:
         raise DataError(f"{file}: {len(square)} square matrices ({', '.join(square)}); choose one as {file.name}:NAME.")
-    return whole(scipy.sparse.csc_matrix(content[variable] if variable else next(iter(square.values()))))
+    return _real(file, content[variable] if variable else next(iter(square.values())))
+
+
+def _real(file: Path, matrix: Any) -> Any:
+    """The whole matrix, of real numbers."""
+    if getattr(matrix, "ndim", 0) != 2 or matrix.dtype.kind not in "iuf":
+        raise DataError(f"{file}: {getattr(matrix, 'dtype', type(matrix))}, no matrix of real numbers; give K and M.")
+    return whole(scipy.sparse.csc_matrix(matrix, dtype=float))

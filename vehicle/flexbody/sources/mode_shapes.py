@@ -107,6 +107,10 @@ def normalised(given: GivenModes, rigid: MassProperties, stated_mass: float | No
         DataError: a shape without modal mass, one that is far from real, or no elastic mode.
     """
     frequencies, vectors, modal_mass = given.frequencies, given.vectors, given.modal_mass
+    for k in np.flatnonzero(~(np.isfinite(frequencies) & np.isfinite(vectors).all(axis=0))):
+        raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its frequency or shape is not finite.")
+    for k in np.flatnonzero(~vectors.any(axis=0)):
+        raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its shape is zero everywhere. Leave it out.")
     order = np.argsort(frequencies, kind="stable")
     elastic = [int(i) for i in order if _LOWEST_ELASTIC < frequencies[i] <= up_to]
     remarks = []

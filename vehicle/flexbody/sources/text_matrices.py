@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import io
+import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import scipy
 
 from vehicle.errors import DataError
 from vehicle.flexbody.beam import FloatArray
+
+IntArray = npt.NDArray[np.intp]
 
 
 def rows_of_numbers(path: Path, least: int, *, separator: str | None = None, columns: int | None = None) -> FloatArray:
@@ -31,9 +35,13 @@ def rows_of_numbers(path: Path, least: int, *, separator: str | None = None, col
         raise DataError(f"{path}: cannot be read as text ({error}).") from error
     text = text.replace(separator or ",", " ").replace("D", "E").replace("d", "e")
     try:
-        found = np.loadtxt(io.StringIO(text), ndmin=2, comments=("#", "%", "**"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # of no rows, which is said below
+            found = np.loadtxt(io.StringIO(text), ndmin=2, comments=("#", "%", "**"))
     except ValueError as error:
         raise DataError(f"{path}: not rows of numbers, or cut off: {error}") from error
+    if not np.all(np.isfinite(found)):
+        raise DataError(f"{path}: row {int(np.argwhere(~np.isfinite(found))[0, 0]) + 1} holds a number not finite.")
     if len(found) < least or (columns is not None and found.shape[1] != columns):
         raise DataError(f"{path}: {found.shape[0]} rows of {found.shape[1]} numbers; needed are {columns} in each.")
     return np.asarray(found)
@@ -50,7 +58,7 @@ def coordinate_matrix(path: Path, size: int) -> Any:
         DataError: a place outside the matrix; or as of `rows_of_numbers`.
     """
     table = rows_of_numbers(path, 1, columns=3)
-    row, column = table[:, 0].astype(int) - 1, table[:, 1].astype(int) - 1
+    row, column = (whole_numbers(path, table[:, i]) - 1 for i in (0, 1))
     if min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size:
         raise DataError(
             f"{path}: rows {row.min() + 1} to {row.max() + 1} and columns {column.min() + 1} to {column.max() + 1}; "
@@ -58,6 +66,18 @@ def coordinate_matrix(path: Path, size: int) -> Any:
         )
     matrix = scipy.sparse.coo_matrix((table[:, 2], (row, column)), shape=(size, size)).tocsc()
     return whole(matrix)
+
+
+def whole_numbers(path: Path, values: FloatArray) -> IntArray:
+    """Numbers of nodes, directions, rows.
+
+    Raises:
+        DataError: one is not whole.
+    """
+    found = values.astype(int)
+    if np.any(found != values):
+        raise DataError(f"{path}: {values[found != values][0]:g} is no whole number, as of a node, direction or row.")
+    return found
 
 
 def whole(matrix: Any) -> Any:
