@@ -154,7 +154,8 @@ class Car:
 
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
-        return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest)
+        names = self.model.superelement.mode_names
+        return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
 
     def matrix_frf(
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str = "fr"

@@ -127,7 +127,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
             {
                 "frequency_hz": mode.frequency,
                 "damping_ratio": mode.damping_ratio,
-                "description": _named(mode.description, body.mode_names),
+                "description": mode.description,
                 "energy": mode.energy,
             }
             for mode in found
@@ -141,26 +141,18 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     }
 
 
-def _named(description: str, names: tuple[str, ...]) -> str:
-    """The description with the name of the flexible mode behind its number."""
-    head, separator, rest = description.partition("flexible body, mode ")
-    if not separator or head:
-        return description
-    number = rest.split(",")[0]
-    return f"{separator}{number} ({names[int(number) - 1]}){rest[len(number) :]}"
-
-
 def report(found: dict[str, Any]) -> str:
     """The table as text."""
+    width = max((len(mode["description"]) for mode in found["modes"]), default=0)
     lines = [
         f"assembled car, dampers {found['damper']}, inertia {found['inertia_variant']}",
-        f"{'Hz':>8} {'damping':>8}  {'description':<52} energy",
+        f"{'Hz':>8} {'damping':>8}  {'description':<{width}} energy",
     ]
     for mode in found["modes"]:
         shares = sorted(mode["energy"].items(), key=lambda item: -item[1])
         text = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares if share >= 0.05)
         lines.append(
-            f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<52} {text}"
+            f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<{width}} {text}"
         )
     if found["growing"]:
         lines.append(f"this car does not stand: {', '.join(found['growing'])} grows by itself (negative damping above)")

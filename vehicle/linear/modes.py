@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,13 +43,14 @@ class Mode:
     modal_a: complex
 
 
-def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> list[Mode]:
+def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0, names: Sequence[str] = ()) -> list[Mode]:
     """Modes of the car up to a frequency.
 
     Args:
         matrices: of the assembled car.
         stuck: True with the dampers locked, False with their viscous part and no friction.
         highest: highest natural frequency [Hz].
+        names: of the modes of the free flexible body, for the descriptions; none by default.
 
     Returns:
         Modes sorted by natural frequency; overdamped motions (real poles) are left out. What grows is listed at any
@@ -67,7 +69,7 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0) -> l
                 grows=growing,
                 shape=shape,
                 energy=energy,
-                description=("grows: " if growing else "") + _describe(matrices, shape, energy),
+                description=("grows: " if growing else "") + _describe(matrices, shape, energy, names),
                 modal_a=modal_a(matrices.system, modes.pole[index], shape),
             )
         )
@@ -102,13 +104,15 @@ def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> dict[st
     return {name: value / total for name, value in energy.items()}
 
 
-def _describe(matrices: CarMatrices, shape: npt.NDArray[np.complex128], energy: dict[str, float]) -> str:
+def _describe(
+    matrices: CarMatrices, shape: npt.NDArray[np.complex128], energy: dict[str, float], names: Sequence[str]
+) -> str:
     """Words for a mode: the group with the largest share and the direction in which it moves."""
     leader = max(energy, key=lambda name: energy[name])
     if leader == "flexible":
         amplitudes = np.abs(shape[matrices.modal]) ** 2
         number = int(np.argmax(amplitudes)) + 1
-        words = f"flexible body, mode {number}"
+        words = f"flexible body, mode {number}" + (f" ({names[number - 1]})" if names else "")
     elif leader in ("body", "engine"):
         words = f"{leader} {_rigid_direction(matrices, leader, shape)}"
     elif leader.startswith("wheel"):
@@ -122,7 +126,7 @@ def _describe(matrices: CarMatrices, shape: npt.NDArray[np.complex128], energy: 
     else:
         words = leader.replace("_", " ")
     others = [name for name, share in sorted(energy.items(), key=lambda item: -item[1]) if share > 0.2]
-    partners = [name.replace("_", " ") for name in others if name != leader]
+    partners = ["flexible body" if name == "flexible" else name.replace("_", " ") for name in others if name != leader]
     return words + (f", with {', '.join(partners)}" if partners else "")
 
 
