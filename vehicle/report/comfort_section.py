@@ -73,7 +73,7 @@ def comfort(run: FinishedRun) -> Markup:
                 ),
                 tag("tbody", *body),
             ),
-            class_="table",
+            class_="table whole",
         )
     )
     seat = run.summary.get("seat_value")

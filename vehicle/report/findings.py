@@ -83,7 +83,7 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
             )
             found.append(
                 f"The highest vertical resonance at the {place} lies at {top['frequency_hz']:.1f} Hz{mode}: "
-                f"{number(top['magnitude'])} m/s² per m."
+                f"{number(top['magnitude'])} m/s² per m{of_plate(run)}."
             )
     return found or ["No resonance can be told: the input excites none, or there are no FRFs."]
 
@@ -91,6 +91,14 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
 def main_places(run: FinishedRun) -> dict[str, str]:
     """Channels whose resonances are told first, and their words."""
     return {f"knuckle_{run.wheel}_acc_z": "knuckle", "seat_rail_acc_z": "seat rail"}
+
+
+def of_plate(run: FinishedRun) -> str:
+    """Where plates move independently: words for the one to which the resonances are told."""
+    if len(run.responses) < 2:
+        return ""
+    wheel = next(iter(run.responses[0].motion))
+    return f" of the plate {side_of(wheel, run.car.vehicle.wheels)}"
 
 
 def nearest_mode(run: FinishedRun, frequency: float, modes: Mapping[str, Sequence[Mode]]) -> tuple[str, Mode | None]:

@@ -8,7 +8,7 @@ from vehicle.linear.modes import Mode
 from vehicle.rendering.frf_plot import plot_frfs
 from vehicle.rendering.several_runs import plot_densities, shared_channels
 from vehicle.report.drawings import drawing
-from vehicle.report.findings import main_places, nearest_mode
+from vehicle.report.findings import main_places, nearest_mode, of_plate
 from vehicle.report.finished_run import FinishedRun
 from vehicle.report.markup import Markup, joined, number, table, tag
 
@@ -40,7 +40,7 @@ def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Markup]:
     """Strongest resonances of the main places beside the nearest modes."""
-    found = []
+    found, plate = [], of_plate(run).replace(" of", " to motion of", 1)
     for channel, place in main_places(run).items():
         peaks = sorted(run.summary["peaks"].get(channel, ()), key=lambda peak: -peak["magnitude"])[:STRONGEST]
         rows = []
@@ -50,7 +50,8 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[M
             rows.append((near, f"{peak['frequency_hz']:.2f}", number(peak["magnitude"]), number(peak["coherence"])))
         heads = ("nearest mode", "resonance [Hz]", "m/s² per m", "coherence")
         if rows:
-            found.append(table(heads, rows, caption=f"Vertical resonances at the {place}: the {len(rows)} highest"))
+            many = f"the {len(rows)} highest" if len(rows) > 1 else "the only one"
+            found.append(table(heads, rows, caption=f"Vertical resonances at the {place}{plate}: {many}"))
     return found
 
 
