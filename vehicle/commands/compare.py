@@ -78,7 +78,12 @@ def measured_options(parser: argparse.ArgumentParser, *, required: bool = False)
         type=Path,
         required=required,
         metavar="FILE",
-        help="measurement file of any format of `inspect`, with responses, time histories, or mode shapes (UFF 55)",
+        help="measurement file of any format of `inspect`, with responses, time histories, or mode shapes (UFF 55)"
+        + (
+            ""
+            if required
+            else "; one that needs --unit, --rate, --from, --delay: python -m vehicle compare, after the run"
+        ),
     )
     mapping_options(parser)
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from vehicle.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.comparison.record_comparison import RecordComparison
-from vehicle.rendering.figure import COLOURS, FRF_BAND, FRF_TICKS, frf_axes, saved_figure, wrapped_phase
+from vehicle.rendering.figure import COLOURS, FADED, FRF_BAND, FRF_TICKS, fading, frf_axes, saved_figure, wrapped_phase
 
 MEASURED, SIMULATED = "#222222", COLOURS[1]
 """Black and full, red and dashed: told apart without colours."""
@@ -32,6 +32,8 @@ def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], c
         caption: what was measured and what was simulated.
     """
     size = (max(7.6, 5.2 * len(responses) + 1.0), 8.2)
+    told = [values for one in responses for values in (one.measured_coherence, one.simulated_coherence)]
+    caption += f"; {FADED}" if any(np.isfinite(values).any() for values in told) else ""
     with saved_figure(path, size, f"{place}: measured beside simulated", caption) as figure:
         axes = figure.subplots(
             3, len(responses), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False
@@ -42,7 +44,7 @@ def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], c
                 "simulated": (one.simulated, one.simulated_coherence),
             }
             for label, (values, beside) in pairs.items():
-                magnitude.plot(one.frequency, np.abs(values), label=label, **LOOKS[label])
+                fading(magnitude, one.frequency, np.abs(values), beside, label, **LOOKS[label])
                 phase.plot(one.frequency, wrapped_phase(values.copy()), **LOOKS[label])
                 if np.isfinite(beside).any():
                     coherence.plot(one.frequency, beside, label=label, **LOOKS[label])

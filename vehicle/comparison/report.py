@@ -182,13 +182,18 @@ class Comparison:
                 f"{'magnitude':>11}{'slope':>8}{'lag [ms]':>10}"
             )
             lines += [
-                f"{row['channel']:<28}{row['rms_ratio']:>11.3f}{row['correlation']:>13.3f}{row['iso18571']:>11.3f}"
+                f"{row['channel']:<28}{_told(row['rms_ratio']):>11}{_told(row['correlation']):>13}{row['iso18571']:>11.3f}"
                 f"{row['corridor']:>10.3f}{row['phase']:>8.3f}{row['magnitude']:>11.3f}{row['slope']:>8.3f}"
                 f"{1e3 * row['lag_s']:>10.2f}"
                 for row in times[:SHOWN]
             ]
             lines += _left(times)
         return "\n".join([*lines, *(f"notice: {text}" for text in self.notices)])
+
+
+def _told(value: float) -> str:
+    """A number, or a dash where there is none: a channel at rest has no RMS ratio and no correlation."""
+    return f"{value:.3f}" if math.isfinite(value) else "-"
 
 
 def _band(row: dict[str, Any]) -> str:
