@@ -16,7 +16,7 @@ PANELS: dict[str, dict[str, str]] = {
     "lateral [mm], outwards +": {"lateral_m": "wheel centre", "patch_lateral_m": "contact point"},
     "longitudinal [mm], to the rear +": {"longitudinal_m": "wheel centre", "patch_longitudinal_m": "contact point"},
     "vertical load [N]": {"load_n": ""},
-    "spring length [mm]": {"strut_length_m": ""},
+    "change of spring length [mm]": {"strut_length_m": ""},
 }
 """Label of each panel to its quantities and their names."""
 
