@@ -28,6 +28,8 @@ def test_engine_modes_are_between_9_and_20_hz(car):
 def test_wheel_mode_near_28_hz_couples_with_the_body_and_is_the_peak_of_the_knuckle(car):
     vertical = [mode for mode in car.modes("stuck") if 20.0 < mode.frequency < 40.0 and mode.damping_ratio < 0.2]
     wheel = max(vertical, key=lambda mode: mode.energy["wheel_fr"])  # the longitudinal ones are damped by 0.5
+    names = car.model.superelement.mode_names
+    assert f"mode 5 ({names[4]})" in wheel.description
     assert "wheel fr" in wheel.description  # shared with the torsion and the fifth mode of the body
     assert wheel.frequency == pytest.approx(28.0, abs=0.7)  # published with two digits, and another half hertz
     assert wheel.energy["flexible"] > 0.15

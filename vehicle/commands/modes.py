@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import json
 import math
 from collections.abc import Sequence
@@ -110,8 +109,7 @@ def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
     if not options.video:
         path.parent.mkdir(exist_ok=True)
         check_film(path, force=options.force)
-    shown = dataclasses.replace(mode, description=_named(mode.description, car.model.superelement.mode_names))
-    write_whole(path, lambda file: mode_film(car.model, shown, file, progress=ProgressLine("film      ", enabled=True)))
+    write_whole(path, lambda file: mode_film(car.model, mode, file, progress=ProgressLine("film      ", enabled=True)))
     return {"file": str(path), "asked_hz": options.animate, "frequency_hz": mode.frequency}
 
 
