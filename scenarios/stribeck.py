@@ -50,7 +50,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the bump with both laws, draw the figures into the folder, and compare."""
     record = QUICK if options.quick else FULL
     signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start)
-    step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.timestep)!r}"
+    step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.step)!r}"
     cases = [runs.case(signal, (*law, step)) for law in LAWS.values()]
     found = dict(zip(LAWS, runs(cases), strict=True))
     phases = {

@@ -33,13 +33,13 @@ from vehicle.linear.load_rows import LoadRows, load_rows
 from vehicle.linear.matrices import CarMatrices, car_matrices
 from vehicle.linear.modes import Mode, car_modes, require_stable
 from vehicle.linear.response import frequency_response as exact_response
-from vehicle.linear.step_error import require_accurate_step
+from vehicle.linear.step_error import accurate_step, require_accurate_step
 from vehicle.names import AXES, ENGINES
 from vehicle.notebook.frames import recording_dataset, recording_frame
 from vehicle.notebook.picture import Picture, card, frame_drawing, line_drawing, picture
 from vehicle.notebook.run_response import RunResponse, named
 from vehicle.parameters.shipped import vehicle_file
-from vehicle.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced
@@ -70,6 +70,7 @@ class Car:
         self.origin: dict[str, object] = {"file": None, "overrides": []}
         self.overrides: tuple[str, ...] = ()
         self._checked: set[str] = set()
+        self._stepped: Car | None = None
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
@@ -147,10 +148,30 @@ class Car:
         if engine in self._checked:
             return
         if engine == "mujoco":
-            require_accurate_step(self.model, self.matrices)
+            self.stepped()
         else:
             require_stable(self.model, self.matrices, self.poles.poles)
         self._checked.add(engine)
+
+    def stepped(self) -> Car:
+        """This car with a step that answers it: its own, or where none is given the largest that does.
+
+        Raises:
+            ConfigurationError: the given step does not, or none.
+        """
+        if self.vehicle.solver.timestep is not None:
+            if "mujoco" not in self._checked:
+                require_accurate_step(self.model, self.matrices)
+                self._checked.add("mujoco")
+            return self
+        if self._stepped is None:
+            step = accurate_step(self.model, self.matrices)
+            solver = {**self.vehicle.table["solver"], "timestep": step}
+            car = Car(vehicle_of({**self.vehicle.table, "solver": solver}, self.folder), folder=self.folder)
+            car.origin, car.overrides = self.origin, self.overrides
+            car._checked = {*self._checked, "mujoco"}
+            self._stepped = car
+        return self._stepped
 
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
@@ -223,12 +244,12 @@ class Car:
                     reason = "the motion stayed within the validity of the reduced engine"
                 return Run(car=self, signal=signal, recording=recording, engine_reason=reason)
             reason = "; ".join(recording.statistics.warnings)
-        self.check("mujoco")
-        recording = simulate(self.model, signal, progress=progress, requested=more)
+        car = self.stepped()
+        recording = simulate(car.model, signal, progress=progress, requested=more)
         require_finite(recording)
         if channels is not None:
             recording = recording.only(channels)
-        return Run(car=self, signal=signal, recording=recording, engine_reason=reason)
+        return Run(car=car, signal=signal, recording=recording, engine_reason=reason)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

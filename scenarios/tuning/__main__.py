@@ -241,7 +241,7 @@ LONGEST_STEP = 5e-4
 
 
 def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    step = f"solver.timestep={min(LONGEST_STEP, runs.car().vehicle.solver.timestep)!r}"
+    step = f"solver.timestep={min(LONGEST_STEP, runs.car().vehicle.solver.step)!r}"
     runs = CarRuns(vehicle=runs.vehicle, overrides=(*runs.overrides, step), engine=runs.engine, jobs=runs.jobs)
     if options.frf or options.record:
         return own_study(runs, folder, options)

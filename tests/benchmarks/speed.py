@@ -158,7 +158,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
 
 def accuracy(car: Car, seconds: float) -> Figures:
     """RMS of every acceleration and slip shares against an eighth of the step, and the reduced engine against both."""
-    fine_car = Car.load(None, [f"solver.timestep={car.vehicle.solver.timestep / 8}"])
+    fine_car = Car.load(None, [f"solver.timestep={car.vehicle.solver.step / 8}"])
     errors, slips, reduced = {}, [], []
     for level in ("low", "high"):
         signal = piece(seconds, level)

@@ -76,7 +76,7 @@ def test_rates_that_do_not_divide_are_refused(rate):
     with pytest.raises(ConfigurationError) as caught:
         record_every(car.model)
     assert str(caught.value) == (
-        f"solver.record_rate: found {rate} Hz, must be the step rate {1.0 / car.vehicle.solver.timestep:g} Hz or a "
+        f"solver.record_rate: found {rate} Hz, must be the step rate {1.0 / car.vehicle.solver.step:g} Hz or a "
         "whole fraction of it"
     )
 

@@ -122,7 +122,7 @@ def _empty_spec(vehicle: Vehicle) -> mujoco.MjSpec:
     # Compiled callbacks find their arrays through the user data of a state.
     spec.nuserdata = 4
     option = spec.option
-    option.timestep = vehicle.solver.timestep
+    option.timestep = vehicle.solver.step
     option.gravity = [0.0, 0.0, -vehicle.gravity]
     option.integrator = mujoco.mjtIntegrator.mjINT_EULER
     option.solver = mujoco.mjtSolver.mjSOL_NEWTON
@@ -236,7 +236,7 @@ class _Builder:
         )
         if law is None:
             # Ideal joint: MuJoCo's own reference, critically damped, as stiff as the step allows.
-            row.solref = [JOINT_TIME_STEPS * self.vehicle.solver.timestep, 1.0]
+            row.solref = [JOINT_TIME_STEPS * self.vehicle.solver.step, 1.0]
             row.solimp = [JOINT_IMPEDANCE, JOINT_IMPEDANCE, 0.001, 0.5, 2.0]
         else:
             # Only for a viewer without the callbacks: stiffer than MuJoCo's own, so that the car sags by 4 mm.

@@ -174,6 +174,7 @@ def design_superelement(
         iyz=0.0,
         attachment_flexibility=True,
         frequency_scale=1.0,
+        modes_up_to=None,
     )
     return _built(design, tuple(points.items()), tuple(attachments.items()), known)
 

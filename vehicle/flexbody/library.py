@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import BodyDesign, read_design
 from vehicle.flexbody.body_frame import design_superelement, skeleton
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.flexbody.superelement import Superelement
+from vehicle.flexbody.superelement import Superelement, attached_nodes
 from vehicle.flexbody.superelement_file import read_superelement
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.vehicle import Vehicle
@@ -49,15 +49,29 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
     status = file.stat()
     source = _read_once(file, status.st_mtime_ns, status.st_size)
     if isinstance(source, Superelement):
-        return source if body.flexible else source.without_modes()
+        return _up_to(source, vehicle) if body.flexible else source.without_modes()
     try:
         if not body.flexible:
             return skeleton(source, points)
         rigid_body(body)  # says better what is wrong with an inertia
-        return design_superelement(source, points, vehicle.composition.attachments(), body)
+        return _up_to(design_superelement(source, points, vehicle.composition.attachments(), body), vehicle)
     except ConfigurationError as error:
         text = str(error)
         raise ConfigurationError(text if text.startswith("body.") else f"{file.name}: {text}") from None
+
+
+def _up_to(model: Superelement, vehicle: Vehicle) -> Superelement:
+    """The body with the modes that the vehicle keeps."""
+    limit = vehicle.body.modes_up_to
+    if limit is None:
+        return model
+    kept = model.up_to(limit, set(attached_nodes(model, vehicle.composition.attachments()).values()))
+    if not kept.frequencies.size:
+        raise ConfigurationError(
+            f"body.modes_up_to: found {limit:g} Hz, below the first mode at {model.frequencies[0]:.4g} Hz; a body "
+            "without modes is body.flexible = false"
+        )
+    return kept
 
 
 def own_body_file(vehicle: Vehicle, folder: Path) -> Path | None:

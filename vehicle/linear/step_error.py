@@ -68,6 +68,24 @@ class Fault:
     shape: Complex
 
 
+def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
+    """The step of a car, halved until it answers the car [s].
+
+    Args:
+        car: the car with the first step to try.
+        matrices: of the same car.
+
+    Raises:
+        ConfigurationError: a pole of the car grows, or no step down to `SMALLEST_STEP` does.
+    """
+    judge, step = _Judge(car, matrices), float(car.model.opt.timestep)
+    while judge.worst(step) is not None:
+        step /= 2.0
+        if step < SMALLEST_STEP:
+            require_accurate_step(car, matrices)
+    return step
+
+
 def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
     """Refuse a step that would not answer a car, with the step that does.
 

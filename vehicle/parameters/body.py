@@ -35,6 +35,9 @@ class TrimmedBody:
     )
     flexible: bool = True
     attachment_flexibility: bool = True
+    modes_up_to: float | None = quantity(
+        "Hz", "modes above act statically, as residual flexibility; all are kept by default", above=0.0, default=None
+    )
     frequency_scale: float = quantity(
         "-",
         "factor on all natural frequencies of the flexible modes",
@@ -52,6 +55,12 @@ class TrimmedBody:
             raise ConfigurationError(
                 "TrimmedBody.superelement: missing; a flexible body needs a body design or a modal superelement, as "
                 "body_design.toml of the package; a rigid one (flexible = false) needs none"
+            )
+
+        if self.modes_up_to is not None and not (self.flexible and self.attachment_flexibility):
+            raise ConfigurationError(
+                "TrimmedBody.modes_up_to: found without flexible = true and attachment_flexibility = true, which carry "
+                "the flexibility of the modes above"
             )
 
     @property

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.names import SIDE_SIGN
+from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.compose import kinds
 from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
 from vehicle.parameters.instances import instances
@@ -25,7 +26,10 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
         ConfigurationError: its templates or their keys are wrong.
     """
     car = instances(table, (folder, folder / "templates"))
-    own, given = list[str](), kinds(car, table)
+    own, given = (
+        ["solver.timestep", *(f"body.{key}" for key in _keys(TrimmedBody, everything=False))],
+        kinds(car, table),
+    )
     # An ideal joint becomes a bushing by numbers.
     places = [f"{i.name}.bushings.{one.name}" for i in car.values() for one in i.template.connection]
     ideal = dict.fromkeys((path for path in places if path not in given), Bushing)

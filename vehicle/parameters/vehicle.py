@@ -23,16 +23,27 @@ from vehicle.parameters.quantity import field_quantity, quantity, validate
 from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.parameters.toml_file import build, convert
 
+FIRST_STEP = 1e-3
+"""Step that is tried first where none is given [s]: it does for steel and rubber of a car up to 100 Hz."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Solver:
     """Numerics of the time simulation."""
 
-    timestep: float = quantity("s", "step of the integration", at_least=1e-6, at_most=0.005)
     record_rate: float = quantity("Hz", "sampling rate of the recorded channels", at_least=125.0, at_most=1e5)
+    timestep: float | None = quantity(
+        "s", "step of the integration; the largest that answers the car by default", at_least=1e-6, at_most=0.005,
+        default=None,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         validate(self)
+
+    @property
+    def step(self) -> float:
+        """The step [s]; where none is given, the one that is tried first."""
+        return FIRST_STEP if self.timestep is None else self.timestep
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

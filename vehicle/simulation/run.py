@@ -166,7 +166,7 @@ def record_every(car: CarModel) -> int:
     Raises:
         ConfigurationError: the two rates do not divide.
     """
-    rate, step = car.vehicle.solver.record_rate, car.vehicle.solver.timestep
+    rate, step = car.vehicle.solver.record_rate, car.vehicle.solver.step
     every = 1.0 / (rate * step)
     if abs(every - round(every)) > 1e-6 or round(every) < 1:
         raise ConfigurationError(
