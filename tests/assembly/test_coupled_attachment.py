@@ -88,7 +88,7 @@ def test_modes_that_are_left_out_answer_statically(truncated):
         np.linalg.norm(other - exact, axis=1) / np.linalg.norm(exact, axis=1)
         for other in (found, bare.matrix_frf(channels, low))
     )
-    # What a force at one attachment moves at another is left out, so half of it is mended: 1.8 % and 3.1 % at the knuckle.
+    # What a force at one attachment moves at another is left out, so half of it is mended: 1.8 for 3.1 %.
     assert error.max() < 0.02
     assert np.all(error < 0.65 * without)
 
