@@ -72,7 +72,7 @@ def draw_frf(
         marks: label, frequency [Hz] and colour of vertical lines in all columns.
     """
     if any(curve.coherence is not None for _, curves in columns for curve in curves):
-        caption = f"{caption}; {FADED}"
+        caption = f"{caption.rstrip('.')}; {FADED}"
     with figure_file(path, (max(7.2, 5.2 * len(columns)), 7.4), title, caption) as figure:
         axes = figure.subplots(3, len(columns), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False)
         for (heading, curves), (magnitude, phase, coherence) in zip(columns, axes.T, strict=True):
@@ -87,7 +87,7 @@ def draw_frf(
                 for axis in (magnitude, phase):
                     axis.axvline(frequency, color=colour, linestyle="--", linewidth=0.9, label=label)
             magnitude.set_title(heading)
-            magnitude.legend(loc="lower right")
+            magnitude.legend(loc="best")
         frf_axes(figure, axes, (0, 0.5, 1))
 
 

@@ -245,7 +245,8 @@ def trade_off(path: Path, points: Points, about: str) -> None:
 
 def _mark(axis: Any, law: str, x: float, y: float) -> None:
     colour, mark = MARKS[law.removesuffix("_on_off")]
-    axis.plot([x], [y], mark, color=colour, markerfacecolor="none" if law.endswith("_on_off") else colour, label=law)
+    face, words = ("none" if law.endswith("_on_off") else colour), law.replace("_on_off", ", on-off")
+    axis.plot([x], [y], mark, color=colour, markerfacecolor=face, label=words)
 
 
 def delays(path: Path, points: Points, about: str) -> None:

@@ -24,7 +24,7 @@ from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_START_S
 from vehicle.output.folder import write_whole
 from vehicle.rendering.backend import choose_backend
-from vehicle.rendering.figure import COLOURS
+from vehicle.rendering.figure import COLOURS, LINES
 from vehicle.rendering.film import write_film
 from vehicle.rendering.overlay import Layout, font
 from vehicle.rendering.shot import Shot, Take
@@ -139,11 +139,12 @@ def ring_down_figure(path: Path, bumps: Bumps) -> None:
     with figure_file(path, (12.5, 6.6), "Ring-down after the bump", note) as figure:
         axes = rows_of(figure, len(RINGING), 1, sharey=True)[:, 0]
         for axis, (label, place) in zip(axes, RINGING.items(), strict=True):
-            for run, size, colour in zip(bumps.quiet, SIZES, COLOURS, strict=False):
+            for run, size, colour, line in zip(bumps.quiet, SIZES, COLOURS, LINES, strict=False):
                 motion = run[f"{place}_acc_z"]
                 relative = motion / np.max(np.abs(motion[run.time >= end]))
                 time, shown = excerpt(run, end, (0.0, 4.0), relative)
-                axis.plot(time - BUMP_START_S, shown, color=colour, label=f"A = {1e3 * size:g} mm")
+                words = f"A = {1e3 * size:g} mm"
+                axis.plot(time - BUMP_START_S, shown, color=colour, linestyle=line, label=words)
                 axis.axvline(ring_down_time(run.time, motion, end), color=colour, linestyle=":", linewidth=1.3)
             axis.axhspan(-RUNG_DOWN, RUNG_DOWN, color="#e2e2e2", zorder=0)
             axis.set(ylim=(-1.1, 1.1), ylabel=f"{label}\n[-]")

@@ -13,6 +13,7 @@ from scenarios.four_post.runs import LINES, STATES, OneRun, channels_of, transmi
 from vehicle.car import Car
 from vehicle.excitation.four_post import MOTIONS
 from vehicle.rendering.figure import COLOURS, FRF_TICKS
+from vehicle.rendering.figure import LINES as STYLES
 
 LINEAR = {"stuck": ("#222222", ":"), "sliding": ("#888888", "--")}
 """Colour and style of the curves from matrices."""
@@ -45,11 +46,13 @@ def response_figure(path: Path, car: Car, runs: Sequence[OneRun], exact: Exact, 
                     colour, style = LINEAR[state]
                     size = transmissibility(LINES, exact[motion, state][row])
                     axis.plot(LINES, size, color=colour, linestyle=style, label=f"matrices, dampers {state}")
-                for one, colour in zip([run for run in runs if run.motion == motion], COLOURS, strict=False):
+                own = [run for run in runs if run.motion == motion]
+                for one, colour, line in zip(own, COLOURS, STYLES, strict=False):
                     found = one.response
                     assert found is not None
                     size = transmissibility(found.frequency, found.response[row])
-                    axis.plot(found.frequency, size, color=colour, linewidth=1.0, label=level_words(one.level))
+                    look = {"color": colour, "linestyle": line, "linewidth": 1.0}
+                    axis.plot(found.frequency, size, label=level_words(one.level), **look)
                 axis.set(xscale="log", yscale="log", xlim=(1.0, 40.0))
                 axis.set_title(f"{motion}: {channel.replace('_acc_', ', ').replace('_', ' ')}")
         axes[0, 0].legend(loc="lower left")
@@ -72,16 +75,21 @@ def slip_figure(path: Path, car: Car, runs: Sequence[OneRun], caption: str) -> N
     """
     with figure_file(path, (12.5, 4.6), f"{car.vehicle.name} on four posts: does it slide?", caption) as figure:
         front, rear, comfort = figure.subplots(1, 3)
-        for motion, colour in zip(MOTIONS, COLOURS, strict=False):
+        for motion, colour, mark in zip(MOTIONS, COLOURS, "os^D", strict=False):
             own = [run for run in runs if run.motion == motion]
             levels = [run.level for run in own]
             for axis, wheel in ((front, "fr"), (rear, "rr")):
                 shares = [100.0 * run.slip.get(wheel, np.nan) for run in own]
-                axis.plot(levels, shares, "o-", color=colour, label=motion, markersize=4)
-            comfort.plot(levels, [run.comfort / run.level for run in own], "o-", color=colour, markersize=4)
+                axis.plot(levels, shares, f"{mark}-", color=colour, label=motion, markersize=4)
+            comfort.plot(levels, [run.comfort / run.level for run in own], f"{mark}-", color=colour, markersize=4)
         for axis, title in ((front, "front right damper"), (rear, "rear right damper")):
             axis.set(xscale="log", ylim=(-3.0, 100.0), title=title, ylabel="share of the time in slip [%]")
-        comfort.set(xscale="log", yscale="log", title="seat rail", ylabel="RMS 2 to 50 Hz over the level [m/s²]")
+        comfort.set(
+            xscale="log",
+            yscale="log",
+            title="seat rail: lower is better",
+            ylabel="RMS 2 to 50 Hz over the level [m/s²]",
+        )
         for axis in (front, rear, comfort):
             axis.set_xlabel("displacement over that of class A at 80 km/h [-]")
         front.legend(loc="upper left")

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from scenarios.charts import figure_file
 from scenarios.kinematics.axles import Axle, Moved
 from scenarios.kinematics.claims import COMPLIANCES
-from vehicle.rendering.figure import COLOURS
+from vehicle.rendering.figure import COLOURS, LINES
 from vehicle.simulation.axle_statics import WheelPose
 
 PANELS = {
@@ -84,9 +84,10 @@ def moved_figure(path: Path, moved: Sequence[Moved], point: str) -> None:
     with figure_file(path, (11.0, 4.2 * len(moved)), f"One point moved: {point}", note) as figure:
         for row, one in zip(figure.subplots(len(moved), 2, sharey=True, squeeze=False), moved, strict=True):
             for panel, label in zip(row, list(PANELS)[:2], strict=True):
-                for poses, shift, colour in zip(one.curves, one.shifts, COLOURS, strict=False):
+                for poses, shift, colour, style in zip(one.curves, one.shifts, COLOURS, LINES, strict=False):
                     height = values(poses, "wheel_travel_m")
-                    panel.plot(values(poses, PANELS[label]), height, color=colour, label=f"{1e3 * shift:+g} mm")
+                    words = f"{1e3 * shift:+g} mm" if shift else "as it is"
+                    panel.plot(values(poses, PANELS[label]), height, color=colour, linestyle=style, label=words)
                 panel.axhline(0.0, color="#888888", linewidth=0.6)
                 panel.set(xlabel=label, title=one.label)
             row[0].set(ylabel=TRAVEL)

@@ -51,7 +51,7 @@ def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], c
             magnitude.set_title(
                 f"{one.channel}\nFRAC {one.frac:.3f}; {one.scaled_frac:.3f} with frequencies times {one.scale:.3f}"
             )
-            magnitude.legend(loc="lower right")
+            magnitude.legend(loc="best")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
         lines = np.concatenate([one.frequency for one in responses])
         low, high = max(float(lines.min()), 0.9 * FRF_BAND[0]), float(lines.max())
