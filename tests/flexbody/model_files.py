@@ -113,6 +113,16 @@ def line(start, new):
     return change
 
 
+def scalar(key):
+    """The first list of lines under a key, replaced by a number."""
+
+    def change(path):
+        before, _, rest = path.read_text().partition(f"{key} = [\n")
+        path.write_text(f"{before}{key} = 5\n{rest.partition(chr(10) + ']' + chr(10))[2]}")
+
+    return change
+
+
 def array(**changes):
     """Arrays of an npz file changed; None leaves one out."""
 

@@ -284,6 +284,9 @@ def _check_output(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"--output {options.output}: a body model is written as .toml or .npz")
     if options.output.exists() and not options.force:
         raise ConfigurationError(f"--output {options.output}: exists; give another name, or --force")
+    there = next(folder for folder in options.output.absolute().parents if folder.exists())
+    if not there.is_dir():
+        raise ConfigurationError(f"--output {options.output}: {there.name} is a file, no folder; give another name")
 
 
 def _write(options: argparse.Namespace, model: Superelement) -> None:

@@ -58,7 +58,9 @@ def of_arrays(raw: bytes) -> Superelement:
             )
     for name, shape in {**dict.fromkeys(_NAMES, 1), "edges": 2, **dict.fromkeys(_OWNED.values(), 3)}.items():
         if found[name].ndim != shape or (name == "edges" and found[name].shape[1] != 2):
-            raise DataError(f"array {name!r}: shape {found[name].shape}; {shape} indices are needed, edges in pairs.")
+            raise DataError(
+                f"array {name!r}: shape {found[name].shape}; needed is one of {shape} dimensions, edges in pairs."
+            )
     missing = [key for key in ("name", "provenance", "hardpoint_tolerance_m") if key not in head]
     if missing:
         raise DataError(f"head: key {missing[0]!r} is missing. The file is incomplete; write it again.")

@@ -48,7 +48,9 @@ def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -
         identity, direction = (whole_numbers(dofs, listed[:, i]) - i for i in (0, 1))
         matrices = [_matrix(file, len(identity)) for file in (stiffness, mass)]
     if direction.min() < 0 or direction.max() > 5:
-        raise DataError(f"directions {direction.min() + 1} to {direction.max() + 1} of the list; allowed are 1 to 6.")
+        raise DataError(
+            f"{dofs or stiffness}: directions {direction.min() + 1} to {direction.max() + 1}; allowed are 1 to 6."
+        )
     return assembled(stiffness, matrices[0], matrices[1], identity, direction, deck, "finite elements")
 
 

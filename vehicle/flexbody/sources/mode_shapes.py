@@ -119,7 +119,9 @@ def normalised(given: GivenModes, rigid: MassProperties, stated_mass: float | No
     if high := int(np.sum(frequencies > up_to)):
         remarks.append(f"{high} modes above {up_to:g} Hz left out")
     if not elastic:
-        raise DataError(f"no mode above {_LOWEST_ELASTIC:g} Hz; a body model needs elastic modes of the free body.")
+        raise DataError(
+            f"no mode between {_LOWEST_ELASTIC:g} and {up_to:g} Hz; a body model needs elastic modes of the free body."
+        )
     columns, largest = [], 0.0
     for i in elastic:
         shape = vectors[:, i]
