@@ -5,7 +5,26 @@ from __future__ import annotations
 import base64
 
 from vehicle.report.finished_run import FinishedRun
-from vehicle.report.markup import Markup, joined, number, shortened, tag
+from vehicle.report.markup import MANY, Markup, joined, number, shortened, table, tag
+
+WORST = 10
+"""Rows shown above a table that is folded."""
+
+UNITS = {
+    "low_hz": "from [Hz]",
+    "high_hz": "to [Hz]",
+    "magnitude_db": "magnitude, mean [dB]",
+    "magnitude_rms_db": "magnitude, RMS [dB]",
+    "phase_deg": "phase, RMS [deg]",
+    "iso18571": "ISO 18571",
+    "lag_s": "lag [s]",
+}
+"""Heads of columns with units."""
+
+ERROR = (
+    "the error of a band is the root of the mean of |ln(simulated / measured)|², weighted by both coherences; "
+    "magnitude is positive where the simulation is larger, lag where it is late."
+)
 
 
 def measured(run: FinishedRun) -> Markup | None:
@@ -15,9 +34,11 @@ def measured(run: FinishedRun) -> Markup | None:
         return None
     heads = list(dict.fromkeys(key for row in about["table"] for key in row))
     rows = [[_cell(row.get(key)) for key in heads] for row in about["table"]]
+    words = [UNITS.get(head, head.replace("_", " ")) for head in heads]
     parts = [
-        tag("p", f"Measured: {about['file']}. Worst first; see the documentation of the comparison for each column."),
-        shortened(f"{len(rows)} rows", [head.replace("_", " ") for head in heads], rows),
+        tag("p", f"Measured: {about['file']}. The table is ordered by kind, each worst first; {ERROR}"),
+        *([table(words, rows[:WORST], words=2)] if len(rows) > MANY else []),
+        shortened(f"All {len(rows)} rows", words, rows, words=2),
     ]
     for kind, name in run.summary["files"].items():
         path = run.folder / name
