@@ -22,7 +22,7 @@ ROOMS: dict[str, set[str]] = {
     "laws": {"compiler", "parameters"},
     "records": {"analysis"},
     "excitation": {"records"},
-    "flexbody": {"parameters", "records"},
+    "flexbody": {"analysis", "parameters", "records"},
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},

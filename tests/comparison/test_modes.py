@@ -5,11 +5,12 @@ import json
 import numpy as np
 import pytest
 
+from vehicle.analysis.modal_assurance import mac
 from vehicle.car import Car
 from vehicle.commands.compare import main as compare
 from vehicle.commands.inspect import main as inspect
 from vehicle.commands.modes import main as modes
-from vehicle.comparison.mode_comparison import compare_modes, mac, shapes_at
+from vehicle.comparison.mode_comparison import compare_modes, shapes_at
 from vehicle.errors import DataError
 from vehicle.output.mode_file import mode_shapes
 from vehicle.parameters.paths import value_of

@@ -10,6 +10,7 @@ import pytest
 import scipy
 
 from tests.flexbody import solid_frame
+from vehicle.analysis.modal_assurance import mac
 from vehicle.commands import body as command
 from vehicle.errors import DataError
 from vehicle.flexbody.sources.calculix import read_calculix
@@ -18,7 +19,6 @@ from vehicle.flexbody.sources.interfaces import interfaces
 from vehicle.flexbody.sources.mode_shapes import normalised
 from vehicle.flexbody.sources.reduction import free_modes
 from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
-from vehicle.flexbody.superelement_checks import assurance
 from vehicle.flexbody.superelement_file import read_superelement
 from vehicle.parameters.vehicle import load_vehicle
 
@@ -102,7 +102,7 @@ def test_modes_of_the_result_file_are_the_same(job, modes):
     found = normalised(read_frd(job / "modes.frd", 1.0), modes.rigid, None, 80.0)
     np.testing.assert_allclose(found.frequencies, modes.frequencies, rtol=1e-6)
     shapes = found.body.displacements(found.vectors)
-    assert np.all(np.diag(assurance(shapes, modes.body.displacements(modes.vectors))) > 1.0 - 1e-6)
+    assert np.all(np.diag(mac(shapes, modes.body.displacements(modes.vectors))) > 1.0 - 1e-6)
     scale = np.linalg.norm(found.vectors, axis=0) / np.linalg.norm(modes.vectors, axis=0)
     np.testing.assert_allclose(scale, 1.0, rtol=1e-4)  # six digits in the file
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tests.flexbody.modal_test import true_body, write_modes
+from vehicle.analysis.modal_assurance import mac
 from vehicle.car import Car
 from vehicle.commands import body as command
-from vehicle.flexbody.superelement_checks import assurance
 from vehicle.flexbody.superelement_file import read_superelement
 from vehicle.parameters.vehicle import load_vehicle
 
@@ -50,7 +50,7 @@ def test_shapes_of_a_test_are_mapped_and_scaled(measured):
         sign = np.sign(np.sum(found * want.shape_at(place), axis=0))
         np.testing.assert_allclose(found * sign, want.shape_at(place), atol=2e-5 * np.abs(want.shapes).max())
     noisy = read_superelement(folder / "noisy.toml")
-    assert np.diag(assurance(noisy.shapes, body.shapes)).min() > 0.999  # 2 % of a component: 1 - 0.02^2
+    assert np.diag(mac(noisy.shapes, body.shapes)).min() > 0.999  # 2 % of a component: 1 - 0.02^2
 
 
 def test_the_car_on_exact_modes_is_the_car_on_the_body(measured, high_piece):

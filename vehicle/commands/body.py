@@ -211,8 +211,8 @@ def _model(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> 
 def _compare(options: argparse.Namespace, vehicle: Vehicle) -> None:
     import numpy as np
 
+    from vehicle.analysis.modal_assurance import mac
     from vehicle.flexbody.superelement import attached_nodes
-    from vehicle.flexbody.superelement_checks import assurance
 
     models = [_model(file, options, vehicle) for file in (options.file, options.other)]
     places = vehicle.composition.attachments()
@@ -220,11 +220,11 @@ def _compare(options: argparse.Namespace, vehicle: Vehicle) -> None:
     for model in models:
         nodes = attached_nodes(model, places)
         shapes.append(np.array([model.shape_at(nodes[place]).T for place in places.values()]).transpose(1, 0, 2))
-    mac = assurance(*shapes)
+    likeness = mac(*shapes)
     print(
         f"{'mode':>4} {'Hz':>8}   {'mode':>4} {'Hz':>8} {'change':>8} {'MAC':>6}   at {len(places)} points of the car"
     )
-    for i, row in enumerate(mac):
+    for i, row in enumerate(likeness):
         j = int(row.argmax())
         one, other = models[0].frequencies[i], models[1].frequencies[j]
         change = 100.0 * (other / one - 1.0)

@@ -1,8 +1,4 @@
-"""Measured mode shapes beside those of the car: MAC, AutoMAC, pairs.
-
-Source: R. J. Allemang, The modal assurance criterion - twenty years of use and abuse, Sound and Vibration 37 (2003),
-14-23.
-"""
+"""Measured mode shapes beside those of the car: MAC, AutoMAC, pairs."""
 
 from __future__ import annotations
 
@@ -14,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.analysis.modal_assurance import mac
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.linear.modes import Mode
@@ -123,23 +120,6 @@ class ModeComparison:
             shown = ", ".join(f"{one + 1} and {other + 1}" for one, other in alike[:6])
             lines.append(f"these points cannot tell measured modes apart (AutoMAC above 0.9): {shown}")
         return "\n".join(lines)
-
-
-def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> Matrix:
-    """Modal assurance criterion |a^H b|^2 / ((a^H a) (b^H b)) of every pair of shapes.
-
-    Args:
-        first: shapes as rows, (m, n).
-        second: the same coordinates, (k, n).
-
-    Returns:
-        (m, k) [-]; 0 for a shape that is zero.
-    """
-    a, b = np.atleast_2d(np.asarray(first, dtype=complex)), np.atleast_2d(np.asarray(second, dtype=complex))
-    power = np.outer(np.sum(np.abs(a) ** 2, axis=1), np.sum(np.abs(b) ** 2, axis=1))
-    found = np.zeros(power.shape)
-    np.divide(np.abs(a.conj() @ b.T) ** 2, power, out=found, where=power > 0.0)
-    return found
 
 
 def _near(car: Geometry, nodes: Mapping[str, Sequence[float]]) -> dict[str, str]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vehicle.analysis.modal_assurance import mac
 from vehicle.errors import DataError
 
 if TYPE_CHECKING:
@@ -230,7 +231,7 @@ def _check_likeness(body: Superelement) -> None:
             f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) is a rigid motion ({share[mode]:.4%}); allowed "
             f"is {_RIGID_LIKENESS:.1%}. Leave rigid-body modes out: they follow from mass and inertia.",
         )
-    twins = assurance(body.shapes, body.shapes) - np.eye(len(body.shapes))
+    twins = mac(body.shapes, body.shapes) - np.eye(len(body.shapes))
     if twins.max(initial=0.0) > _RIGID_LIKENESS:
         one, other = sorted(int(k) for k in np.unravel_index(int(twins.argmax()), twins.shape))
         _refuse(
@@ -238,19 +239,6 @@ def _check_likeness(body: Superelement) -> None:
             f"shapes: modes {one + 1} ({body.frequencies[one]:g} Hz) and {other + 1} ({body.frequencies[other]:g} Hz) "
             f"are the same shape (MAC {twins.max():.4f}). Leave one out, or give more nodes.",
         )
-
-
-def assurance(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Modal assurance criterion |a' b|^2 / (a' a b' b) of every pair of shapes [1], shape (modes, other modes).
-
-    Args:
-        one, other: shapes at the same nodes, shapes (modes, n, 3).
-
-    Source: R. J. Allemang and D. L. Brown, 1st International Modal Analysis Conference, 1982.
-    """
-    a, b = one.reshape(len(one), -1), other.reshape(len(other), -1)
-    scale = np.outer(np.sum(a**2, axis=1), np.sum(b**2, axis=1))
-    return np.asarray((a @ b.T) ** 2 / np.where(scale > 0.0, scale, 1.0))
 
 
 def _check_modes(body: Superelement, node_mass: FloatArray) -> None:
