@@ -1,4 +1,4 @@
-"""Commands, one file each; what they print is printed here and nowhere else in the package."""
+"""Commands, a file or a folder each; what they print is printed here and nowhere else in the package."""
 
 COMMANDS = (
     "shaker",

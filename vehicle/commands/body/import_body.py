@@ -1,4 +1,4 @@
-"""`python -m vehicle body import | build | show | compare`: body models for a car."""
+"""`python -m vehicle body import`: a body model of matrices, computed modes or a modal test."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import command_parser, message_options, vehicle_options
+from vehicle.commands.body.model_file import output_options, require_output, write
+from vehicle.commands.body.show_body import report
+from vehicle.commands.options import message_options, vehicle_options
 from vehicle.errors import ConfigurationError, DataError
 
 if TYPE_CHECKING:
-    from vehicle.flexbody.superelement import Superelement
     from vehicle.parameters.vehicle import Vehicle
 
 LENGTHS = {"m": 1.0, "mm": 1e-3, "in": 0.0254}
@@ -29,12 +29,8 @@ REFUSED = {
 }
 
 
-def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser(
-        "body", "Body models: import one from finite elements or a modal test, build, show, compare."
-    )
-    tasks = found.add_subparsers(dest="task", required=True, metavar="import|build|show|compare")
+def add(tasks: Any) -> None:
+    """The options."""
     taken = tasks.add_parser("import", help="make a body model of matrices, computed modes or a modal test")
     taken.add_argument(
         "file",
@@ -75,36 +71,17 @@ def parser() -> Parser:
     taken.add_argument("--map", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car")
     taken.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
     taken.add_argument("--name", help="name of the body; that of the file by default")
-    built = tasks.add_parser("build", help="compute the frame of a body design on the points of a car")
-    built.add_argument("--design", type=Path, metavar="FILE.toml", help="body design; that of the vehicle by default")
-    shown = tasks.add_parser("show", help="frequencies, participation of attachments, mass properties, residuals")
-    shown.add_argument("file", type=Path, nargs="?", metavar="FILE", help="body model; that of the vehicle by default")
-    compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
-    compared.add_argument("file", type=Path, metavar="FILE")
-    compared.add_argument("other", type=Path, metavar="OTHER")
-    for task in (taken, built):
-        task.add_argument(
-            "--output", type=Path, required=True, metavar="FILE", help="body model to write, .toml or .npz"
-        )
-        task.add_argument("--force", action="store_true", help="replace the file")
-    for task in (taken, built, shown, compared):
-        vehicle_options(task)
-        message_options(task)
-    return found
+    output_options(taken)
+    vehicle_options(taken)
+    message_options(taken)
 
 
-def _job(options: argparse.Namespace) -> None:
-    from vehicle.parameters.vehicle import load_vehicle
-
-    vehicle = load_vehicle(options.vehicle, options.overrides)
-    {"import": _import, "build": _build, "show": _show, "compare": _compare}[options.task](options, vehicle)
-
-
-def _import(options: argparse.Namespace, vehicle: Vehicle) -> None:
+def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
+    """Read the source, write the model and print what it is."""
     from vehicle.flexbody.sources.interfaces import interfaces, read_map
     from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
 
-    _check_output(options)
+    require_output(options)
     _check_numbers(options)
     places = vehicle.composition.attachments()
     near = {
@@ -125,7 +102,7 @@ def _import(options: argparse.Namespace, vehicle: Vehicle) -> None:
         found = interfaces(given.body, places, **near)
         modes = normalised(given, _vehicle_mass(vehicle), options.modal_mass, options.up_to)
     model = superelement_of(modes, found, name=options.name or options.file.stem, damping=options.damping)
-    _write(options, model)
+    write(options, model)
     print("\n".join(report(model, vehicle)))
     print("points of the car")
     for place in found:
@@ -182,82 +159,6 @@ def _origin(text: str) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _build(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    from vehicle.flexbody.body_design import read_design
-    from vehicle.flexbody.body_frame import design_superelement
-    from vehicle.flexbody.library import body_file
-
-    _check_output(options)
-    file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)
-    design = read_design(file)
-    model = design_superelement(design, vehicle.points, vehicle.composition.attachments(), vehicle.body)
-    _write(options, model)
-    print("\n".join(report(model, vehicle)))
-
-
-def _show(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    print("\n".join(report(_model(options.file, options, vehicle), vehicle)))
-
-
-def _model(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:
-    from vehicle.flexbody.library import body_model
-    from vehicle.flexbody.superelement_file import read_superelement
-
-    if file is None:
-        return body_model(vehicle, options.vehicle.parent if options.vehicle else None)
-    return read_superelement(file)
-
-
-def _compare(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    import numpy as np
-
-    from vehicle.analysis.modal_assurance import mac
-    from vehicle.flexbody.superelement import attached_nodes
-
-    models = [_model(file, options, vehicle) for file in (options.file, options.other)]
-    places = vehicle.composition.attachments()
-    shapes = []
-    for model in models:
-        nodes = attached_nodes(model, places)
-        shapes.append(np.array([model.shape_at(nodes[place]).T for place in places.values()]).transpose(1, 0, 2))
-    likeness = mac(*shapes)
-    print(
-        f"{'mode':>4} {'Hz':>8}   {'mode':>4} {'Hz':>8} {'change':>8} {'MAC':>6}   at {len(places)} points of the car"
-    )
-    for i, row in enumerate(likeness):
-        j = int(row.argmax())
-        one, other = models[0].frequencies[i], models[1].frequencies[j]
-        change = 100.0 * (other / one - 1.0)
-        print(f"{i + 1:>4} {one:>8.3f}   {j + 1:>4} {other:>8.3f} {change:>+7.2f}% {row[j]:>6.3f}")
-
-
-def report(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """What a model is: mass properties against the vehicle, modes, where they are loud, residuals."""
-    import numpy as np
-
-    own, lines = vehicle.body, [f"{model.name}: {len(model.nodes)} nodes, {len(model.frequencies)} modes"]
-    lines.append(f"  {model.provenance}")
-    lines.append(f"{'':<12} {'model':>10} {'vehicle':>10}")
-    lines.append(f"{'mass [kg]':<12} {model.mass:>10.2f} {own.mass:>10.2f}")
-    for axis, mine, theirs in zip("xyz", model.cog, own.cog, strict=True):
-        lines.append(f"{f'CoG {axis} [m]':<12} {mine:>10.4f} {theirs:>10.4f}")
-    if not model.frequencies.size:
-        return [*lines, "rigid"]
-    places = [name for name in vehicle.composition.attachments() if name in model.nodes]
-    lines.append(f"{'mode':>4} {'Hz':>8} {'damping':>8}  loudest places [kg^-1/2], name")
-    for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True)):
-        level = {name: float(np.linalg.norm(model.shapes[i, model.node_index(name)])) for name in places}
-        loud = sorted(level, key=lambda name: -level[name])[:3]
-        text = ", ".join(f"{name} {level[name]:.4f}" for name in loud)
-        lines.append(f"{i + 1:>4} {frequency:>8.3f} {100 * ratio:>6.2f} %  {text}; {model.mode_names[i]}")
-    if model.residual:
-        lines.append("residual flexibility [m/N], principal values")
-        for name, flexibility in model.residual.items():
-            values = ", ".join(f"{value:.3g}" for value in np.linalg.eigvalsh(flexibility))
-            lines.append(f"  {name:<28} {values}")
-    return lines
-
-
 def _check_numbers(options: argparse.Namespace) -> None:
     """The numbers of an import; NaN is in none of the ranges."""
     from vehicle.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
@@ -277,23 +178,3 @@ def _check_numbers(options: argparse.Namespace) -> None:
     ):
         if not allowed:
             raise ConfigurationError(f"{name} {value:g}: allowed is {text}")
-
-
-def _check_output(options: argparse.Namespace) -> None:
-    if options.output.suffix not in (".toml", ".npz"):
-        raise ConfigurationError(f"--output {options.output}: a body model is written as .toml or .npz")
-    if options.output.exists() and not options.force:
-        raise ConfigurationError(f"--output {options.output}: exists; give another name, or --force")
-    there = next(folder for folder in options.output.absolute().parents if folder.exists())
-    if not there.is_dir():
-        raise ConfigurationError(f"--output {options.output}: {there.name} is a file, no folder; give another name")
-
-
-def _write(options: argparse.Namespace, model: Superelement) -> None:
-    from vehicle.flexbody.superelement_file import write_superelement
-
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    write_superelement(options.output, model)
-
-
-main = command(parser, _job)

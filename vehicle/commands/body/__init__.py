@@ -1,0 +1,31 @@
+"""`python -m vehicle body import | build | show | compare`: body models for a car, a file for each of the four."""
+
+from __future__ import annotations
+
+import argparse
+
+from vehicle.commands.body import build_body, compare_bodies, import_body, show_body
+from vehicle.commands.command_line import Parser, command
+from vehicle.commands.options import command_parser
+
+TASKS = {"import": import_body, "build": build_body, "show": show_body, "compare": compare_bodies}
+
+
+def parser() -> Parser:
+    """The options of the command."""
+    found = command_parser(
+        "body", "Body models: import one from finite elements or a modal test, build, show, compare."
+    )
+    tasks = found.add_subparsers(dest="task", required=True, metavar="|".join(TASKS))
+    for task in TASKS.values():
+        task.add(tasks)
+    return found
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.parameters.vehicle import load_vehicle
+
+    TASKS[options.task].run(options, load_vehicle(options.vehicle, options.overrides))
+
+
+main = command(parser, _job)

@@ -1,0 +1,52 @@
+"""Body models as files that a command reads and writes."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from vehicle.flexbody.superelement import Superelement
+    from vehicle.parameters.vehicle import Vehicle
+
+
+def output_options(task: Any) -> None:
+    """Where a model is written."""
+    task.add_argument("--output", type=Path, required=True, metavar="FILE", help="body model to write, .toml or .npz")
+    task.add_argument("--force", action="store_true", help="replace the file")
+
+
+def require_output(options: argparse.Namespace) -> None:
+    """Refuse an output that cannot be written, before the work.
+
+    Raises:
+        ConfigurationError: its name, an existing file, a folder that is a file.
+    """
+    if options.output.suffix not in (".toml", ".npz"):
+        raise ConfigurationError(f"--output {options.output}: a body model is written as .toml or .npz")
+    if options.output.exists() and not options.force:
+        raise ConfigurationError(f"--output {options.output}: exists; give another name, or --force")
+    there = next(folder for folder in options.output.absolute().parents if folder.exists())
+    if not there.is_dir():
+        raise ConfigurationError(f"--output {options.output}: {there.name} is a file, no folder; give another name")
+
+
+def write(options: argparse.Namespace, model: Superelement) -> None:
+    """Write a model to the output."""
+    from vehicle.flexbody.superelement_file import write_superelement
+
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    write_superelement(options.output, model)
+
+
+def model_of(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:
+    """The model of a file; that of the vehicle where none is given."""
+    from vehicle.flexbody.library import body_model
+    from vehicle.flexbody.superelement_file import read_superelement
+
+    if file is None:
+        return body_model(vehicle, options.vehicle.parent if options.vehicle else None)
+    return read_superelement(file)
