@@ -8,8 +8,8 @@ from pathlib import Path
 from vehicle.car import Car, Run
 from vehicle.simulation.recording import Recording
 from vehicle.sweeps.case import Case, Input, digest, signal_of
+from vehicle.sweeps.evaluation import run_of
 from vehicle.sweeps.executors import process_pool
-from vehicle.sweeps.worker import run_of
 
 
 class CarRuns:

@@ -17,8 +17,7 @@ from vehicle.excitation.random_road import random_road
 from vehicle.linear.natural_modes import grows
 from vehicle.simulation.judgement import require_finite
 from vehicle.sweeps.case import Case
-from vehicle.sweeps.program import program_digest
-from vehicle.sweeps.worker import carry_out
+from vehicle.sweeps.evaluation import evaluate
 
 ROAD = random_road(rms=1e-4, seed=1, duration=1.0)
 
@@ -92,7 +91,7 @@ class Endless:
 
 def test_a_sweep_writes_a_reason_where_it_would_write_inf():
     road = random_road(rms=1e-4, seed=1, duration=1.0, lower_band_edge=1.0)
-    result = carry_out(Case(source=road, engine="reduced"), Endless(), program_digest())
+    cases = [Case(source=road, engine="reduced"), Case(overrides=tuple(FALLING), source=road, engine="reduced")]
+    result, other = evaluate(cases, Endless())
     assert result.reason == "SimulationError: loud: infinite; the run left the range of numbers" and not result.values
-    result = carry_out(Case(overrides=tuple(FALLING), source=road, engine="reduced"), Endless(), program_digest())
-    assert result.reason.startswith("ConfigurationError: this car does not stand")
+    assert other.reason.startswith("ConfigurationError: this car does not stand")

@@ -13,8 +13,8 @@ from vehicle.errors import DataError
 from vehicle.parameters.paths import value_of
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.sweeps.case import table_cases
+from vehicle.sweeps.result import Result
 from vehicle.sweeps.table import SweepTable
-from vehicle.sweeps.worker import Result
 
 
 def test_ranges_hold_the_car():

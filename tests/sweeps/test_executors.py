@@ -13,10 +13,12 @@ import pytest
 from tests.sweeps.pieces import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.sweeps import executors
+from vehicle.sweeps.crew import PER_WORKER
 from vehicle.sweeps.executors import process_pool, workers_of
 from vehicle.sweeps.program import program_digest
-from vehicle.sweeps.sweep import PER_WORKER, case_keys, sweep
-from vehicle.sweeps.worker import Result, carry_out
+from vehicle.sweeps.result import Result
+from vehicle.sweeps.sweep import case_keys, sweep
+from vehicle.sweeps.worker import carry_out
 
 
 def many(count):
@@ -28,15 +30,17 @@ class Slow(Executor):
 
     def __init__(self, workers):
         self._max_workers = workers
-        self.held: list[Future[Result]] = []
+        self.held: list[Future[list[Result]]] = []
+        self.sizes: dict[Future[list[Result]], int] = {}
         self.most = 0
         self.quiet: Timer | None = None
 
     def submit(self, function, /, *arguments, **named):
         if self.quiet is not None:
             self.quiet.cancel()
-        future: Future[Result] = Future()
+        future: Future[list[Result]] = Future()
         self.held.append(future)
+        self.sizes[future] = len(arguments[0])
         self.most = max(self.most, sum(not one.done() for one in self.held))
         self.quiet = Timer(0.5, self.finish)
         self.quiet.start()
@@ -45,7 +49,7 @@ class Slow(Executor):
     def finish(self):
         for one in list(self.held):
             if not one.done():
-                one.set_result(Result(values={"peak": 1.0}))
+                one.set_result([Result(values={"peak": 1.0})] * self.sizes[one])
 
 
 class Fails(Executor):
@@ -55,7 +59,7 @@ class Fails(Executor):
         self.error = error
 
     def submit(self, function, /, *arguments, **named):
-        future: Future[Result] = Future()
+        future: Future[list[Result]] = Future()
         if self.error is None:
             future.cancel()
             future.set_running_or_notify_cancel()
@@ -66,7 +70,7 @@ class Fails(Executor):
 
 def test_what_is_handed_out_follows_the_workers():
     executor = Slow(3)
-    assert not sweep(many(30), Peak(), executor=executor).failed
+    assert not sweep(many(300), Peak(), executor=executor).failed
     assert executor.most == 3 * PER_WORKER
     with ThreadPoolExecutor(5) as threads:
         assert workers_of(threads) == 5
@@ -106,13 +110,13 @@ def test_an_interruption_keeps_the_rows(tmp_path):
 
 
 def test_a_worker_with_another_program_is_refused():
-    (case,) = many(1)
-    assert not carry_out(case, Peak(), program_digest()).reason
+    cases = many(1)
+    assert not carry_out(cases, Peak(), program_digest())[0].reason
     with pytest.raises(ConfigurationError, match="the workers have another program"):
-        carry_out(case, Peak(), "another")
+        carry_out(cases, Peak(), "another")
     # It is about the worker, not about the run, so it is no row.
     with pytest.raises(ConfigurationError, match="another program"):
-        sweep([case], Peak(), executor=Fails(ConfigurationError("another program")))
+        sweep(cases, Peak(), executor=Fails(ConfigurationError("another program")))
 
 
 def test_processes_that_do_not_start_are_told_why(monkeypatch):

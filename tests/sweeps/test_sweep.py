@@ -21,9 +21,10 @@ from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.excitation.random_road import random_road
 from vehicle.sweeps import executors
 from vehicle.sweeps.case import SignalFile, table_cases
+from vehicle.sweeps.crew import DIED
 from vehicle.sweeps.executors import executor_factory
 from vehicle.sweeps.measure import ComfortMeasure
-from vehicle.sweeps.sweep import DIED, case_keys, sweep
+from vehicle.sweeps.sweep import case_keys, sweep
 
 FRICTION = {"damper.coulomb_friction": [100.0, 125.0]}
 ROOT = Path(__file__).parents[2]
@@ -182,7 +183,7 @@ from tests.sweeps.pieces import grid
 from vehicle.sweeps.sweep import sweep
 
 if __name__ == "__main__":
-    roads = [ShortRoad(seed=s, wait=0.3) for s in range(40)]
+    roads = [ShortRoad(seed=s, wait=0.1) for s in range(40)]
     cases = grid({"damper.coulomb_friction": [125.0]}, roads, engine="reduced")
     sweep(cases, Peak(), jobs=2, folder=Path(FOLDER))
 """
@@ -223,12 +224,12 @@ def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
     kept = rows.read_bytes().count(b"\n")
     assert 3 <= kept < 40
     cases = grid(
-        {"damper.coulomb_friction": [125.0]}, [ShortRoad(seed=s, wait=0.3) for s in range(kept + 1)], engine="reduced"
+        {"damper.coulomb_friction": [125.0]}, [ShortRoad(seed=s, wait=0.1) for s in range(kept + 1)], engine="reduced"
     )
     counted: list[float] = []
     table = sweep(cases, Peak(), executor=in_threads, folder=folder, progress=counted.append)
-    # Two workers finish in any order: at most two of the first ones are missing, and the one beyond.
-    assert 1 <= len(counted) <= 3
+    # Two workers finish in any order: at most the tasks in their hands are missing, and the one beyond.
+    assert 1 <= len(counted) <= kept
     assert not table.failed
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.analysis.samples import checked_signals
-from vehicle.analysis.spectra import band_periodogram, band_rms
+from vehicle.analysis.spectra import PowerSpectralDensity, band_periodogram, band_rms, rms_of
 from vehicle.errors import DataError
 
 COMFORT_BAND = (2.0, 50.0)
@@ -46,6 +46,40 @@ class Settling:
     """whether |drift| is within 1 % or within three standard errors"""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ComfortValues:
+    """Comfort values of several records of one length, of one spectrum each."""
+
+    axes: NDArray[np.float64]
+    """RMS in x, y, z [m/s2], shape (r, 3)"""
+    overall: NDArray[np.float64]
+    """sqrt(x^2 + y^2 + z^2) [m/s2], shape (r,)"""
+    error: NDArray[np.float64]
+    """normalised standard error of each axis, as of `rms_standard_error` [-], shape (r, 3)"""
+
+
+def comfort_values(
+    time_step: float, acceleration: ArrayLike, band: tuple[float, float] = COMFORT_BAND
+) -> ComfortValues:
+    """Comfort values of several records; the numbers of one do not depend on the others.
+
+    Args:
+        time_step: [s].
+        acceleration: in x, y, z [m/s2], shape (r, 3, n).
+        band: (low, high) [Hz], both edges included.
+
+    Raises:
+        DataError: not three axes, or `band_rms` refuses a record.
+    """
+    array = np.asarray(acceleration, dtype=np.float64)
+    if array.ndim != 3 or array.shape[1] != 3:
+        raise DataError(f"acceleration: found shape {array.shape}, needed is (r, 3, n) with the three axes x, y, z")
+    spectrum = band_periodogram(time_step, array.reshape(-1, array.shape[2]), band)
+    axes, error = rms_of(spectrum).reshape(-1, 3), _standard_error(spectrum).reshape(-1, 3)
+    x, y, z = axes.T
+    return ComfortValues(axes=axes, overall=np.sqrt(x * x + y * y + z * z), error=error)
+
+
 def comfort_value(time_step: float, acceleration: ArrayLike, band: tuple[float, float] = COMFORT_BAND) -> ComfortValue:
     """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unfiltered acceleration in a band.
 
@@ -62,8 +96,9 @@ def comfort_value(time_step: float, acceleration: ArrayLike, band: tuple[float, 
     array = checked_signals("acceleration", acceleration)
     if array.shape[0] != 3:
         raise DataError(f"acceleration: found {array.shape[0]} signals, needed are the three axes x, y, z")
-    x, y, z = (float(value) for value in band_rms(time_step, array, band))
-    return ComfortValue(x=x, y=y, z=z, overall=float(np.sqrt(x * x + y * y + z * z)), band=band)
+    found = comfort_values(time_step, array[None], band)
+    x, y, z = found.axes[0].tolist()
+    return ComfortValue(x=x, y=y, z=z, overall=float(found.overall[0]), band=band)
 
 
 def rms_standard_error(
@@ -85,7 +120,11 @@ def rms_standard_error(
 
     Source: Bendat and Piersol, Random Data, 4th ed., chapter 8 (bandwidth-time product).
     """
-    spectrum = band_periodogram(time_step, signals, band)
+    return _standard_error(band_periodogram(time_step, signals, band))
+
+
+def _standard_error(spectrum: PowerSpectralDensity) -> NDArray[np.float64]:
+    """`rms_standard_error` from the periodogram in the band."""
     mean_square = spectrum.density.sum(axis=1) * spectrum.resolution_hz
     # df = 1/T, so int S^2 df / T is the sum over the lines times df^2
     variance = 0.5 * (spectrum.density**2).sum(axis=1) * spectrum.resolution_hz**2

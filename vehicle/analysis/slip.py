@@ -31,15 +31,20 @@ STANDING_OUT = 0.5
 """A peak counts when it stands out by at least this share of the largest break-away jump of the run."""
 
 
-def _slipping(velocity: ArrayLike, slip_velocity: float) -> NDArray[np.bool_]:
-    """Tell in which samples |v| is above the slip velocity, shape (n,)."""
-    limit = float(slip_velocity)
-    if not (np.isfinite(limit) and limit >= 0.0):
+def _slipping(velocity: ArrayLike, slip_velocity: ArrayLike) -> NDArray[np.bool_]:
+    """Tell in which samples |v| is above the slip velocity of its damper, shape (d, n)."""
+    limits = np.asarray(slip_velocity, dtype=np.float64).reshape(-1)
+    if not (np.isfinite(limits).all() and (limits >= 0.0).all()):
         raise ConfigurationError(f"slip velocity: found {slip_velocity!r} m/s, allowed is a finite number >= 0 m/s")
+    return np.asarray(np.abs(checked_signals("damper velocity", velocity)) > limits[:, None])
+
+
+def _one(velocity: ArrayLike) -> Real:
+    """Return the velocity of a single damper, shape (1, n)."""
     signal = checked_signals("damper velocity", velocity)
     if signal.shape[0] != 1:
         raise DataError(f"damper velocity: found {signal.shape[0]} signals, needed is one damper at a time, shape (n,)")
-    return np.asarray(np.abs(signal[0]) > limit)
+    return signal
 
 
 def _instants(time: ArrayLike, samples: int) -> Real:
@@ -59,7 +64,12 @@ def slip_share(velocity: ArrayLike, slip_velocity: float) -> float:
         velocity: of the damper [m/s], shape (n,), uniformly sampled.
         slip_velocity: speed that counts as slip [m/s].
     """
-    return float(np.mean(_slipping(velocity, slip_velocity)))
+    return float(slip_shares(_one(velocity), slip_velocity)[0])
+
+
+def slip_shares(velocity: ArrayLike, slip_velocity: ArrayLike) -> Real:
+    """Return the slip share of each of several dampers, shape (d,); velocities (d, n), slip velocities (d,)."""
+    return np.asarray(np.mean(_slipping(velocity, slip_velocity), axis=1))
 
 
 def first_slip(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> float | None:
@@ -70,9 +80,15 @@ def first_slip(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> fl
         velocity: of the damper [m/s], shape (n,).
         slip_velocity: speed that counts as slip [m/s].
     """
+    first = float(first_slips(time, _one(velocity), slip_velocity)[0])
+    return None if np.isnan(first) else first
+
+
+def first_slips(time: ArrayLike, velocity: ArrayLike, slip_velocity: ArrayLike) -> Real:
+    """Return the first slip [s] of each of several dampers, NaN where there is none, shape (d,); as `slip_shares`."""
     slips = _slipping(velocity, slip_velocity)
-    instants = _instants(time, slips.size)
-    return float(instants[np.argmax(slips)]) if slips.any() else None
+    instants = _instants(time, slips.shape[1])
+    return np.where(slips.any(axis=1), instants[np.argmax(slips, axis=1)], np.nan)
 
 
 def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> Real:
@@ -85,7 +101,7 @@ def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -
         velocity: of the damper [m/s], shape (n,).
         slip_velocity: speed that counts as slip [m/s].
     """
-    slips = _slipping(velocity, slip_velocity)
+    slips = _slipping(_one(velocity), slip_velocity)[0]
     instants = _instants(time, slips.size)
     change = np.diff(np.concatenate(([0], slips.astype(np.int8), [0])))
     starts = np.flatnonzero(change == 1)

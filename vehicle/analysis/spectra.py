@@ -70,15 +70,19 @@ def periodogram(time_step: float, signals: ArrayLike) -> PowerSpectralDensity:
         signals: shape (n,) or (k, n).
     """
     step = checked_time_step(time_step)
-    array = checked_signals("signals", signals)
+    return _periodogram(step, checked_signals("signals", signals), slice(None))
+
+
+def _periodogram(step: float, array: NDArray[np.float64], lines: slice) -> PowerSpectralDensity:
+    """Some lines of the periodogram of signals (k, n)."""
     samples = array.shape[1]
     sides = np.full(samples // 2 + 1, 2.0)
     sides[0] = 1.0
     if samples % 2 == 0:
         sides[-1] = 1.0
-    density = sides * np.abs(np.fft.rfft(array, axis=1)) ** 2 * step / samples
+    density = sides[lines] * np.abs(np.fft.rfft(array, axis=1)[:, lines]) ** 2 * step / samples
     return PowerSpectralDensity(
-        frequency=np.fft.rfftfreq(samples, step).astype(np.float64),
+        frequency=np.fft.rfftfreq(samples, step).astype(np.float64)[lines],
         density=density,
         resolution_hz=1.0 / (samples * step),
         averages=1.0,
@@ -91,20 +95,15 @@ def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, fl
     Raises:
         DataError: sampled too slowly for the upper edge, or so short that no line falls in the band.
     """
-    edges = checked_band(band, checked_time_step(time_step))
-    whole = periodogram(time_step, signals)
-    inside = lines_in_band(whole.frequency, edges)
-    if not inside.any():
+    step = checked_time_step(time_step)
+    edges, array = checked_band(band, step), checked_signals("signals", signals)
+    inside = np.flatnonzero(lines_in_band(np.fft.rfftfreq(array.shape[1], step).astype(np.float64), edges))
+    if not inside.size:
         raise DataError(
-            f"record too short: its lines are {whole.resolution_hz:g} Hz apart and none lies in "
+            f"record too short: its lines are {1.0 / (array.shape[1] * step):g} Hz apart and none lies in "
             f"{edges[0]:g} to {edges[1]:g} Hz; at least {1.0 / (edges[1] - edges[0]):g} s are needed"
         )
-    return PowerSpectralDensity(
-        frequency=whole.frequency[inside],
-        density=whole.density[:, inside],
-        resolution_hz=whole.resolution_hz,
-        averages=1.0,
-    )
+    return _periodogram(step, array, slice(inside[0], inside[-1] + 1))
 
 
 def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> NDArray[np.float64]:
@@ -119,5 +118,9 @@ def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) ->
         signals: shape (n,) or (k, n).
         band: (low, high) [Hz].
     """
-    spectrum = band_periodogram(time_step, signals, band)
+    return rms_of(band_periodogram(time_step, signals, band))
+
+
+def rms_of(spectrum: PowerSpectralDensity) -> NDArray[np.float64]:
+    """Return the RMS of each signal over the lines of its periodogram, shape (k,)."""
     return np.asarray(np.sqrt(spectrum.density.sum(axis=1) * spectrum.resolution_hz))

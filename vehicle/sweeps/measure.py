@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from vehicle.analysis.comfort import comfort_value, rms_standard_error
+from vehicle.analysis.comfort import comfort_values
 from vehicle.analysis.seat_value import seat_value, weighted_rms_of
-from vehicle.analysis.slip import slip_share
+from vehicle.analysis.slip import first_slips, slip_shares
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, CORNERS
+from vehicle.sweeps.runs import Runs, Vector, single
 
 
 class Measure(Protocol):
@@ -32,6 +33,27 @@ class Measure(Protocol):
         """The numbers of a run, NaN where one does not exist."""
 
 
+@runtime_checkable
+class BatchMeasure(Measure, Protocol):
+    """One that takes many runs at once: those of the reduced engine are then marched together, a multiple as fast."""
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are needed."""
+
+    @property
+    def timestep(self) -> float:
+        """Longest step of the reduced engine that its numbers allow [s]."""
+
+    def of(self, runs: Runs) -> dict[str, Vector]:
+        """The numbers of r runs, (r,) each; those of one must not depend on the others, to the last digit."""
+
+
+def of_one(measure: BatchMeasure, run: Run) -> dict[str, float]:
+    """The numbers of a run alone."""
+    return {name: float(values[0]) for name, values in measure.of(single(run)).items()}
+
+
 FRONT = tuple(CORNERS.values())[:2]
 """Wheels that every car has."""
 
@@ -44,11 +66,13 @@ class ComfortMeasure:
         skip: seconds at the beginning that all but the first slip leave out: the car starts at rest.
         wheels: whose dampers are looked at.
         seat: also what ISO 2631-1 says of the seat, and its SEAT value; of a car with a seat.
+        timestep: longest step of the reduced engine [s].
     """
 
     skip: float = 2.0
     wheels: tuple[str, ...] = FRONT
     seat: bool = False
+    timestep: float = 5e-4
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.skip < math.inf:
@@ -71,34 +95,35 @@ class ComfortMeasure:
         return comfort | slip | {f"first_slip_{wheel}": "s" for wheel in self.wheels}
 
     def __call__(self, run: Run) -> dict[str, float]:
+        """The numbers of a run."""
+        return of_one(self, run)
+
+    def of(self, runs: Runs) -> dict[str, Vector]:
         """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, the seat where it is asked for, slip.
 
         Slip is above `damper.slip_velocity`, the saturated share above 1 mm/s. The first slip is that of the whole run,
         as in `summary.json`; NaN where there is none.
         """
-        interval = run.recording.timestep
+        interval = runs.timestep
         kept = slice(round(self.skip / interval), None)
-        xyz = np.array([run[f"seat_rail_acc_{axis}"][kept] for axis in AXES])
-        value = comfort_value(interval, xyz)
-        squares = np.array([value.x, value.y, value.z]) ** 2
+        value = comfort_values(interval, runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))[:, :, kept])
+        squares = value.axes**2
         # Errors of the axes as if they were independent: d(overall)/overall = sum(rms_i^2 error_i) / overall^2 at most.
-        error = float(
-            np.sqrt(np.sum((squares * rms_standard_error(interval, xyz)) ** 2)) / max(np.sum(squares), 1e-300)
-        )
-        numbers = {"comfort_x": value.x, "comfort_y": value.y, "comfort_z": value.z, "comfort_overall": value.overall}
-        numbers["comfort_error"] = error
+        error = np.sqrt(np.sum((squares * value.error) ** 2, axis=1)) / np.maximum(np.sum(squares, axis=1), 1e-300)
+        numbers = {f"comfort_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)}
+        numbers |= {"comfort_overall": value.overall, "comfort_error": error}
         if self.seat:
-            seat = np.array([run[f"seat_acc_{axis}"] for axis in AXES])
-            weighted = weighted_rms_of(interval, seat, skip=self.skip)
-            numbers |= {f"seat_weighted_{axis}": one for axis, one in zip((*AXES, "overall"), weighted, strict=True)}
-            numbers["seat_value"] = seat_value(interval, seat[2], run["seat_rail_acc_z"], skip=self.skip).rms
-        for kind, velocity in (
-            ("slip_share", run.car.vehicle.damper.slip_velocity),
-            ("saturated_share", SATURATED_VELOCITY),
-        ):
+            seat = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES))
+            weighted = np.array([weighted_rms_of(interval, one, skip=self.skip) for one in seat])
+            numbers |= {f"seat_weighted_{axis}": weighted[:, i] for i, axis in enumerate((*AXES, "overall"))}
+            below = zip(seat[:, 2], runs["seat_rail_acc_z"], strict=True)
+            values = [seat_value(interval, one, rail, skip=self.skip).rms for one, rail in below]
+            numbers["seat_value"] = np.array(values)
+        velocity = {wheel: runs[f"damper_{wheel}_velocity"] for wheel in self.wheels}
+        limit = runs.slip_velocity
+        for kind, above in (("slip_share", limit), ("saturated_share", np.full_like(limit, SATURATED_VELOCITY))):
             for wheel in self.wheels:
-                numbers[f"{kind}_{wheel}"] = slip_share(run[f"damper_{wheel}_velocity"][kept], velocity)
+                numbers[f"{kind}_{wheel}"] = slip_shares(velocity[wheel][:, kept], above)
         for wheel in self.wheels:
-            first = run.first_slip(wheel)
-            numbers[f"first_slip_{wheel}"] = math.nan if first is None else first
+            numbers[f"first_slip_{wheel}"] = first_slips(runs.time, velocity[wheel], limit)
         return numbers

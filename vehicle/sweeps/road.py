@@ -8,11 +8,13 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from vehicle.analysis.comfort import comfort_value, rms_standard_error
-from vehicle.analysis.slip import slip_share
+from vehicle.analysis.comfort import comfort_values
+from vehicle.analysis.slip import slip_shares
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.exact_road import RATE_HZ, road
 from vehicle.excitation.signal import Signal
+from vehicle.sweeps.measure import of_one
+from vehicle.sweeps.runs import Runs, Vector
 
 SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
 
@@ -50,9 +52,11 @@ class RoadMeasure:
 
     Attributes:
         lead: seconds at the beginning that are left out.
+        timestep: longest step of the reduced engine [s].
     """
 
     lead: float
+    timestep: float = 5e-4
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -74,22 +78,23 @@ class RoadMeasure:
 
     def __call__(self, run: Run) -> dict[str, float]:
         """The numbers of a run."""
+        return of_one(self, run)
+
+    def of(self, runs: Runs) -> dict[str, Vector]:
+        """The numbers of several runs."""
         # The record ends with the sample that begins its next period.
         record = slice(round(self.lead * RATE_HZ) + 1, None)
-        step = run.recording.timestep
-        xyz = np.array([run[channel][record] for channel in SEAT_RAIL])
-        found = comfort_value(step, xyz)
-        squares = np.array([found.x, found.y, found.z]) ** 2
-        right, left = (run[f"damper_{wheel}_velocity"][record] for wheel in ("fr", "fl"))
-        load = run["tyre_fr_force_z"][record]
-        limit = run.car.vehicle.damper.slip_velocity
+        found = comfort_values(runs.timestep, runs.stacked(*SEAT_RAIL)[:, :, record])
+        right, left = (runs[f"damper_{wheel}_velocity"][:, record] for wheel in ("fr", "fl"))
+        load = runs["tyre_fr_force_z"][:, record]
+        limit = runs.slip_velocity
         return {
             "comfort": found.overall,
             # The axes share the road, so their errors add up.
-            "gaussian_error": float(squares @ rms_standard_error(step, xyz)) / found.overall,
-            "slip": slip_share(right, limit),
-            "slip_left": slip_share(left, limit),
-            "saturated": slip_share(right, SATURATED_VELOCITY),
-            "lowest_load": float(np.min(load)),
-            "pulling": float(np.mean(load < 0.0)),
+            "gaussian_error": np.sum(found.axes**2 * found.error, axis=1) / found.overall,
+            "slip": slip_shares(right, limit),
+            "slip_left": slip_shares(left, limit),
+            "saturated": slip_shares(right, np.full_like(limit, SATURATED_VELOCITY)),
+            "lowest_load": np.min(load, axis=1),
+            "pulling": np.mean(load < 0.0, axis=1),
         }

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
 from vehicle.errors import DataError, OutputError
 from vehicle.output.written_files import note
-from vehicle.sweeps.worker import Result
+from vehicle.sweeps.result import Result
 
 ROWS = "rows.jsonl"
 
@@ -34,17 +35,19 @@ class Store:
         except OSError as error:
             raise OutputError(f"{path}: cannot be written: {error.strerror}; give another folder") from None
 
-    def add(self, key: str, label: str, result: Result) -> None:
-        """Keep a row; when this returns it is on the disk.
+    def add(self, rows: Mapping[str, tuple[str, Result]]) -> None:
+        """Keep rows, key to label and result; when this returns they are on the disk.
 
         Raises:
             OutputError: the disk refuses it.
         """
-        self.finished[key] = result
-        # JSON writes a float with all digits it has, so that a row read again is the same row; NaN is its own word.
-        line = json.dumps({"key": key, "case": label, **asdict(result)})
+        lines = []
+        for key, (label, result) in rows.items():
+            self.finished[key] = result
+            # JSON writes a float with all its digits, so that a row read again is the same row; NaN is its own word.
+            lines.append(json.dumps({"key": key, "case": label, **asdict(result)}) + "\n")
         try:
-            self._file.write(line + "\n")
+            self._file.write("".join(lines))
             self._file.flush()
             os.fsync(self._file.fileno())
         except OSError as error:

@@ -4,37 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import time as clock
-from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from concurrent.futures import Executor
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from vehicle.errors import SimulationError, VehicleError
 from vehicle.flexbody.library import PACKAGE_FOLDER
 from vehicle.output.folder import folder_lock
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.template import SHIPPED as TEMPLATES
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.sweeps.case import Case, digest
-from vehicle.sweeps.executors import process_pool, workers_of
+from vehicle.sweeps.crew import Crew
+from vehicle.sweeps.executors import process_pool
 from vehicle.sweeps.measure import ComfortMeasure, Measure
 from vehicle.sweeps.program import class_source, libraries, program_digest
+from vehicle.sweeps.result import Result
 from vehicle.sweeps.store import ROWS, Store
 from vehicle.sweeps.table import SweepTable
-from vehicle.sweeps.worker import Result, carry_out
 
 Progress = Callable[[float], None]
-
-PER_WORKER = 4
-"""Cases in the hands of an executor for each of its workers: enough that none waits for the next, few enough that ten
-thousand do not fill the memory, and that few must be repeated when a worker dies."""
-UNTOLD = 64
-"""The same in all, where an executor does not tell how many workers it has."""
-
-DIED = "the worker died in this run, twice (killed, or out of memory)"
 
 
 def sweep(
@@ -86,18 +77,19 @@ def sweep(
         }
         began = clock.perf_counter()
 
-        def keep(key: str, result: Result) -> None:
-            finished[key] = result
+        def keep(keys: Sequence[str], results: Sequence[Result]) -> None:
+            finished.update(zip(keys, results, strict=True))
             if store is not None:
-                store.add(key, todo[key].label, result)
-            done.add(key)
-            if progress is not None:
-                progress(len(done) / len(todo))
+                store.add({key: (todo[key].label, finished[key]) for key in keys})
+            for key in keys:
+                done.add(key)
+                if progress is not None:
+                    progress(len(done) / len(todo))
 
         done: set[str] = set()
         try:
             if todo:
-                _Crew(executor or partial(process_pool, jobs), chosen).work(todo, keep)
+                Crew(executor or partial(process_pool, jobs), chosen).work(todo, keep)
         finally:
             if store is not None:
                 store.close()
@@ -151,80 +143,3 @@ def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
 def _say_how_long(folder: Path, seconds: float, runs: int) -> None:
     with (folder / "timing.csv").open("a", encoding="utf-8") as file:
         file.write(f"# {runs} runs computed in {seconds:.2f} s\n")
-
-
-class _Crew:
-    """Hands cases to an executor and survives the death of its workers."""
-
-    def __init__(self, given: Executor | Callable[[], Executor], measure: Measure) -> None:
-        self.make = None if isinstance(given, Executor) else given
-        self.executor = given if isinstance(given, Executor) else given()
-        self.measure, self.program = measure, program_digest()
-
-    def work(self, todo: dict[str, Case], keep: Callable[[str, Result], None]) -> None:
-        """Carry out all cases; `keep` is called for each as it finishes."""
-        waiting = deque(todo)
-        suspects: deque[str] = deque()
-        try:
-            while waiting or suspects:
-                if suspects:
-                    # Alone, so that only the run that kills its worker is blamed.
-                    key = suspects.popleft()
-                    if self._round(deque([key]), todo, keep):
-                        keep(key, Result(reason=DIED))
-                else:
-                    suspects.extend(self._round(waiting, todo, keep))
-        except CancelledError:
-            raise SimulationError(
-                "the executor gave up its runs (a Dask scheduler that is gone?); finished rows are kept, "
-                "--resume goes on"
-            ) from None
-        finally:
-            if self.make is not None:
-                _close(self.executor)
-
-    def _round(self, waiting: deque[str], todo: dict[str, Case], keep: Callable[[str, Result], None]) -> list[str]:
-        """Work until nothing waits or a worker dies; returns the cases that were in hand then."""
-        flying: dict[Future[Result], str] = {}
-        lost: list[str] = []
-        workers = workers_of(self.executor)
-        at_once = UNTOLD if workers is None else PER_WORKER * workers
-        while waiting or flying:
-            while waiting and len(flying) < at_once and not lost:
-                key = waiting.popleft()
-                try:
-                    flying[self.executor.submit(carry_out, todo[key], self.measure, self.program)] = key
-                except BrokenExecutor:
-                    lost.append(key)
-            if not flying:
-                break
-            for future in wait(flying, return_when=FIRST_COMPLETED).done:
-                key = flying.pop(future)
-                error = future.exception()
-                if error is None:
-                    keep(key, future.result())
-                elif isinstance(error, BrokenExecutor):
-                    lost.append(key)
-                elif isinstance(error, VehicleError):
-                    raise error  # about the worker itself: those of a run are rows
-                else:
-                    keep(key, Result(reason=f"{type(error).__name__}: {error}"))
-        if lost:
-            if self.make is None:
-                raise SimulationError(
-                    "a worker of the given executor died; finished rows are kept. Give a function that makes the "
-                    "executor instead: it is then made again, and the sweep goes on"
-                )
-            _close(self.executor)
-            self.executor = self.make()
-        return lost
-
-
-def _close(executor: Executor) -> None:
-    """End an executor without waiting for what nobody wants any more; a Dask client goes with its own."""
-    client = getattr(executor, "_client", None)
-    if client is None:
-        executor.shutdown(wait=True, cancel_futures=True)
-    else:
-        executor.shutdown(wait=False)
-        client.close()

@@ -19,7 +19,7 @@ from vehicle.records.reader import recognise
 from vehicle.records.sheet_format import read_sheet_texts
 from vehicle.records.text_format import read_texts
 from vehicle.sweeps.case import Case
-from vehicle.sweeps.worker import Result
+from vehicle.sweeps.result import Result
 
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Columns beside the parameters and the numbers, whose heads have units."""
