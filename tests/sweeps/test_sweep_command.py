@@ -42,7 +42,7 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     # A second time it is refused, goes on, or starts anew.
     again = [*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]
     assert main(again) == 2
-    assert "holds a sweep; --resume goes on, --force starts anew" in capsys.readouterr().err
+    assert "holds finished runs; --resume goes on, --force starts anew" in capsys.readouterr().err
     assert main([*again, "--resume", "--quiet"]) == 0
     assert "# 0 runs computed" in (output / "timing.csv").read_text(encoding="utf-8")
     assert table_of(output) == rows

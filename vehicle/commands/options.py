@@ -58,7 +58,7 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
 
     Args:
         parser: of the command.
-        several: --input may be repeated; then its value is a list.
+        several: --input, --road and --speed may be repeated; then their values are lists.
     """
     parser.add_argument(
         "--input",
@@ -74,19 +74,32 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
     )
     parser.add_argument(
         "--road",
+        action="append" if several else "store",
         nargs="?",
         const="",
         metavar="C|FILE.csv",
         help="instead of --input, all wheels drive over a road: its class of ISO 8608, A to H, or a measured profile "
-        "(columns distance, left, right [m]); beside --input, alone: accept levels beyond a shaker",
+        "(columns distance, left, right [m]); beside --input, alone: accept levels beyond a shaker"
+        + ("; may be repeated" if several else ""),
     )
-    road_options(parser)
+    road_options(parser, several=several)
 
 
-def road_options(parser: argparse.ArgumentParser) -> None:
-    """Add the numbers of a drive over a road; each is None where it is not given."""
+def road_options(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
+    """Add the numbers of a drive over a road; each is None where it is not given.
+
+    Args:
+        parser: of the command.
+        several: --speed may be repeated, once for each road; then its value is a list.
+    """
     group = parser.add_argument_group("a road")
-    group.add_argument("--speed", type=float, metavar="KM/H", help="speed of the car [km/h]")
+    group.add_argument(
+        "--speed",
+        action="append" if several else "store",
+        type=float,
+        metavar="KM/H",
+        help="speed of the car [km/h]" + ("; once for all roads, or once for each" if several else ""),
+    )
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
     group.add_argument(
         "--rate",
@@ -129,8 +142,9 @@ def drives_on_road(options: argparse.Namespace) -> bool:
     Raises:
         ConfigurationError: neither or both are given, or options that belong to the other.
     """
-    words = f"--road {options.road}"
-    if options.road:
+    roads = options.road if isinstance(options.road, list) else [options.road]
+    words = " ".join(f"--road {one}" for one in roads)
+    if any(roads):
         if options.input:
             raise ConfigurationError(
                 f"{words} beside --input: give one of them; --road alone accepts levels beyond a shaker"
@@ -260,6 +274,12 @@ def engine_option(parser: argparse.ArgumentParser, default: str) -> None:
         help="mujoco, the model of record; reduced: hundreds of times faster, linear but for the dampers, no film; "
         "auto: reduced where its validity holds, else mujoco; %(default)s by default",
     )
+
+
+def skip_option(parser: argparse.ArgumentParser) -> None:
+    """Add --skip: the car starts at rest."""
+    text = "seconds left out at the start; %(default)g by default"
+    parser.add_argument("--skip", type=float, default=2.0, metavar="S", help=text)
 
 
 def jobs_option(parser: argparse.ArgumentParser, *, note: str = "") -> None:

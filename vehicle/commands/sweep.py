@@ -9,17 +9,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
     command_parser,
-    drives_on_road,
     engine_option,
     jobs_option,
     message_options,
     output_options,
     signal_options,
+    skip_option,
     vehicle_options,
 )
-from vehicle.names import CORNERS
 
 
 def parser() -> Parser:
@@ -42,9 +42,7 @@ def parser() -> Parser:
     )
     vehicle_options(found)
     engine_option(found, "auto")
-    found.add_argument(
-        "--skip", type=float, default=2.0, metavar="S", help="seconds left out at the start; 2 by default"
-    )
+    skip_option(found)
     jobs_option(found)
     found.add_argument(
         "--executor", metavar="WHERE", help="dask://host:port, or module:factory for an executor of your own"
@@ -60,10 +58,9 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
-    from vehicle.excitation.input_files import find_input
     from vehicle.output.folder import prepare_folder
     from vehicle.parameters.vehicle import load_vehicle
-    from vehicle.sweeps.case import Input, SignalFile, signal_of, table_cases
+    from vehicle.sweeps.case import table_cases
     from vehicle.sweeps.executors import executor_factory
     from vehicle.sweeps.measure import ComfortMeasure
     from vehicle.sweeps.store import ROWS
@@ -75,21 +72,7 @@ def _job(options: argparse.Namespace) -> None:
     paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
     vehicle = load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
-    inputs: list[Input] = []
-    if drives_on_road(options):
-        from vehicle.commands.road import class_or_profile, road_drive
-
-        inputs.append(road_drive(class_or_profile(options.road), options, vehicle))
-    else:
-        wheel, levels = CORNERS[options.wheel or "front_right"], options.road is not None
-        paths_of = [find_input(name).resolve() for name in options.input]
-        inputs += [SignalFile(path=path, wheel=wheel, accept_implausible=levels) for path in paths_of]
-    for source in inputs:
-        duration = signal_of(source).duration
-        if not 0.0 <= options.skip < duration:
-            raise ConfigurationError(
-                f"--skip {options.skip:g} s: allowed is 0 s to less than {source.name}, {duration:g} s"
-            )
+    inputs = chosen_inputs(options, vehicle)
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
     folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=ROWS)

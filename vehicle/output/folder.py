@@ -60,7 +60,7 @@ def output_folder(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) ->
 
 
 def prepare_folder(folder: Path, *, force: bool, resume: bool = False, rows: str = "") -> Path:
-    """Make, or take up, a folder whose files are written one after the other: of a study, or of a sweep.
+    """Make, or take up, a folder whose files are written one after the other: of a study, a sweep or a search.
 
     Args:
         folder: where to.
@@ -83,7 +83,7 @@ def prepare_folder(folder: Path, *, force: bool, resume: bool = False, rows: str
         begun = (folder / rows).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
         if begun and not (resume or force):
             ways = (
-                "a sweep; --resume goes on, --force starts anew"
+                "finished runs; --resume goes on, --force starts anew"
                 if rows
                 else ("files already; give another folder, or --force to overwrite")
             )
