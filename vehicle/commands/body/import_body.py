@@ -19,11 +19,15 @@ LENGTHS = {"m": 1.0, "mm": 1e-3, "in": 0.0254}
 MASSES = {"kg": 1.0, "t": 1000.0, "g": 1e-3, "lbf s2/in": 175.126835}
 """Units of mass that go with them: in mm, s and N a mass is in tonnes, in inches, s and lbf in lbf s2/in."""
 
+_ANSYS = (
+    "in /AUX2 read it with FILE,JOB,full and write HBMAT,k,matrix,,ASCII,STIFF,NO,YES and "
+    "HBMAT,m,matrix,,ASCII,MASS,NO,NO; give k.matrix, --mass m.matrix, --dofs k.mapping and --nodes, their list"
+)
 REFUSED = {
     ".op2": "Nastran OP2: no reader of it works with today's numpy; export modes as a universal file (datasets 15, 55) "
     "through the pre-processor, or punch K and M (DMIG) and convert them to Matrix Market",
-    ".rst": "ANSYS results: export K and M with HBMAT or *EXPORT,MMF (Matrix Market), or modes as a universal file",
-    ".full": "ANSYS full file: export K and M as Matrix Market with *SMAT and *EXPORT,MMF",
+    ".rst": f"ANSYS results: a modal analysis of the free body leaves JOB.full too; {_ANSYS}",
+    ".full": f"ANSYS full file: {_ANSYS}",
     ".odb": "Abaqus database: write K and M with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT",
     ".mnf": "Adams modal neutral file: export modes as a universal file from the program that made it",
 }
@@ -36,11 +40,16 @@ def add(tasks: Any) -> None:
         "file",
         type=Path,
         metavar="FILE",
-        help="JOB.sti of CalculiX (with .mas, .dof, .inp); stiffness as Matrix Market, FILE.mat:K or text, with --mass,"
-        " --dofs, --nodes; modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
+        help="JOB.sti of CalculiX (with .mas, .dof, .inp); K as Matrix Market, Harwell-Boeing, FILE.mat:K, text;"
+        " with --mass, --dofs, --nodes; modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
     )
     taken.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
-    taken.add_argument("--dofs", type=Path, metavar="FILE", help="table node,direction (1 to 6) of the rows of K and M")
+    taken.add_argument(
+        "--dofs",
+        type=Path,
+        metavar="FILE",
+        help="of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
+    )
     taken.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z, or an input deck with *NODE")
     taken.add_argument("--length-unit", choices=LENGTHS, default="m", help="unit of length of matrices and .frd; m")
     taken.add_argument("--mass-unit", choices=MASSES, default="kg", help="unit of mass of the matrices; kg, with mm: t")

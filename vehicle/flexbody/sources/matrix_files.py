@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,18 +12,24 @@ import scipy
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.flexbody.sources.calculix import assembled
 from vehicle.flexbody.sources.deck import read_deck
+from vehicle.flexbody.sources.dof_list import read_dofs
+from vehicle.flexbody.sources.harwell_boeing import is_harwell_boeing, read_harwell_boeing
 from vehicle.flexbody.sources.matrices import BodyMatrices
 from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole, whole_numbers
+
+_FIVE = re.compile(r"\s*(\d+[\s,]+){4}[-+.\d]")
+"""Node, direction, node, direction, value."""
 
 
 def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -> BodyMatrices:
     """Matrices of a body, in the units of the source.
 
     Args:
-        stiffness, mass: `.mtx` of Matrix Market; `.mat` of MATLAB, "FILE.mat:NAME" where it holds several matrices;
-            `.mtx` or text of Abaqus' `*MATRIX OUTPUT`, rows "node, direction, node, direction, value", which need no
-            list of degrees of freedom; text "row column value".
-        dofs: table "node,direction" of each row of the matrices, direction 1 to 6.
+        stiffness, mass: Matrix Market, as `*EXPORT,...,MMF` of ANSYS; Harwell-Boeing, as its `HBMAT`; `.mat` of MATLAB,
+            "FILE.mat:NAME" where it holds several matrices; `.mtx` or text of Abaqus'
+            `*MATRIX OUTPUT`, rows "node, direction, node, direction, value", which need no list of degrees of freedom;
+            text "row column value".
+        dofs: of each row of the matrices, as of `read_dofs`.
         nodes: table "node,x,y,z", or an input deck.
 
     Raises:
@@ -38,19 +45,18 @@ def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -
         index = {(int(node), int(direction)): i for i, (node, direction) in enumerate(pairs)}
         matrices = [_of_pairs(one, index) for one in (table, other)]
         identity, direction = pairs[:, 0], pairs[:, 1] - 1
+        if direction.min() < 0 or direction.max() > 5:
+            raise DataError(
+                f"{stiffness}: directions {direction.min() + 1} to {direction.max() + 1}; allowed are 1 to 6."
+            )
     else:
         if dofs is None:
             raise ConfigurationError(
                 f"{stiffness.name}: needs --dofs, a table node,direction (1 to 3 displacements, 4 to 6 rotations) with "
                 "a line for each row of the matrices"
             )
-        listed = rows_of_numbers(dofs, 1, columns=2)
-        identity, direction = (whole_numbers(dofs, listed[:, i]) - i for i in (0, 1))
+        identity, direction = read_dofs(dofs)
         matrices = [_matrix(file, len(identity)) for file in (stiffness, mass)]
-    if direction.min() < 0 or direction.max() > 5:
-        raise DataError(
-            f"{dofs or stiffness}: directions {direction.min() + 1} to {direction.max() + 1}; allowed are 1 to 6."
-        )
     return assembled(stiffness, matrices[0], matrices[1], identity, direction, deck, "finite elements")
 
 
@@ -62,7 +68,7 @@ def _is_by_node(path: Path) -> bool:
         with path.open(encoding="ascii") as file:
             for line in file:
                 if line.strip() and not line.startswith(("%", "*", "#")):
-                    return len(line.replace(",", " ").split()) == 5
+                    return bool(_FIVE.match(line))
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"{path}: cannot be read as text ({error}).") from error
     return False
@@ -83,6 +89,8 @@ def _matrix(path: Path, size: int) -> Any:
     try:
         with file.open("rb") as stream:
             market = stream.read(14) == b"%%MatrixMarket"
+        if not market and is_harwell_boeing(file):
+            return _real(file, read_harwell_boeing(file))
         if not market:
             return coordinate_matrix(file, size)
         return _real(file, scipy.io.mmread(file))

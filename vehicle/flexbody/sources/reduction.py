@@ -14,9 +14,9 @@ from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.sources.matrices import BodyMatrices
 
-SHIFT = 2.0
-"""Frequency below which K is shifted [Hz], so that a free body can be factorised: well below elastic modes of cars, far
-above the round-off of K."""
+SHIFT = 1.0 / 40.0
+"""By which K is shifted, so that a free body can be factorised, over the highest frequency wanted [1]: below the
+elastic modes, and near enough to them that the six rigid ones do not take their digits."""
 _FIRST_GUESS, _MORE = 30, 2
 _DENSE = 300
 """Degrees of freedom up to which all modes are computed: faster there, and with hardly any mass too few for Lanczos."""
@@ -34,7 +34,7 @@ class FreeModes:
         rigid_vectors: rigid motions with R' M R = 1, shape (dofs, 6).
         rigid_frequency: what the stiffness gives to them [Hz]; zero but for the digits of the source.
         orthogonality: largest |R' M Phi| and |Phi' M Phi - 1| [1].
-        factor: solver of (K + s M) x = b, s = (2 pi SHIFT)^2.
+        factor: solver of (K + s M) x = b, s = (2 pi SHIFT up_to)^2.
     """
 
     rigid: MassProperties
@@ -47,7 +47,7 @@ class FreeModes:
 
 
 def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
-    """(K - w^2 M) phi = 0 up to a frequency, by shift-invert Lanczos about -(2 pi SHIFT)^2.
+    """(K - w^2 M) phi = 0 up to a frequency, by shift-invert Lanczos about -(2 pi SHIFT up_to)^2.
 
     Args:
         body: K and M.
@@ -62,7 +62,7 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
     rigid = body.mass_properties()
     unit = body.rigid_motions(rigid.cog)
     motions = np.asarray(np.linalg.solve(np.linalg.cholesky(unit.T @ (body.mass @ unit)), unit.T).T, dtype=float)
-    shift = (2.0 * np.pi * SHIFT) ** 2
+    shift = (2.0 * np.pi * SHIFT * up_to) ** 2
     factor = _factorised(body.stiffness + shift * body.mass)
     limit = (2.0 * np.pi * up_to) ** 2
     values, vectors = (_all if len(body.node) <= _DENSE else _lowest)(body, shift, limit, factor)
