@@ -188,7 +188,7 @@ def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...
             values = []
         if not separator or len(values) not in (2, 3):
             raise ConfigurationError(f"--fit {text}: needed is {TEXT}, as in damper.viscous=500:5000:1500")
-        begin = value_of(vehicle, path)
-        start = values[2] if len(values) > 2 else begin
+        overrides_of(vehicle, {path: values[0]})  # refuses what is no number of the car
+        start = values[2] if len(values) > 2 else value_of(vehicle, path)
         found.append(Range(path=path, low=values[0], high=values[1], start=start))
     return tuple(found)

@@ -175,6 +175,7 @@ def design_superelement(
         attachment_flexibility=True,
         frequency_scale=1.0,
         modes_up_to=None,
+        modes={},
     )
     return _built(design, tuple(points.items()), tuple(attachments.items()), known)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -49,12 +50,13 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
     status = file.stat()
     source = _read_once(file, status.st_mtime_ns, status.st_size)
     if isinstance(source, Superelement):
-        return _up_to(source, vehicle) if body.flexible else source.without_modes()
+        return _with_changed_modes(_up_to(source, vehicle), vehicle) if body.flexible else source.without_modes()
     try:
         if not body.flexible:
             return skeleton(source, points)
         rigid_body(body)  # says better what is wrong with an inertia
-        return _up_to(design_superelement(source, points, vehicle.composition.attachments(), body), vehicle)
+        built = design_superelement(source, points, vehicle.composition.attachments(), body)
+        return _with_changed_modes(_up_to(built, vehicle), vehicle)
     except ConfigurationError as error:
         text = str(error)
         raise ConfigurationError(text if text.startswith("body.") else f"{file.name}: {text}") from None
@@ -72,6 +74,25 @@ def _up_to(model: Superelement, vehicle: Vehicle) -> Superelement:
             "without modes is body.flexible = false"
         )
     return kept
+
+
+def _with_changed_modes(model: Superelement, vehicle: Vehicle) -> Superelement:
+    """The body with what the vehicle changes of single modes; they keep their numbers, whatever their order becomes."""
+    changes = {int(number): change for number, change in vehicle.body.modes.items()}
+    if not changes:
+        return model
+    count = len(model.frequencies)
+    if max(changes) > count:
+        above = "" if vehicle.body.modes_up_to is None else f" up to body.modes_up_to = {vehicle.body.modes_up_to:g} Hz"
+        raise ConfigurationError(
+            f"body.modes.{max(changes)}: {model.name} has modes 1 to {count}{above}; give the number of one"
+        )
+    frequencies, damping = model.frequencies.copy(), model.damping_ratio.copy()
+    for number, change in changes.items():
+        frequencies[number - 1] *= change.frequency_factor
+        if change.damping_ratio is not None:
+            damping[number - 1] = change.damping_ratio
+    return replace(model, frequencies=frequencies, damping_ratio=damping, derived=True)
 
 
 def own_body_file(vehicle: Vehicle, folder: Path) -> Path | None:

@@ -2,11 +2,37 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.hardpoints import Point
-from vehicle.parameters.quantity import quantity, validate
+from vehicle.parameters.quantity import Validated, quantity, validate
+
+MOST_MODES = 999
+"""Modes whose numbers may be given one by one: two of their digits more than any body model of a whole car has used."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BodyMode(Validated):
+    """What is changed of one mode of the body model, as [body.modes.3]; its shape stays."""
+
+    frequency_factor: float = quantity(
+        "-",
+        "factor on the natural frequency of this mode",
+        at_least=0.1,
+        at_most=10.0,
+        why="a mode a hundred times as stiff or soft is no correction of a body model",
+        default=1.0,
+    )
+    damping_ratio: float | None = quantity(
+        "-",
+        "share of critical damping of this mode; that of the body model by default",
+        at_least=0.0,
+        at_most=0.5,
+        why="trimmed bodies have 0.01 to 0.1",
+        default=None,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,9 +72,16 @@ class TrimmedBody:
         why="a body 400 times as stiff is rigid: flexible = false",
         default=1.0,
     )
+    # The cache of built bodies, which asks for a hash, leaves the changes of modes out.
+    modes: Mapping[str, BodyMode] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         validate(self)
+        for number in self.modes:
+            if not (number.isascii() and number.isdigit() and 1 <= int(number) <= MOST_MODES and number[0] != "0"):
+                raise ConfigurationError(
+                    f"TrimmedBody.modes.{number}: needed is the number of a mode from 1, as body.modes.3"
+                )
         if self.inertia_variant == "published" and self.ixx_published is None:
             raise ConfigurationError("TrimmedBody.ixx_published: missing; inertia_variant = published needs it")
         if self.flexible and self.superelement is None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.names import SIDE_SIGN
-from vehicle.parameters.body import TrimmedBody
+from vehicle.parameters.body import MOST_MODES, BodyMode, TrimmedBody
 from vehicle.parameters.compose import kinds
 from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
 from vehicle.parameters.instances import instances
@@ -27,7 +27,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     """
     car = instances(table, (folder, folder / "templates"))
     own, given = (
-        ["solver.timestep", *(f"body.{key}" for key in _keys(TrimmedBody, everything=False))],
+        ["solver.timestep", *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes")],
         kinds(car, table),
     )
     # An ideal joint becomes a bushing by numbers.
@@ -45,7 +45,9 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
         keys = [f"{path}.{key}" for path in inside for key in _keys(every[f"{i.name}.{path}"], everything=True)]
         keys += [f"hardpoints.{name}" for name in i.template.hardpoints]
         sides += [f"{i.name}.{side}.{key}" for side in SIDE_SIGN if i.template.mirrored for key in keys]
-    return list(dict.fromkeys(path for path in (*own, *sides) if _missing(table, path)))
+    changes = list(_keys(BodyMode, everything=False))
+    modes = [f"body.modes.{number}.{key}" for number in range(1, MOST_MODES + 1) for key in changes]
+    return list(dict.fromkeys(path for path in (*own, *sides, *modes) if _missing(table, path)))
 
 
 def _keys(kind: type[Any], *, everything: bool) -> Iterator[str]:

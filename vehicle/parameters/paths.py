@@ -157,12 +157,17 @@ def value_of(vehicle: Any, path: str) -> float:
 
     Args:
         vehicle: the parameters.
-        path: as of `full_path`, of a number or of a component.
+        path: as of `full_path`, of a number or of a component; the whole path of one that has its default.
 
     Raises:
         ConfigurationError: the path is no number of it.
     """
     table = as_table(vehicle)
+    declared: Mapping[str, Any] = vehicle.quantity_of(path)
+    if _at(table, path) is None and "unit" in declared:
+        if _is_number(declared["default"]):
+            return float(declared["default"])
+        raise ConfigurationError(f"parameter {path}: not given in this vehicle, and without a default; give its value")
     try:
         found = _at(table, full_path(table, path))
         if _is_number(found):
@@ -189,7 +194,8 @@ def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
         ConfigurationError: a path that is no number of it.
     """
     for path in values:
-        value_of(vehicle, path)
+        if "unit" not in vehicle.quantity_of(path):
+            value_of(vehicle, path)
     return tuple(f"{path}={float(value)!r}" for path, value in values.items())
 
 

@@ -52,6 +52,7 @@ def quantity(
         "why": why,
         "length": length,
         "choices": choices,
+        "default": None if default is dataclasses.MISSING else default,
     }
     if default is dataclasses.MISSING:
         return dataclasses.field(metadata=metadata)
@@ -147,8 +148,9 @@ def field_quantity(kind: type[Any], path: str) -> Mapping[str, Any]:
         origin = typing.get_origin(inner)
         if dataclasses.is_dataclass(inner) and key in (fields := {one.name: one for one in dataclasses.fields(inner)}):
             found, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
-            # Of a table that may be left out, the table.
-            inner = next((one for one in typing.get_args(inner) if dataclasses.is_dataclass(one)), inner)
+            if typing.get_origin(inner) is not Mapping:
+                # Of a table that may be left out, the table.
+                inner = next((one for one in typing.get_args(inner) if dataclasses.is_dataclass(one)), inner)
         elif isinstance(origin, type) and issubclass(origin, Mapping):
             inner = typing.get_args(inner)[1]
         elif key in AXES and found.get("length") == len(AXES):

@@ -183,8 +183,11 @@ class Vehicle:
             path: whole path, of a value or of a component.
         """
         kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, **self.composition.kinds}
-        table, _, key = path.removesuffix(".").rpartition(".")
-        for place, inner in ((table, key), (table.rpartition(".")[0], f"{table.rpartition('.')[2]}.{key}")):
+        keys = path.removesuffix(".").split(".")
+        # A component of a vector is one key behind its table, a number of a mode of the body two.
+        for place, inner in (
+            (".".join(keys[:at]), ".".join(keys[at:])) for at in range(len(keys) - 1, len(keys) - 4, -1)
+        ):
             sideless = ".".join(word for word in place.split(".") if word not in ("right", "left"))
             if sideless in kinds:
                 return field_quantity(kinds[sideless], inner)
