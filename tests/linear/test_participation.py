@@ -56,5 +56,5 @@ def test_what_is_no_place_of_a_flexible_body_is_refused(car):
     with pytest.raises(ConfigurationError, match=r"^place engine_acc_z: no acceleration on the body; there are "):
         of(car, "engine_acc_z")
     rigid = Car.load(overrides=["body.flexible=false"])
-    with pytest.raises(ConfigurationError, match="its body is rigid; modes that take part need body.flexible = true"):
+    with pytest.raises(ConfigurationError, match=r"its body is rigid; modes that take part need body\.flexible = true"):
         of(rigid, "seat_rail_acc_z")
