@@ -32,7 +32,7 @@ ROOMS: dict[str, set[str]] = {
     "lumped": {"parameters", "laws", "linear"},
     "comparison": {"analysis", "car", "linear", "records", "rendering"},
     "notebook": {"analysis", "rendering", "simulation"},
-    "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes"},
+    "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "reduced", "rendering"}
     | {"simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}

@@ -10,6 +10,7 @@ import pytest
 
 from vehicle.errors import ConfigurationError, OutputError
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
+from vehicle.rendering.crew import drawn_by
 from vehicle.rendering.film import film
 from vehicle.rendering.overlay import SLIP_COLOUR, STICK_COLOUR, Layout
 from vehicle.rendering.shot import Shot, Take
@@ -140,3 +141,11 @@ def test_a_short_slip_between_two_frames_lights_the_lamp(run):
     # Slip begins at 0.15 s; the frame at 0.14 s stands for 0.123 to 0.157 s.
     assert prepared._lamps(0.14)["damper right"]
     assert not prepared._lamps(0.13)["damper right"]
+
+
+@pytest.mark.render
+@pytest.mark.usefixtures("film_machine")
+def test_the_film_does_not_depend_on_the_number_of_processes(run, monkeypatch):
+    monkeypatch.setattr("vehicle.rendering.crew.WORTH_A_PROCESS", 2)
+    alone, both = (list(drawn_by(jobs, shot(run), choose_backend())) for jobs in (1, 2))
+    np.testing.assert_array_equal(alone, both)

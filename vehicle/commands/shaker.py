@@ -158,6 +158,7 @@ def _job(options: argparse.Namespace) -> None:
             raise save_last_state(error, output) from None
 
         def make_film(path: Path) -> None:
+            from vehicle.rendering.crew import drawing_jobs
             from vehicle.rendering.film import film
             from vehicle.rendering.shot import Take
 
@@ -168,7 +169,8 @@ def _job(options: argparse.Namespace) -> None:
                 exaggeration=options.exaggeration,
                 speed=None if drive is None else drive.speed / 3.6,
             )
-            film(run, path, take, progress=ProgressLine("film      ", enabled=not options.quiet))
+            progress = ProgressLine("film      ", enabled=not options.quiet)
+            film(run, path, take, jobs=drawing_jobs(), progress=progress)
 
         def make_report(path: Path) -> None:
             from vehicle.report.finished_run import read_run

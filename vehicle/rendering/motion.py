@@ -36,6 +36,9 @@ SHADOW_COLOUR = np.array([0.35, 0.38, 0.42, 0.8], dtype=np.float32)
 """Colour of the members in the design position, against which the motion is seen."""
 
 
+UPRIGHT = np.eye(3).ravel()
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class State:
     """Motion at one instant.
@@ -203,7 +206,7 @@ def _append(
     scene: mujoco.MjvScene, kind: mujoco.mjtGeom, radius: float, place: Vector, colour: npt.NDArray[np.float32]
 ) -> mujoco.MjvGeom:
     geom = scene.geoms[scene.ngeom]
-    mujoco.mjv_initGeom(geom, kind, np.full(3, radius), place, np.eye(3).ravel(), colour)
+    mujoco.mjv_initGeom(geom, kind, np.full(3, radius), place, UPRIGHT, colour)
     geom.category = mujoco.mjtCatBit.mjCAT_DECOR
     geom.emission = 0.35
     geom.specular = 0.1

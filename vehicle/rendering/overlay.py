@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -124,7 +124,7 @@ class Caption:
     def write(self, picture: Picture) -> Picture:
         """Put them onto a view of the car, (height, width, 3)."""
         image = Image.fromarray(np.ascontiguousarray(picture))
-        self._head(ImageDraw.Draw(image))
+        self._head(image)
         self._scale(image)
         return np.asarray(image)
 
@@ -135,13 +135,24 @@ class Caption:
     def _font(self, size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
         return font(max(round(size * self.layout.height / 720.0), 6), bold)
 
-    def _head(self, pen: ImageDraw.ImageDraw, last: str | None = None) -> None:
+    def _head(self, image: Image.Image, last: str = "") -> None:
         """Heading, and a bold last line."""
-        x, y = self._px(16), self._px(12)
-        for number, line in enumerate((*self.heading, *([] if last is None else [last]))):
-            bold = number in (0, len(self.heading))
-            pen.text((x, y), line, fill=INK, font=self._font(21 if number == 0 else 17, bold))
+        x, y, step = self._px(16), self._px(12), self._px(24)
+        image.paste(INK, (x, y), self.head)
+        below = y + self._px(28) + step * (len(self.heading) - 1)
+        ImageDraw.Draw(image).text((x, below), last, fill=INK, font=self._font(17, True))
+
+    @cached_property
+    def head(self) -> Image.Image:
+        """The heading as a mask of its ink."""
+        lines = [(line, self._font(21 if number == 0 else 17, number == 0)) for number, line in enumerate(self.heading)]
+        width = max(letters.getbbox(line)[2] for line, letters in lines)
+        mask = Image.new("L", (round(width) + 1, self._px(28) + self._px(24) * len(lines)))
+        pen, y = ImageDraw.Draw(mask), 0
+        for number, (line, letters) in enumerate(lines):
+            pen.text((0, y), line, fill=255, font=letters)
             y += self._px(28 if number == 0 else 24)
+        return mask
 
     def _scale(self, image: Image.Image) -> None:
         """The colour bar at the lower left of the car."""
@@ -190,7 +201,7 @@ class Overlay(Caption):
         layout, image = self.layout, self.backdrop.copy()
         image.paste(Image.fromarray(np.ascontiguousarray(picture)), (0, 0))
         pen = ImageDraw.Draw(image)
-        self._head(pen, f"t = {time:.3f} s")
+        self._head(image, f"t = {time:.3f} s")
         self._lamps(pen, lamps)
         self._scale(image)
         pen.line([(layout.main_width, 0), (layout.main_width, layout.view_height)], fill=PAPER, width=self._px(3))
@@ -270,6 +281,7 @@ class Overlay(Caption):
             image.paste(panel.resize((width, bottom - top), Image.Resampling.BOX), (layout.trace_left, top))
 
 
+@cache
 def font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
     """DejaVu Sans of a size [pixel], which comes with matplotlib."""
     import matplotlib

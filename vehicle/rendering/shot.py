@@ -113,9 +113,10 @@ class Shot:
     """
 
     def __init__(self, run: RecordedRun, layout: Layout, take: Take) -> None:
-        self.run, self.layout, self.speed = run, layout, take.speed
+        # What is kept can be sent to another process, so nothing that a compiler of models holds is.
         recording, vehicle = run.recording, run.car.model.vehicle
-        self.composition = vehicle.composition
+        self.recording, self.vehicle, self.wheel = recording, vehicle, run.wheel
+        self.layout, self.speed, self.composition = layout, take.speed, vehicle.composition
         self.wheels, self.dampers, self.hub = (
             wheels_of(recording),
             dampers_of(recording),
@@ -133,6 +134,7 @@ class Shot:
         length = min(length, record - start)
         frames = max(int(length * take.slow * FPS + 1e-9), 1)
         self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
+        self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes that of the model
         self.motion = RecordedMotion(self.model, recording, start, start + length)
         self.wireframe = Wireframe(run.car.model, self.motion)
         largest, node = self._largest(start + np.arange(frames) / (FPS * take.slow), interval)
@@ -143,15 +145,20 @@ class Shot:
         self.scale_top = 1e-3 * round_up(1e3 * node)
         self.overlay = Overlay(
             layout=layout,
-            heading=self._heading(take.slow),
+            heading=self._heading(run, take.slow),
             time=recording.time,
             traces=self._traces(),
             visible=self.visible,
             scale_top=1e3 * self.scale_top,
         )
 
-    def frames(self, backend: str) -> Iterator[Picture]:
-        """Draw all frames, (height, width, 3) each."""
+    def frames(self, backend: str, first: int = 0, every: int = 1) -> Iterator[Picture]:
+        """Draw frames, (height, width, 3) each.
+
+        Args:
+            backend: "osmesa" or "egl".
+            first, every: the first frame and the distance to the next; all by default.
+        """
         layout, factor = self.layout, self.cut.exaggeration
         rims = [
             RollingRim(self.motion, wheel, self.speed) for wheel in self.composition.wheels if self.speed is not None
@@ -159,7 +166,7 @@ class Shot:
         views = self._views()
         with closing(Canvas(self.model, (layout.width, layout.view_height), backend)) as canvas:
             drawing = Drawing(canvas, self.motion, self.wireframe, self.composition, self.scale_top)
-            for number in range(self.cut.frames):
+            for number in range(first, self.cut.frames, every):
                 time = self.cut.start + number * self.cut.interval
                 state = self.motion.at(time, self.cut.interval)
                 drawing.pose(state, factor)
@@ -174,16 +181,16 @@ class Shot:
 
     def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]]:
         """Camera, viewport and opacity of all materials of each view."""
-        layout, wheel, model = self.layout, self.run.wheel, self.model
-        usual, cleared = self.model.mat_rgba[:, 3].copy(), self.model.mat_rgba[:, 3].copy()
+        layout, wheel, model = self.layout, self.wheel, self.model
+        usual, cleared = self.opacity, self.opacity.copy()
         rolling = next(one.part for one in self.composition.wheels if one.name == wheel)
         names = {model.mat(number).name: number for number in range(model.nmat)}
         cleared[model.geom_matid[model.geom_bodyid == model.body(rolling).id]] = GHOST_OPACITY
         cleared[[names[name] for name in OPACITY if name in names]] = 0.0
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
         return [
-            (whole_car(self.run.car.model.vehicle), (0, 0, layout.main_width, layout.view_height), usual),
-            (close_up(self.motion, self.run.car.model.vehicle, wheel), right, cleared),
+            (whole_car(self.vehicle), (0, 0, layout.main_width, layout.view_height), usual),
+            (close_up(self.motion, self.vehicle, wheel), right, cleared),
         ]
 
     def _largest(self, times: Vector, exposure: float) -> tuple[float, float]:
@@ -198,9 +205,9 @@ class Shot:
         largest = max(float(np.max(parts)), float(np.max(nodes)), VISIBLE_TRAVEL / LARGEST_FACTOR)
         return largest, float(np.quantile(nodes, 0.97))
 
-    def _heading(self, slow: float) -> list[str]:
+    def _heading(self, run: RecordedRun, slow: float) -> list[str]:
         """Input and level; factors and excerpt."""
-        run, cut = self.run, self.cut
+        cut = self.cut
         level = level_words(run.recording, run.wheel, run.signal.rms(run.wheel))
         speed = "real time" if slow == 1.0 else f"slow motion 1 : {slow:g}"
         highest = 0.5 / cut.interval
@@ -219,7 +226,7 @@ class Shot:
 
     def _traces(self) -> list[Trace]:
         """Traces under the picture, scaled to the excerpt."""
-        recording, wheel = self.run.recording, self.run.wheel
+        recording, wheel = self.recording, self.wheel
         ahead = 0.5 * self.visible
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
         found = []
@@ -237,7 +244,7 @@ class Shot:
 
     def _lamps(self, time: float) -> dict[str, bool]:
         """Label of each damper, and whether it slipped at any sample of the time between two frames."""
-        recording = self.run.recording
+        recording = self.recording
         half = max(0.5 * self.cut.interval, 0.5 * recording.timestep)
         first, last = np.searchsorted(recording.time, [time - half, time + half])
         part = slice(int(first), max(int(last), int(first) + 1))
