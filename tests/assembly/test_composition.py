@@ -90,7 +90,9 @@ def test_a_carried_node_moves_with_its_carriers(car):
         # Of a rigid motion of all nodes it takes part.
         carriers, follow = carried_by(body.positions, np.array(place))
         moved = np.einsum("ckj,mkj->mc", follow, rigid_shapes(body.positions, body.cog)[:, carriers])
-        np.testing.assert_allclose(moved, rigid_shapes(np.array([place]), body.cog)[:, 0], atol=1e-12)
+        rotations = np.vstack([np.zeros((3, 3)), np.eye(3)])
+        want = np.hstack([rigid_shapes(np.array([place]), body.cog)[:, 0], rotations])
+        np.testing.assert_allclose(moved, want, atol=1e-12)
 
 
 def test_one_entry_adds_a_channel(tmp_path):

@@ -177,6 +177,12 @@ class _Builder:
         if self.vehicle.body.flexible:
             self._numeric(f"shape/{name}", self.superelement.shape_at(self.nodes[point]))
 
+    def _node_rotation(self, name: str, point: Point) -> None:
+        """Write the modal rotation of the body's node at a point, where its model knows it [rad m^-1 kg^-1/2]."""
+        psi = self.superelement.rotations.get(self.nodes[point]) if self.vehicle.body.flexible else None
+        if psi is not None:
+            self._numeric(f"rotation/{name}", psi.T)
+
     def add_body(self) -> None:
         """Trimmed body, and its mass-normalised modal coordinates q as slides: q'' + 2 zeta w q' + w2 q = force."""
         body = rigid_body(self.vehicle.body)
@@ -253,6 +259,8 @@ class _Builder:
                 self._numeric(f"directions/{name}", law.directions)
         if on_body:
             self._node_shape(name, connection.at)
+            if law is not None and law.rotational_stiffness > 0.0:
+                self._node_rotation(name, connection.at)
 
     def add_spring(self, spring: PlacedSpring) -> None:
         """Spring as a tendon between its ends, held by an equality row that the callback gives its law."""

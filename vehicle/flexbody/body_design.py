@@ -96,6 +96,8 @@ class BodyDesign:
     damping_ratio: float = quantity("-", "share of critical damping of every mode", at_least=0.0, at_most=0.3)
     youngs_modulus: float = quantity("N/m2", "Young's modulus", above=0.0)
     shear_modulus: float = quantity("N/m2", "shear modulus", above=0.0)
+    node_rotations: bool = False
+    """true: the model knows the rotations of its nodes, which elements with a rotational stiffness then act on"""
     nodes: Mapping[str, DesignNode]
     members: Mapping[str, MemberGroup]
 

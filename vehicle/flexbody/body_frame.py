@@ -49,21 +49,33 @@ class BodyFrame:
         Returns:
             Frequencies [Hz], shape (count,); mass-normalised shapes [kg^-1/2], shape (count, n, 3).
         """
+        condensed, _ = condense_rotations(self._stiffness(factors))
+        return free_free_modes(condensed, self.node_mass, self.skeleton.positions, count)
+
+    def _stiffness(self, factors: Mapping[str, float]) -> FloatArray:
+        """Stiffness of all members [N/m, N, N m], shape (6 n, 6 n)."""
         stiffness = self.fixed_stiffness.copy()
         for group, matrix in self.group_stiffness.items():
             stiffness += factors[group] * matrix
-        condensed, _ = condense_rotations(stiffness)
-        return free_free_modes(condensed, self.node_mass, self.skeleton.positions, count)
+        return stiffness
 
     def superelement(self, factors: Mapping[str, float] | None = None) -> Superelement:
         """The modal superelement of the frame; factors of the member groups: by default those of the design."""
         rest, count = self.skeleton, int(self.design.mode_count)
-        frequencies, shapes = self.modes(self.design.factors if factors is None else factors, count)
+        factors = self.design.factors if factors is None else factors
+        frequencies, shapes = self.modes(factors, count)
+        rotations = {}
+        if self.design.node_rotations:
+            # They follow the displacements, as nothing resists them but the members.
+            _, recovery = condense_rotations(self._stiffness(factors))
+            turns = (recovery @ shapes.reshape(count, -1).T).reshape(-1, 6, count)[:, 3:]
+            rotations = {node: turn.T for node, turn in zip(rest.nodes, turns, strict=True)}
         return replace(
             rest,
             frequencies=frequencies,
             damping_ratio=np.full(count, self.design.damping_ratio),
             shapes=shapes,
+            rotations=rotations,
             mode_names=mode_names(shapes, rest.nodes, rest.positions, self.node_mass),
         )
 

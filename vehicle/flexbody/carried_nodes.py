@@ -34,32 +34,33 @@ def with_carried_nodes(body: Superelement, places: Mapping[str, Point]) -> Super
         if np.linalg.norm(body.positions - point, axis=1).min() <= body.hardpoint_tolerance:
             continue
         carriers, follow = carried_by(body.positions, point)
-        shape = np.einsum("ckj,mkj->mc", follow, body.shapes[:, carriers])
-        count = len(body.nodes)
+        shape, turn = (np.einsum("ckj,mkj->mc", part, body.shapes[:, carriers]) for part in (follow[:3], follow[3:]))
+        count, new = len(body.nodes), name if name not in body.nodes else f"{name}_attached"
         body = replace(
             body,
-            nodes=(*body.nodes, name if name not in body.nodes else f"{name}_attached"),
+            nodes=(*body.nodes, new),
             positions=np.vstack([body.positions, point]),
             edges=np.vstack([body.edges, [(count, carrier) for carrier in carriers[:3]]]),
             node_mass=None if body.node_mass is None else np.append(body.node_mass, 0.0),
             shapes=np.concatenate([body.shapes, shape[:, None]], axis=1),
+            rotations={**body.rotations, new: turn} if body.rotations else {},
         )
     return body
 
 
 def carried_by(positions: FloatArray, point: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
-    """Nodes that carry a point, and its displacement by theirs: u = sum over k of N[:, k] u_k.
+    """Nodes that carry a point, and its displacement and rotation by theirs: sum over k of N[:, k] u_k.
 
     Args:
         positions: of all nodes [m], shape (n, 3).
         point: away from all of them [m], shape (3,).
 
     Returns:
-        Indices of the carriers, shape (k,); N, shape (3, k, 3).
+        Indices of the carriers, shape (k,); N, shape (6, k, 3).
     """
     gap = np.linalg.norm(positions - point, axis=1)
     nearest = np.argsort(gap, kind="stable")[:CARRIERS]
-    return nearest, rigid_fit(positions[nearest], 1.0 / gap[nearest] ** 2, point)[:3]
+    return nearest, rigid_fit(positions[nearest], 1.0 / gap[nearest] ** 2, point)
 
 
 def rigid_fit(positions: FloatArray, weight: FloatArray, point: FloatArray) -> FloatArray:

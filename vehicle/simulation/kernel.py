@@ -15,8 +15,7 @@ Every steeper piece of the curve of a damper, clamp(e (v - m), e w), is a fricti
 has no jump, so that it is centred like the viscous one: D = e h/2, aref = -2 (v - m)/h, second order, at any slope.
 The two forces of a bushing are opposite and act each at the point of its own part, in the axes of the carrier; the
 moment r x f of their distance r is left out, which changes no frequency by more than 0.05 %.
-Rotations need no rows: K_rot is soft against every inertia and undamped, so its torque is given explicitly,
-T = -K_rot sin(angle) n from the frames of both sites.
+Rotations need no rows: their torques are given explicitly (`vehicle.simulation.rotations`).
 
 Modal coordinates q of the flexible body move node n by d = R Phi_n q, R being the rotation of the body. They enter a
 row there as r -> r +- d, and its derivative by the coordinates as J -> J +- (R Phi_n, -[d]x on what turns the body):
@@ -38,6 +37,7 @@ from vehicle.laws.friction import slope_at_rest
 from vehicle.simulation.control import control
 from vehicle.simulation.modal_rows import modal_rows
 from vehicle.simulation.records import Efc, Fields, Layout, State, Tables, Weights
+from vehicle.simulation.rotations import rotations
 
 EMPTY_ROW = 1e-9
 """Impedance [kg] of a row without damping and stiffness: small against every mass, and not zero."""
@@ -228,31 +228,6 @@ def lift_off(efc: Efc, e: Layout, c: Weights, s: State) -> None:
             s.explicit[row] = 0.0
             efc.D[row] = EMPTY_ROW
         s.contact[1, k] = rate
-
-
-@jitable
-def rotations(d: Fields, e: Layout, c: Weights, s: State) -> None:
-    """Torques of the mounts, T = R p - K_rot sin(angle) n, on the coordinates; after the forces of the rows.
-
-    sin(angle) n is half the sum of c_k x m_k over the axes of carrier and moving part.
-    """
-    own, first = e.rotations, c.preload.shape[0] - 3 * e.rotations.sites.shape[0]
-    for n in range(own.sites.shape[0]):
-        moving, carrier = d.site_xmat[own.sites[n, 0]], d.site_xmat[own.sites[n, 1]]
-        half = 0.5 * own.stiffness[n]
-        x, y, z = 0.0, 0.0, 0.0
-        for axis in range(3):
-            p = c.preload[first + 3 * n + axis]
-            cx, cy, cz = carrier[axis], carrier[3 + axis], carrier[6 + axis]
-            mx, my, mz = moving[axis], moving[3 + axis], moving[6 + axis]
-            x += p * cx - half * (cy * mz - cz * my)
-            y += p * cy - half * (cz * mx - cx * mz)
-            z += p * cz - half * (cx * my - cy * mx)
-        s.torque[n, 0], s.torque[n, 1], s.torque[n, 2] = x, y, z
-    for entry in range(own.turning.shape[0]):
-        n, dof, sign = own.turning[entry, 0], own.turning[entry, 1], own.turning[entry, 2]
-        turning = d.cdof[dof, 0] * s.torque[n, 0] + d.cdof[dof, 1] * s.torque[n, 1] + d.cdof[dof, 2] * s.torque[n, 2]
-        d.qfrc_applied[dof] += sign * turning
 
 
 @jitable

@@ -98,6 +98,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             sites=_whole([ends[name] for name in turning], 2),
             stiffness=laws[laws[:, 12] > 0.0, 12].copy(),
             turning=_turning(model, [ends[name] for name in turning]),
+            **_node_rotations(model, turning, ends, modes),
         ),
         springs=Springs(
             rows=rows_of(springs),
@@ -252,6 +253,20 @@ def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices
     signs[:, ~_turns(model)] = 0
     pairs = np.argwhere(signs)
     return _whole(np.column_stack([pairs, signs[tuple(pairs.T)]]), 3)
+
+
+def _node_rotations(
+    model: mujoco.MjModel, names: Sequence[str], ends: dict[str, tuple[int, int]], modes: int
+) -> dict[str, Any]:
+    """Elements on nodes of the body whose rotation in the modes is known: which, on which side, and the rotation."""
+    body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "body")
+    read = [numeric(model, f"rotation/{name}") for name in names]
+    known = [(n, psi) for n, psi in enumerate(read) if psi is not None]
+    sides = [int(model.site_bodyid[ends[names[n]][0]] != body) for n, _ in known]
+    return {
+        "nodes": _whole([(n, side) for (n, _), side in zip(known, sides, strict=True)], 2),
+        "shapes": np.reshape([psi for _, psi in known], (len(known), 3 * modes)).astype(float),
+    }
 
 
 def _turns(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:

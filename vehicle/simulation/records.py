@@ -52,11 +52,15 @@ class Rotations(NamedTuple):
         sites: of the moving part and of the carrier; (m, 2).
         stiffness: K_rot [N m/rad]; (m,).
         turning: element, velocity coordinate, and 1 or -1 where it turns the moving part or the carrier; a row each.
+        nodes: element and side (0 moving, 1 carrier) of the k at nodes whose rotation is known; (k, 2).
+        shapes: rotations of these nodes in the modes, about x of all modes, y, z [rad m^-1 kg^-1/2]; (k, 3 modes).
     """
 
     sites: Indices
     stiffness: Vector
     turning: Indices
+    nodes: Indices
+    shapes: Table
 
 
 class Springs(NamedTuple):
@@ -249,6 +253,7 @@ class State(NamedTuple):
         residual, rate: r [m] and r' [m/s] in element axes; (n, 3).
         explicit: f0 of every row [N]; (rows,).
         force: f0 of the elements in their own axes; (n, 3). torque: of the rotations in world axes; (m, 3).
+        frame: of the sides at nodes whose rotation is known, row by row; (k, 9).
         ends, line: lower and upper ends of the main springs with their modal displacement, and their directions.
         stretch: displacement of the laws that are curves; (t,).
         deflection: modal displacement and velocity of the nodes in body axes; (2, 3 g).
@@ -270,6 +275,7 @@ class State(NamedTuple):
     explicit: Vector
     force: Table
     torque: Table
+    frame: Table
     ends: Table
     line: Table
     stretch: Vector

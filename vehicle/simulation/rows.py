@@ -124,7 +124,10 @@ class Rows:
 
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""
-        frames = data.site_xmat[self.layout.rotations.sites].reshape(-1, 2, 3, 3)
+        own, modes = self.layout.rotations, self.layout.modes
+        frames = data.site_xmat[own.sites].reshape(-1, 2, 3, 3)
+        for (element, side), psi in zip(own.nodes, self._node_rotations(data), strict=True):
+            frames[element, side] += np.cross(psi @ data.qpos[modes.positions], frames[element, side], axisb=0, axisc=0)
         moving, carrier = frames[:, 0], frames[:, 1]
         return 0.5 * np.sum(np.cross(carrier, moving, axis=1), axis=2), carrier
 
@@ -133,7 +136,14 @@ class Rows:
         found = np.zeros((len(self.layout.rotations.sites), 3, self.model.nv))
         element, dof, sign = self.layout.rotations.turning.T
         found[element, :, dof] = sign[:, None] * data.cdof[dof, :3]
+        for (index, side), psi in zip(self.layout.rotations.nodes, self._node_rotations(data), strict=True):
+            found[index, :, self.layout.modes.velocities] += (1 - 2 * side) * psi
         return found
+
+    def _node_rotations(self, data: mujoco.MjData) -> Vector:
+        """R Psi of the nodes whose rotation is known; (k, 3, modes)."""
+        own, turn = self.layout.rotations, data.xmat[self.layout.modes.body].reshape(3, 3)
+        return np.asarray(turn @ own.shapes.reshape(len(own.nodes), 3, self.layout.modes.size))
 
 
 def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
@@ -211,6 +221,7 @@ def _at_rest(layout: Layout) -> State:
     shapes |= dict.fromkeys(("plate_velocity", "plate_acceleration"), (tyres, 3))
     shapes |= {"last_time": (1,), "explicit": (layout.row_count,)}
     shapes |= {"torque": (len(layout.rotations.sites), 3), "ends": (2 * springs, 3), "line": (springs, 3)}
+    shapes |= {"frame": (len(layout.rotations.nodes), 9)}
     longest = RING + 1 + int(np.max(layout.controls.laws["lag"], initial=0.0))
     controls, dampers = len(layout.controls.dampers), len(layout.dampers.dofs)
     shapes |= {"coefficient": (dampers,), "sensed": (2 * controls, 2), "past": (controls, longest), "steps": (1,)}

@@ -51,4 +51,25 @@ def report(model: Superelement, vehicle: Vehicle) -> list[str]:
         for name, flexibility in model.residual.items():
             values = ", ".join(f"{value:.3g}" for value in np.linalg.eigvalsh(flexibility))
             lines.append(f"  {name:<28} {values}")
+    return [*lines, *rotation_lines(model, vehicle)]
+
+
+def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
+    """Whether the model knows how the nodes turn on which elements with a rotational stiffness act."""
+    from vehicle.flexbody.superelement import attached_nodes
+
+    turning = {
+        one.point: one.at
+        for one in vehicle.composition.connections
+        if "body" in (one.moving, one.carrier) and one.law is not None and one.law.rotational_stiffness > 0.0
+    }
+    nodes = attached_nodes(model, turning)
+    unknown = [name for name, at in turning.items() if nodes[at] not in model.rotations]
+    known = [name for name in turning if name not in unknown]
+    lines = [f"rotations of nodes under rotational stiffness: known of {', '.join(known)}"] if known else []
+    if unknown:
+        lines.append(
+            f"rotations of nodes under rotational stiffness: not known of {', '.join(unknown)}; to a torque there the "
+            "body is rigid"
+        )
     return lines
