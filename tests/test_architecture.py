@@ -41,7 +41,8 @@ ROOMS: dict[str, set[str]] = {
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
     "replication": {"car", "excitation", "records", "reduced"},
     "report": {"analysis", "car", "linear", "parameters", "records", "rendering", "simulation"},
-    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "output", "parameters"}
+    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "linear", "output"}
+    | {"parameters"}
     | {"records", "rendering", "replication", "report", "simulation", "sweeps"},
     "threads": set(),
     "compiler": set(),

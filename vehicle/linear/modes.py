@@ -112,7 +112,7 @@ def _describe(
     if leader == "flexible":
         amplitudes = np.abs(shape[matrices.modal]) ** 2
         number = int(np.argmax(amplitudes)) + 1
-        words = f"flexible body, mode {number}" + (f" ({names[number - 1]})" if names else "")
+        words = f"flexible body, {mode_words(number, names)}"
     elif leader in ("body", "engine"):
         words = f"{leader} {_rigid_direction(matrices, leader, shape)}"
     elif leader.startswith("wheel"):
@@ -128,6 +128,12 @@ def _describe(
     others = [name for name, share in sorted(energy.items(), key=lambda item: -item[1]) if share > 0.2]
     partners = ["flexible body" if name == "flexible" else name.replace("_", " ") for name in others if name != leader]
     return words + (f", with {', '.join(partners)}" if partners else "")
+
+
+def mode_words(number: int, names: Sequence[str]) -> str:
+    """Number of a mode of the free body, and its name where it has another one."""
+    name = names[number - 1] if names else ""
+    return f"mode {number}" + (f" ({name})" if name not in ("", f"mode {number}") else "")
 
 
 def _rigid_direction(matrices: CarMatrices, body: str, shape: npt.NDArray[np.complex128]) -> str:

@@ -27,6 +27,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.linear.dynamic_stiffness import SteadyMotion, steady_motion
 from vehicle.linear.load_rows import LoadRows
 from vehicle.linear.matrices import CarMatrices
+from vehicle.linear.modes import mode_words
 from vehicle.names import AXES
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.layout import numeric
@@ -139,7 +140,7 @@ def participation(
     return Participation(
         place=place,
         frequency=lines,
-        names=(*RIGID, *(f"mode {n} ({name})" for n, name in enumerate(body.mode_names, start=1))),
+        names=(*RIGID, *(mode_words(n, body.mode_names) for n in range(1, len(body.mode_names) + 1))),
         mode_frequency=body.frequencies * car.vehicle.body.frequency_scale,
         contributions=row[columns, None] * steady.motion[columns] * steady.s**2,
         attachments=(*attachments, REST),

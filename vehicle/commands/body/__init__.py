@@ -1,20 +1,26 @@
-"""`python -m vehicle body import | build | show | compare`: body models for a car, a file for each of the four."""
+"""`python -m vehicle body import | build | show | compare | participation`: body models for a car, a file for each."""
 
 from __future__ import annotations
 
 import argparse
 
-from vehicle.commands.body import build_body, compare_bodies, import_body, show_body
+from vehicle.commands.body import build_body, compare_bodies, import_body, participation, show_body
 from vehicle.commands.command_line import Parser, command
 from vehicle.commands.options import command_parser
 
-TASKS = {"import": import_body, "build": build_body, "show": show_body, "compare": compare_bodies}
+TASKS = {
+    "import": import_body,
+    "build": build_body,
+    "show": show_body,
+    "compare": compare_bodies,
+    "participation": participation,
+}
 
 
 def parser() -> Parser:
     """The options of the command."""
     found = command_parser(
-        "body", "Body models: import one from finite elements or a modal test, build, show, compare."
+        "body", "Body models: import one from finite elements or a modal test, build, show, compare, participation."
     )
     tasks = found.add_subparsers(dest="task", required=True, metavar="|".join(TASKS))
     for task in TASKS.values():

@@ -1,0 +1,59 @@
+"""`python -m vehicle body participation`: tables, files and refusals."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from vehicle.commands.body import main
+
+
+def test_tables_and_files_say_the_same(tmp_path, capsys):
+    folder = tmp_path / "out"
+    command = ["participation", "--at", "26", "--damper", "sliding", "--output", str(folder)]
+    assert main([*command, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    parts = found["contributions"]
+    assert sum(one["share"] for one in parts) == pytest.approx(1.0, abs=1e-9)
+    assert len(parts) == 15 and parts[7]["name"] == "mode 2 (torsion)" and parts[7]["share"] > 1.0
+    assert sum(found["attachments"][1]["share"].values()) == pytest.approx(1.0, abs=1e-9)
+    assert sorted(path.name for path in folder.iterdir() if path.name[0] != ".") == [
+        "attachments.csv",
+        "participation.csv",
+        "participation.png",
+    ]
+    lines = (folder / "participation.csv").read_text().splitlines()
+    assert "# mode_2: mode 2 (torsion), 25.48 Hz" in lines
+    heads = next(line for line in lines if not line.startswith("#")).split(",")
+    assert heads[:3] == ["frequency [Hz]", "total_magnitude [m/s2/m]", "total_phase [deg]"]
+    values = np.genfromtxt(folder / "participation.csv", delimiter=",", comments="#", skip_header=len(lines) - 600)
+    shares = [index for index, head in enumerate(heads) if head.endswith("_share [%]")]
+    assert values.shape == (600, len(heads)) and len(shares) == 15
+    assert values[:, shares].sum(axis=1) == pytest.approx(np.full(600, 100.0), abs=1e-3)
+    at = [np.interp(26.0, values[:, 0], values[:, index]) for index in (1, heads.index("mode_2_share [%]"))]
+    assert at == pytest.approx([found["magnitude"], 100.0 * parts[7]["share"]], rel=0.01)
+    assert main(command) == 2  # exists
+    assert "give --force to replace it" in capsys.readouterr().err
+    assert main([*command[:5]]) == 0
+    printed = capsys.readouterr().out
+    assert "+120.4 %      595.5    -8 deg  mode 2 (torsion), 25.48 Hz" in printed
+    assert (
+        "what drives mode 2 (torsion), 25.48 Hz: share of the force on the mode\n  +73.0 %  suspension_mou" in printed
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    {
+        "frequency": (["--at", "-3"], "--at -3: must be a frequency above 0 Hz, as --at 26"),
+        "wheel": (["--wheel", "rr"], "wheel rr"),
+        "place": (["--place", "seat_rail"], "place seat_rail: no acceleration on the body; there are suspension_mount"),
+        "mode": (["--mode", "10"], "--mode 10: the body has modes 1 to 9"),
+        "rigid": (["--vehicle", "sedan"], "sedan: its body is rigid; modes that take part need body.flexible = true"),
+    }.values(),
+)
+def test_refusals(options, message, capsys):
+    assert main(["participation", *options]) == 2
+    assert message in capsys.readouterr().err

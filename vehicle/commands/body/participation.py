@@ -1,0 +1,207 @@
+"""`python -m vehicle body participation`: which body modes make a place loud at a frequency, and what drives them."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.options import FORCE_HELP, message_options, vehicle_options
+from vehicle.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from vehicle.linear.participation import Participation
+    from vehicle.parameters.vehicle import Vehicle
+
+FILES = ("participation.csv", "attachments.csv", "participation.png")
+LOWEST, HIGHEST, LINES = 1.0, 50.0, 600
+"""Band of picture and table [Hz], and lines in it, 0.7 % apart: a tenth of the width of a peak with 3 % damping."""
+SHOWN = 0.01
+"""Share from which a line is printed by itself."""
+CANCEL = 5.0
+"""Sum of the sizes of the shares from which a response is called a small difference."""
+UNIT = "m/s2/m"
+
+
+def add(tasks: Any) -> None:
+    """The options."""
+    asked = tasks.add_parser(
+        "participation", help="which body modes make a place loud at a frequency, and which attachments drive them"
+    )
+    asked.add_argument(
+        "--place",
+        default="seat_rail_acc_z",
+        metavar="CHANNEL",
+        help="acceleration of a place on the body; %(default)s by default",
+    )
+    asked.add_argument(
+        "--at",
+        type=float,
+        metavar="HZ",
+        help="frequency of the tables [Hz]; by default that of the largest response between 1 and 50 Hz",
+    )
+    asked.add_argument("--wheel", metavar="NAME", help="whose plate moves, as fr; the first of the car by default")
+    asked.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck")
+    asked.add_argument(
+        "--mode", type=int, metavar="N", help="mode whose driving attachments are shown; the loudest by default"
+    )
+    asked.add_argument("--output", type=Path, metavar="DIR", help=f"write {', '.join(FILES)} there")
+    asked.add_argument("--force", action="store_true", help=FORCE_HELP)
+    asked.add_argument("--json", action="store_true", help="print JSON")
+    vehicle_options(asked)
+    message_options(asked)
+
+
+def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
+    """Compute, write and print it."""
+    import numpy as np
+
+    from vehicle.car import Car
+    from vehicle.linear.participation import participation
+    from vehicle.output.folder import check_output
+
+    if options.at is not None and not 0.0 < options.at < math.inf:
+        raise ConfigurationError(f"--at {options.at:g}: must be a frequency above 0 Hz, as --at 26")
+    wheel = options.wheel or next(iter(vehicle.wheels), "")
+    vehicle.require_wheels((wheel,))
+    if options.output is not None:
+        check_output(options.output, force=options.force)
+    car = Car(vehicle, folder=options.vehicle.parent if options.vehicle else None)
+    band = np.geomspace(LOWEST, HIGHEST, LINES)
+
+    def of(lines: Any) -> Participation:
+        stuck = options.damper == "stuck"
+        return participation(car.model, car.matrices, car.load_rows, options.place, lines, stuck=stuck, wheel=wheel)
+
+    over = of(band)
+    at = round(float(band[np.abs(over.total).argmax()]), 2) if options.at is None else options.at
+    found = of([at])
+    modes = len(found.mode_frequency)
+    if options.mode is not None and not 1 <= options.mode <= modes:
+        raise ConfigurationError(f"--mode {options.mode}: the body has modes 1 to {modes}")
+    mode = int(found.shares[6:, 0].argmax()) if options.mode is None else options.mode - 1
+    about = f"{vehicle.name}: {options.place} per displacement of the plate {wheel}, dampers {options.damper}"
+    if options.output is not None:
+        _write(options, over, found, mode, about)
+    if options.json:
+        print(json.dumps(_numbers(options, found, wheel), indent=2, allow_nan=False))
+    else:
+        print("\n".join(_report(found, mode, about)))
+
+
+def _named(found: Participation) -> list[str]:
+    """Names of the contributions, those of modes with their frequencies."""
+    modes = [f"{f:.2f} Hz" for f in found.mode_frequency]
+    return [*found.names[:6], *(f"{name}, {f}" for name, f in zip(found.names[6:], modes, strict=True))]
+
+
+def _report(found: Participation, mode: int, about: str) -> list[str]:
+    """The two tables as text, the largest first."""
+    import numpy as np
+
+    total, own = found.total[0], found.contributions[:, 0]
+    lines = [
+        f"{about}, {found.frequency[0]:g} Hz: {abs(total):.4g} m/s² per m, phase {np.degrees(np.angle(total)):.0f} deg",
+        "share: the part in phase with the sum; a negative one works against it",
+        f"{'share':>9} {'(m/s²)/m':>10} {'to sum':>8}  contribution",
+    ]
+    names, shares = _named(found), found.shares[:, 0]
+    small = [i for i in range(len(names)) if abs(shares[i]) < SHOWN]
+    for i in sorted(set(range(len(names))) - set(small), key=lambda i: -abs(shares[i])):
+        turned = np.degrees(np.angle(own[i] / total))
+        lines.append(f"{_percent(shares[i])} {abs(own[i]):>10.4g} {turned:>+5.0f} deg  {names[i]}")
+    if small:
+        lines.append(f"{_percent(shares[small].sum())} {'':>10} {'':>9}  the other {len(small)}")
+    if np.abs(shares).sum() > CANCEL:
+        lines.append("the place is quiet here: its response is the small difference of contributions that cancel")
+    lines.append(f"what drives {names[6 + mode]}: share of the force on the mode")
+    drivers = found.attachment_shares[mode, :, 0]
+    small = [i for i in range(len(drivers)) if abs(drivers[i]) < SHOWN]
+    for i in sorted(set(range(len(drivers))) - set(small), key=lambda i: -abs(drivers[i])):
+        lines.append(f"{_percent(drivers[i])}  {found.attachments[i]}")
+    if small:
+        lines.append(f"{_percent(drivers[small].sum())}  the other {len(small)}")
+    return lines
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share + 0.0:>+7.1f} %"
+
+
+def _numbers(options: argparse.Namespace, found: Participation, wheel: str) -> dict[str, Any]:
+    """Both tables in plain numbers."""
+    import numpy as np
+
+    total, phase = found.total[0], np.degrees(np.angle(found.contributions[:, 0] / found.total[0]))
+    frequencies = [None] * 6 + [float(one) for one in found.mode_frequency]
+    return {
+        "place": found.place,
+        "frequency_hz": float(found.frequency[0]),
+        "wheel": wheel,
+        "damper": options.damper,
+        "magnitude": abs(total),
+        "phase_deg": float(np.degrees(np.angle(total))),
+        "unit": UNIT,
+        "contributions": [
+            {
+                "name": name,
+                "frequency_hz": frequency,
+                "share": float(found.shares[i, 0]),
+                "magnitude": float(abs(found.contributions[i, 0])),
+                "phase_to_sum_deg": float(phase[i]),
+            }
+            for i, (name, frequency) in enumerate(zip(found.names, frequencies, strict=True))
+        ],
+        "attachments": [
+            {"mode": n + 1, "share": dict(zip(found.attachments, shares, strict=True))}
+            for n, shares in enumerate(found.attachment_shares[:, :, 0].tolist())
+        ],
+    }
+
+
+def _write(options: argparse.Namespace, over: Participation, found: Participation, mode: int, about: str) -> None:
+    """Both tables and the picture."""
+    import numpy as np
+
+    from vehicle.linear.participation import in_phase
+    from vehicle.output.folder import output_folder, write_text, write_whole
+    from vehicle.records.text_format import write_table
+    from vehicle.rendering.participation_plot import plot_participation
+
+    at, keys = found.frequency[0], ["body_x", "body_y", "body_z", "body_rx", "body_ry", "body_rz"]
+    keys += [f"mode_{n + 1}" for n in range(len(over.mode_frequency))]
+    heads, columns = ["frequency [Hz]"], [over.frequency]
+    for key, values, share in zip(
+        ["total", *keys], [over.total, *over.contributions], [None, *over.shares], strict=True
+    ):
+        heads += [f"{key}_magnitude [{UNIT}]", f"{key}_phase [deg]"]
+        columns += [np.abs(values), np.degrees(np.angle(values))]
+        if share is not None:
+            heads.append(f"{key}_share [%]")
+            columns.append(100.0 * share)
+    names = _named(over)
+    comments = [about, *(f"{key}: {name}" for key, name in zip(keys, names, strict=True))]
+    rows = [f"# {about}, {at:g} Hz: share of each attachment in the force on each mode", "attachment"]
+    rows[1] += "".join(f",mode_{n + 1} [%]" for n in range(len(found.modal_forces)))
+    for name, shares in zip(found.attachments, found.attachment_shares[:, :, 0].T, strict=True):
+        rows.append(",".join([f'"{name}"' if "," in name else name, *(f"{100.0 * one:.6g}" for one in shares)]))
+    order = np.argsort(-np.abs(found.shares[:, 0]))
+    drivers = found.attachment_shares[mode, :, 0]
+    with output_folder(options.output, force=options.force) as folder:
+        write_whole(folder / FILES[0], lambda file: write_table(file, heads, columns, comments))
+        write_text(folder / FILES[1], "\n".join(rows) + "\n")
+        write_whole(
+            folder / FILES[2],
+            lambda file: plot_participation(
+                file,
+                options.place,
+                over.frequency,
+                {names[i]: in_phase(over.contributions)[i] for i in order},
+                at,
+                {names[i]: float(found.shares[i, 0]) for i in order},
+                (names[6 + mode], dict(zip(found.attachments, drivers.tolist(), strict=True))),
+                about,
+            ),
+        )
