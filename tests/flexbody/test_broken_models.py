@@ -194,11 +194,13 @@ CASES = {
     "origin of two": option("--origin", "1,2", says="needed are three numbers in metres"),
     "origin nan": option("--origin", "1,nan,0", says="needed are three numbers in metres"),
     "unit": option("--length-unit", "furlong", says="invalid choice: 'furlong'"),
+    "method of modes": option("--method", "rubin", says="--method rubin: needs stiffness and mass"),
+    "attachment modes": option("--attachment-modes", "200", says="choose rubin or craig-bampton"),
     "output as text": option("--output", "body.txt", says="a body model is written as .toml or .npz"),
     "output exists": option("--output", "box.toml", says="exists; give another name, or --force"),
     "output in a file": option("--output", "map.csv/body.toml", says="map.csv is a file, no folder"),
 }
-REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS results", "file.full": "*EXPORT,MMF", "a.odb": "*MATRIX OUTPUT",
+REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS results", "file.full": "HBMAT,k", "a.odb": "*MATRIX OUTPUT",
            "b.mnf": "Adams modal neutral file"}  # fmt: skip
 CASES |= {name: Case("modes.uff", nothing, ("import", name), says) for name, says in REFUSED.items()}
 

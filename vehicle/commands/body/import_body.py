@@ -11,6 +11,7 @@ from vehicle.commands.body.model_file import output_options, require_output, wri
 from vehicle.commands.body.show_body import report
 from vehicle.commands.options import message_options, vehicle_options
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.flexbody.sources import METHODS
 
 if TYPE_CHECKING:
     from vehicle.parameters.vehicle import Vehicle
@@ -67,6 +68,19 @@ def add(tasks: Any) -> None:
         "--up-to", type=float, default=100.0, metavar="HZ", help="highest mode kept [Hz]; 100 by default"
     )
     taken.add_argument(
+        "--method",
+        choices=METHODS,
+        default=METHODS[0],
+        help="of matrices: free-free, modes of the free body, those above static; rubin adds modes of its points, with "
+        "the mass that moves with them; craig-bampton, modes of the body held at its points; free-free by default",
+    )
+    taken.add_argument(
+        "--attachment-modes",
+        type=float,
+        metavar="HZ",
+        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 2.5 times --up-to by default",
+    )
+    taken.add_argument(
         "--damping", type=float, default=0.02, metavar="RATIO", help="modal damping ratio; 0.02 by default"
     )
     taken.add_argument("--tolerance", type=float, default=1.0, metavar="MM", help="farthest node of a point [mm]; 1")
@@ -100,10 +114,12 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     }
     origin = _origin(options.origin)
     matrices = _matrices(options)
+    if matrices is None and options.method != METHODS[0]:
+        raise ConfigurationError(f"--method {options.method}: needs stiffness and mass; {options.file} holds modes")
     if matrices is not None:
         body = matrices.scaled(LENGTHS[options.length_unit], MASSES[options.mass_unit]).placed(options.axes, origin)
         found = interfaces(body, places, **near)
-        modes = modes_of_matrices(body, options.up_to, found)
+        modes = modes_of_matrices(body, options.up_to, found, options.method, options.attachment_modes)
     else:
         from vehicle.flexbody.sources.mode_shapes import normalised
 
@@ -173,8 +189,16 @@ def _check_numbers(options: argparse.Namespace) -> None:
     from vehicle.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
 
     most = 1e3 * LARGEST_TOLERANCE
+    if options.attachment_modes is not None and options.method == METHODS[0]:
+        raise ConfigurationError("--attachment-modes: --method free-free has none; choose rubin or craig-bampton")
     for name, value, allowed, text in (
         ("--up-to", options.up_to, 0.0 < options.up_to < math.inf, "a frequency above 0 Hz"),
+        (
+            "--attachment-modes",
+            options.attachment_modes,
+            options.attachment_modes is None or options.up_to <= options.attachment_modes < math.inf,
+            f"a frequency from --up-to, {options.up_to:g} Hz, on",
+        ),
         ("--damping", options.damping, 0.0 <= options.damping <= HIGHEST_DAMPING, f"0 to {HIGHEST_DAMPING:g}"),
         ("--tolerance", options.tolerance, 0.0 < options.tolerance <= most, f"above 0, up to {most:g} mm"),
         ("--spread", options.spread, 0.0 <= options.spread < math.inf, "0 mm or a radius"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ SHIFT = 1.0 / 40.0
 """By which K is shifted, so that a free body can be factorised, over the highest frequency wanted [1]: below the
 elastic modes, and near enough to them that the six rigid ones do not take their digits."""
 _FIRST_GUESS, _MORE = 30, 2
-_DENSE = 300
+DENSE = 300
 """Degrees of freedom up to which all modes are computed: faster there, and with hardly any mass too few for Lanczos."""
 _REFINEMENTS = 60
 
@@ -34,6 +34,7 @@ class FreeModes:
         rigid_vectors: rigid motions with R' M R = 1, shape (dofs, 6).
         rigid_frequency: what the stiffness gives to them [Hz]; zero but for the digits of the source.
         orthogonality: largest |R' M Phi| and |Phi' M Phi - 1| [1].
+        up_to: highest frequency that was asked for [Hz].
         factor: solver of (K + s M) x = b, s = (2 pi SHIFT up_to)^2.
     """
 
@@ -43,6 +44,7 @@ class FreeModes:
     rigid_vectors: FloatArray
     rigid_frequency: float
     orthogonality: float
+    up_to: float
     factor: Any
 
 
@@ -65,7 +67,10 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
     shift = (2.0 * np.pi * SHIFT * up_to) ** 2
     factor = _factorised(body.stiffness + shift * body.mass)
     limit = (2.0 * np.pi * up_to) ** 2
-    values, vectors = (_all if len(body.node) <= _DENSE else _lowest)(body, shift, limit, factor)
+    if len(body.node) <= DENSE:
+        values, vectors = _all(body, shift)
+    else:
+        values, vectors = lowest_modes(body, shift, limit, factor.solve)
     elastic, flexible = values[6:], vectors[:, 6:]
     if not elastic.size or elastic[0] > limit:
         first = float(np.sqrt(elastic[0])) / (2.0 * np.pi) if elastic.size else np.inf
@@ -91,6 +96,7 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
         rigid_vectors=motions,
         rigid_frequency=held,
         orthogonality=float(max(own, across)),
+        up_to=up_to,
         factor=factor,
     )
 
@@ -111,24 +117,28 @@ def residual_flexibility(body: BodyMatrices, modes: FreeModes, places: Sequence[
 
     Source: R. R. Craig and A. J. Kurdila, Fundamentals of Structural Dynamics, 2006, section 17.6.
     """
-    kept = np.hstack([modes.rigid_vectors, modes.vectors])
     found = []
     for place in places:
-        load = place.toarray()
-        load -= body.mass @ (kept @ (place.T @ kept).T)
-        answer = np.zeros_like(load)
-        for _ in range(_REFINEMENTS):
-            change = modes.factor.solve(load - body.stiffness @ answer)
-            change -= kept @ (kept.T @ (body.mass @ change))
-            answer += change
-            if np.abs(change).max() <= 1e-12 * np.abs(answer).max():
-                break
-        flexibility = np.asarray(place.T @ answer)
+        flexibility = np.asarray(place.T @ residual_vectors(body, modes, place.toarray()))
         found.append(0.5 * (flexibility + flexibility.T))
     return found
 
 
-def _all(body: BodyMatrices, shift: float, limit: float, factor: Any) -> tuple[FloatArray, FloatArray]:
+def residual_vectors(body: BodyMatrices, modes: FreeModes, load: FloatArray) -> FloatArray:
+    """P' K^-1 P f of each column f of a load [N], as of `residual_flexibility`; shape of the load."""
+    kept = np.hstack([modes.rigid_vectors, modes.vectors])
+    load = load - body.mass @ (kept @ (kept.T @ load))
+    answer = np.zeros_like(load)
+    for _ in range(_REFINEMENTS):
+        change = modes.factor.solve(load - body.stiffness @ answer)
+        change -= kept @ (kept.T @ (body.mass @ change))
+        answer += change
+        if np.abs(change).max() <= 1e-12 * np.abs(answer).max():
+            break
+    return answer
+
+
+def _all(body: BodyMatrices, shift: float) -> tuple[FloatArray, FloatArray]:
     """All modes, by M phi = (K + s M) phi / (w^2 + s), which massless degrees of freedom do not disturb."""
     moved = (body.stiffness + shift * body.mass).toarray()
     inverse, vectors = scipy.linalg.eigh(body.mass.toarray(), moved)
@@ -137,23 +147,31 @@ def _all(body: BodyMatrices, shift: float, limit: float, factor: Any) -> tuple[F
     return values, vectors[:, real][:, ::-1] / np.sqrt(inverse[real][::-1])
 
 
-def _lowest(body: BodyMatrices, shift: float, limit: float, factor: Any) -> tuple[FloatArray, FloatArray]:
-    """The lowest modes, at least one of them above the limit."""
+def lowest_modes(
+    body: BodyMatrices, shift: float, limit: float, solve: Callable[[FloatArray], FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """The lowest modes, at least one of them above a limit.
+
+    Args:
+        body: K and M.
+        shift: s [rad2/s2].
+        limit: largest eigenvalue wanted [rad2/s2].
+        solve: of (K + s M) x = b, in the space where modes are looked for.
+
+    Returns:
+        Eigenvalues, ascending; vectors.
+    """
     size, count = len(body.node), _FIRST_GUESS
-    operator = scipy.sparse.linalg.LinearOperator((size, size), factor.solve)
+    operator = scipy.sparse.linalg.LinearOperator((size, size), solve)
+    start = solve(body.mass @ np.random.default_rng(1).standard_normal(size))  # the same bytes each time
     while True:
         values, vectors = scipy.sparse.linalg.eigsh(
-            body.stiffness, count, body.mass, sigma=-shift, which="LM", OPinv=operator, v0=_start(size)
+            body.stiffness, min(count, size - 1), body.mass, sigma=-shift, which="LM", OPinv=operator, v0=start
         )
         if values.max() > limit or _MORE * count >= size:
             order = np.argsort(values)
             return values[order], vectors[:, order]
         count *= _MORE
-
-
-def _start(size: int) -> FloatArray:
-    """The same start vector each time, so that the same body gives the same bytes."""
-    return np.random.default_rng(1).standard_normal(size)
 
 
 def _factorised(matrix: Any) -> Any:

@@ -11,6 +11,9 @@ import scipy
 from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.modes import fix_signs
+from vehicle.flexbody.sources import METHODS
+from vehicle.flexbody.sources.attachment_modes import attachment_modes
+from vehicle.flexbody.sources.craig_bampton import craig_bampton
 from vehicle.flexbody.sources.interfaces import Interface
 from vehicle.flexbody.sources.matrices import BodyMatrices, BodyNodes, IntArray
 from vehicle.flexbody.sources.reduction import free_modes, residual_flexibility
@@ -42,29 +45,63 @@ class BodyModes:
     residual: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
-def modes_of_matrices(body: BodyMatrices, up_to: float, places: list[Interface]) -> BodyModes:
+ATTACHMENTS_TO = 2.5
+"""Up to which frequency modes of the attachments are kept, over that of the modes, where none is given [1]: assumed;
+FRFs of a frame of solids are then within 1 % up to 0.6 of the latter."""
+
+
+def modes_of_matrices(
+    body: BodyMatrices,
+    up_to: float,
+    places: list[Interface],
+    method: str = METHODS[0],
+    attachments_to: float | None = None,
+) -> BodyModes:
     """Modes and residual flexibility of K and M.
 
     Args:
         body: in SI units and the vehicle frame.
-        up_to: highest frequency [Hz].
+        up_to: highest frequency of modes of the free body, by "craig-bampton" of the body held at its places [Hz].
         places: interfaces, which get their residual flexibility.
+        method: one of `METHODS`.
+        attachments_to: highest mode that "rubin" adds, or that "craig-bampton" keeps of the reduced pair [Hz].
 
     Raises:
         DataError: as of `free_modes`.
     """
     found = free_modes(body, up_to)
-    residual = residual_flexibility(body, found, [place.moved for place in places])
-    count = len(found.frequencies)
+    moved, count = [place.moved for place in places], len(found.frequencies)
+    limit = attachments_to or ATTACHMENTS_TO * up_to
+    frequencies, vectors = found.frequencies, found.vectors
+    names = [f"mode {number}" for number in range(1, count + 1)]
+    if method == "rubin":
+        added = attachment_modes(body, found, moved, limit)
+        frequencies = np.concatenate([frequencies, added.frequencies])
+        vectors, residual = np.hstack([vectors, added.vectors]), added.residual
+        names += [f"attachment mode {number}" for number in range(1, len(added.frequencies) + 1)]
+        kept = f"{count} modes to {up_to:g} Hz, {len(added.frequencies)} of the attachments to {limit:g} Hz (Rubin)"
+    elif method == "craig-bampton":
+        added, held = craig_bampton(body, found, moved, limit)
+        frequencies, vectors, residual = added.frequencies, added.vectors, added.residual
+        names = [f"mode {number}" for number in range(1, len(frequencies) + 1)]
+        both = min(count, len(frequencies))
+        above = np.max(frequencies[:both] / found.frequencies[:both] - 1.0, initial=0.0)
+        kept = (
+            f"Craig-Bampton with {held} modes to {up_to:g} Hz of the body held at {len(places)} points, modes of it to "
+            f"{limit:g} Hz, the first {both} up to {above:.2%} above those of the free body"
+        )
+    else:
+        residual = residual_flexibility(body, found, moved)
+        kept = f"modes to {up_to:g} Hz"
     return BodyModes(
         body=body,
-        frequencies=found.frequencies,
-        damping_ratio=np.full(count, np.nan),
-        vectors=found.vectors,
+        frequencies=frequencies,
+        damping_ratio=np.full(len(frequencies), np.nan),
+        vectors=vectors,
         rigid=found.rigid,
-        names=tuple(f"mode {number}" for number in range(1, count + 1)),
+        names=tuple(names),
         remarks=(
-            f"{len(body.node)} degrees of freedom, modes to {up_to:g} Hz, modes above as residual flexibility",
+            f"{len(body.node)} degrees of freedom, {kept}, modes above as residual flexibility",
             f"the stiffness gives rigid motions {found.rigid_frequency:.2g} Hz; modes orthogonal to them and to each "
             f"other within {found.orthogonality:.1e}",
         ),
