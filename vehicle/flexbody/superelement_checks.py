@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -72,7 +73,7 @@ def _check_counts(body: Superelement) -> None:
             )
     if len(body.mode_names) != modes:
         _refuse(body, f"mode_names: {len(body.mode_names)} names for {modes} frequencies. Name every mode once.")
-    twice = sorted({name for name in body.nodes if body.nodes.count(name) > 1})
+    twice = sorted(name for name, count in Counter(body.nodes).items() if count > 1)
     if twice:
         _refuse(body, f"nodes: {', '.join(map(repr, twice))} given more than once. Node names must be unique.")
     if body.edges.size and not (body.edges.min() >= 0 and body.edges.max() < nodes):
