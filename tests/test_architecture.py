@@ -39,11 +39,11 @@ ROOMS: dict[str, set[str]] = {
     | {"replication"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
+    "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "records", "reduced"},
     "report": {"analysis", "car", "linear", "parameters", "records", "rendering", "simulation"},
-    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "linear", "output"}
-    | {"parameters"}
-    | {"records", "rendering", "replication", "report", "simulation", "sweeps"},
+    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "linear", "optimisation"}
+    | {"output", "parameters", "records", "rendering", "replication", "report", "simulation", "sweeps"},
     "threads": set(),
     "compiler": set(),
     "errors": set(),

@@ -14,6 +14,7 @@ COMMANDS = (
     "compare",
     "report",
     "drive",
+    "optimise",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 

@@ -293,6 +293,12 @@ def jobs_option(parser: argparse.ArgumentParser, *, note: str = "") -> None:
     parser.add_argument("--jobs", type=_jobs, default=1, metavar="N", help=text)
 
 
+def executor_option(parser: argparse.ArgumentParser) -> None:
+    """Add --executor: where independent runs are carried out, beside processes here."""
+    text = "dask://host:port, or module:factory for an executor of your own"
+    parser.add_argument("--executor", metavar="WHERE", help=text)
+
+
 def _jobs(text: str) -> int:
     """The number of processes; argparse names the option where the text is no number."""
     number = int(text)

@@ -13,6 +13,7 @@ from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
     command_parser,
     engine_option,
+    executor_option,
     jobs_option,
     message_options,
     output_options,
@@ -44,9 +45,7 @@ def parser() -> Parser:
     engine_option(found, "auto")
     skip_option(found)
     jobs_option(found)
-    found.add_argument(
-        "--executor", metavar="WHERE", help="dask://host:port, or module:factory for an executor of your own"
-    )
+    executor_option(found)
     output_options(found, Path("runs/sweep"))
     found.add_argument("--resume", action="store_true", help="go on in that folder; finished rows are kept")
     found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")

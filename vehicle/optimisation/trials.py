@@ -1,0 +1,125 @@
+"""Cars that are tried: their runs on all inputs, over the tolerances of a made car."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import qmc
+
+from vehicle.errors import ConfigurationError
+from vehicle.optimisation.problem import Problem, Tolerance, Vector
+from vehicle.sweeps.case import Case, Input
+from vehicle.sweeps.measure import Measure
+from vehicle.sweeps.result import Result
+
+Evaluate = Callable[[Sequence[Case], Measure], Sequence[Result]]
+"""As of `vehicle.sweeps.evaluation.evaluate`."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Spread:
+    """Tolerances, and where in their bands the cars stand that are run in place of each.
+
+    Attributes:
+        tolerances: with the whole paths of each and their values in the car as it is.
+        bands: places of the cars in each band, -1 to 1; (k, tolerances).
+        quantile: of the k numbers, counted from the good end, that is taken; NaN for their mean.
+    """
+
+    tolerances: tuple[tuple[Tolerance, Mapping[str, float]], ...]
+    bands: Vector
+    quantile: float = math.nan
+
+    def cars(self, changes: Mapping[str, float]) -> list[dict[str, float]]:
+        """Path to value of the k cars around one."""
+        found = []
+        for places in self.bands:
+            car = dict(changes)
+            for (tolerance, values), place in zip(self.tolerances, places, strict=True):
+                car |= {path: tolerance.around(changes.get(path, old), float(place)) for path, old in values.items()}
+            found.append(car)
+        return found
+
+    def worth(self, costs: Vector) -> Vector:
+        """What the k numbers of each car, less is better, count as; (n,) of (n, k)."""
+        if math.isnan(self.quantile):
+            return np.asarray(np.mean(costs, axis=1))
+        return np.asarray(np.quantile(costs, self.quantile, axis=1))
+
+
+ALONE = Spread(tolerances=(), bands=np.zeros((1, 0)))
+"""No tolerances: each car stands for itself."""
+
+
+def bands(tolerances: int, samples: int, seed: int) -> Vector:
+    """Places in the bands of tolerances, -1 to 1: a scrambled Sobol sequence, the same for all cars; (samples, t).
+
+    Raises:
+        ConfigurationError: the number of samples is no power of two.
+    """
+    if samples < 2 or samples & (samples - 1):
+        raise ConfigurationError(
+            f"--samples {samples}: must be a power of two, from 2 on (Sobol's sequence is balanced there)"
+        )
+    return np.asarray(2.0 * qmc.Sobol(tolerances, scramble=True, rng=seed).random(samples) - 1.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Trials:
+    """How cars are tried.
+
+    Attributes:
+        problem: what is wanted.
+        inputs: what drives each car.
+        measure: has the numbers of all wishes.
+        evaluate: carries out runs.
+        fixed: overrides of every car.
+        vehicle: vehicle file.
+        engine: as of `Car.run`.
+        spread: of the cars that are made.
+    """
+
+    problem: Problem
+    inputs: Sequence[Input]
+    measure: Measure
+    evaluate: Evaluate
+    fixed: Sequence[str] = ()
+    vehicle: Path | None = None
+    engine: str = "reduced"
+    spread: Spread = field(default=ALONE)
+
+    def cases(self, points: Vector) -> list[Case]:
+        """Runs of points, the inputs varying fastest, then the cars of the spread."""
+        cars = [car for point in points for car in self.spread.cars(self.problem.changes(point.tolist()))]
+        texts = [(*self.fixed, *(f"{path}={value!r}" for path, value in car.items())) for car in cars]
+        engine, vehicle = self.engine, self.vehicle
+        return [Case(source=i, overrides=text, engine=engine, vehicle=vehicle) for text in texts for i in self.inputs]
+
+    def __call__(self, points: Vector) -> tuple[Vector, list[str]]:
+        """Try cars.
+
+        Args:
+            points: values of the parameters, NaN for that of the car as it is; (n, p).
+
+        Returns:
+            The number of each wish, (n, wishes), NaN for a car that could not be run; why it could not, or "".
+        """
+        results = list(self.evaluate(self.cases(points), self.measure))
+        per_car = len(self.spread.bands) * len(self.inputs)
+        reasons = [
+            next((one.reason for one in results[first : first + per_car] if one.reason), "")
+            for first in range(0, len(results), per_car)
+        ]
+        found = np.empty((len(points), len(self.problem.wishes)))
+        for column, wish in enumerate(self.problem.wishes):
+            each = [result.values.get(wish.number, math.nan) for result in results]
+            values = np.array(each).reshape(len(points), len(self.spread.bands), len(self.inputs))
+            found[:, column] = wish.sense * self.spread.worth(wish.sense * wish.of(values, self.problem.inputs))
+            for car in np.flatnonzero(~np.isfinite(found[:, column])):
+                reasons[car] = reasons[car] or f"{wish.label}: does not exist in this run"
+        found[[bool(reason) for reason in reasons]] = math.nan
+        return found, reasons
