@@ -155,7 +155,7 @@ def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str
         cells = []
         for name, head in HEADS.items():
             value = getattr(pose, name) * (1e3 if name.endswith("_m") else 1.0)
-            text = "-" if math.isnan(value) else f"{value + 0.0:.{0 if name == 'wheel_travel_m' else 3}f}"
+            text = "-" if math.isnan(value) else f"{value:z.{0 if name == 'wheel_travel_m' else 3}f}"
             cells.append(f"{text:>{max(len(head), 8)}}")
         lines.append("  ".join(cells))
     if rates["wheel_rate_n_per_m"] is not None:

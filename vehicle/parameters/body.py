@@ -29,8 +29,8 @@ class BodyMode(Validated):
         "-",
         "share of critical damping of this mode; that of the body model by default",
         at_least=0.0,
-        at_most=0.5,
-        why="trimmed bodies have 0.01 to 0.1",
+        at_most=0.3,
+        why="trimmed bodies have 0.01 to 0.08",
         default=None,
     )
 

@@ -127,7 +127,7 @@ def _report(found: Participation, mode: int, about: str) -> list[str]:
 
 
 def _percent(share: float) -> str:
-    return f"{100 * share + 0.0:>+7.1f} %"
+    return f"{100 * share:>+z7.1f} %"
 
 
 def _numbers(options: argparse.Namespace, found: Participation, wheel: str) -> dict[str, Any]:
