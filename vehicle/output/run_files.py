@@ -16,6 +16,7 @@ from vehicle.analysis.spectra import power_spectral_density
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
+from vehicle.flexbody.mass_difference import mass_difference
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.output.comparison_files import write_beside
 from vehicle.output.folder import write_json, write_text, write_whole
@@ -206,6 +207,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
     idle = idle_parameters(run.car.vehicle, run.car.overrides)
     notices = [
         *([body.report] if body.repaired else []),
+        *mass_difference(run.car.trimmed_body, run.car.vehicle.body),
         *idle,
         *run.signal.notices,
         *([said] if said else []),

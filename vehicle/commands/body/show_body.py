@@ -7,51 +7,139 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
-from vehicle.commands.options import message_options, vehicle_options
+from vehicle.commands.options import FORCE_HELP, message_options, vehicle_options
 
 if TYPE_CHECKING:
     from vehicle.flexbody.superelement import Superelement
     from vehicle.parameters.vehicle import Vehicle
+
+FILES = ("modes.csv", "attachments.csv", "residuals.csv", "shapes.png")
+COLUMNS = 12
+"""Most modes side by side in the printed table of attachments."""
 
 
 def add(tasks: Any) -> None:
     """The options."""
     shown = tasks.add_parser("show", help="frequencies, participation of attachments, mass properties, residuals")
     shown.add_argument("file", type=Path, nargs="?", metavar="FILE", help="body model; that of the vehicle by default")
+    shown.add_argument("--output", type=Path, metavar="DIR", help=f"write {', '.join(FILES)} there")
+    shown.add_argument("--force", action="store_true", help=FORCE_HELP)
     vehicle_options(shown)
     message_options(shown)
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Print it."""
-    print("\n".join(report(model_of(options.file, options, vehicle), vehicle)))
+    """Print it, and write files where asked for."""
+    from vehicle.output.folder import check_output
+
+    if options.output is not None:
+        check_output(options.output, force=options.force)
+    model = model_of(options.file, options, vehicle)
+    if options.output is not None:
+        from vehicle.commands.body.shown_files import write_files
+
+        write_files(options.output, options.force, model, levels(model, vehicle))
+    print("\n".join(report(model, vehicle)))
 
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """What a model is: mass properties against the vehicle, modes, where they are loud, residuals."""
-    import numpy as np
+    """What a model is: mass properties against the vehicle, modes, participation of attachments, residuals."""
+    from vehicle.flexbody.mass_difference import mass_difference, vehicle_lines
 
-    own, lines = vehicle.body, [f"{model.name}: {len(model.nodes)} nodes, {len(model.frequencies)} modes"]
-    lines.append(f"  {model.provenance}")
-    lines.append(f"{'':<12} {'model':>10} {'vehicle':>10}")
-    lines.append(f"{'mass [kg]':<12} {model.mass:>10.2f} {own.mass:>10.2f}")
-    for axis, mine, theirs in zip("xyz", model.cog, own.cog, strict=True):
-        lines.append(f"{f'CoG {axis} [m]':<12} {mine:>10.4f} {theirs:>10.4f}")
+    lines = [f"{model.name}: {len(model.nodes)} nodes, {len(model.frequencies)} modes", f"  {model.provenance}"]
+    lines += mass_lines(model, vehicle)
     if not model.frequencies.size:
         return [*lines, "rigid"]
-    places = [name for name in vehicle.composition.attachments() if name in model.nodes]
-    lines.append(f"{'mode':>4} {'Hz':>8} {'damping':>8}  loudest places [kg^-1/2], name")
+    if notices := mass_difference(model, vehicle.body):
+        lines += [*notices, "[body] of this model:", *(f"  {line}" for line in vehicle_lines(model))]
+    lines += mode_lines(model)
+    lines += attachment_lines(model, vehicle)
+    return [*lines, *residual_lines(model, vehicle), *rotation_lines(model, vehicle)]
+
+
+def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
+    """Mass, CoG and inertia about it of the model against those of the vehicle."""
+    from vehicle.flexbody.rigid_body import rigid_body
+
+    own, lines = rigid_body(vehicle.body), [f"{'':<18} {'model':>10} {'vehicle':>10} {'difference':>11}"]
+
+    def line(name: str, mine: float, theirs: float, digits: int) -> None:
+        apart = f"{mine - theirs:>+z11.{digits}f}"
+        lines.append(f"{name:<18} {mine:>z10.{digits}f} {theirs:>z10.{digits}f} {apart}")
+
+    line("mass [kg]", model.mass, own.mass, 2)
+    for axis, mine, theirs in zip("xyz", model.cog, own.cog, strict=True):
+        line(f"CoG {axis} [m]", float(mine), float(theirs), 4)
+    for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+        sign = 1.0 if i == j else -1.0  # products as integrals, as in the vehicle file
+        name = f"I{'xyz'[i]}{'xyz'[j]} [kg m2]"
+        line(name, sign * float(model.inertia[i, j]), sign * float(own.inertia[i, j]), 1)
+    lines.append("  moments about the CoG, products as integrals; the car takes those of the vehicle")
+    return lines
+
+
+def mode_lines(model: Superelement) -> list[str]:
+    """Frequency, damping and name of each mode."""
+    lines = [f"{'mode':>4} {'Hz':>8} {'damping':>8}  name"]
     for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True)):
-        level = {name: float(np.linalg.norm(model.shapes[i, model.node_index(name)])) for name in places}
-        loud = sorted(level, key=lambda name: -level[name])[:3]
-        text = ", ".join(f"{name} {level[name]:.4f}" for name in loud)
-        lines.append(f"{i + 1:>4} {frequency:>8.3f} {100 * ratio:>6.2f} %  {text}; {model.mode_names[i]}")
+        lines.append(f"{i + 1:>4} {frequency:>8.3f} {100 * ratio:>6.2f} %  {model.mode_names[i]}")
+    return lines
+
+
+def levels(model: Superelement, vehicle: Vehicle) -> dict[str, Any]:
+    """Shapes at the attachments and places of a car over the mean of the body, sqrt(m) Phi [-]: name to (modes, 3)."""
+    import numpy as np
+
+    from vehicle.flexbody.superelement import attached_nodes
+
+    places = vehicle.composition.attachments()
+    nodes = attached_nodes(model, places)
+    scale = float(np.sqrt(model.mass))
+    return {name: scale * model.shapes[:, model.node_index(nodes[at])] for name, at in places.items() if at in nodes}
+
+
+def attachment_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
+    """How strongly each attachment and place takes part in each mode."""
+    import numpy as np
+
+    count = min(len(model.frequencies), COLUMNS)
+    cut = "" if count == len(model.frequencies) else f"; the first {count} modes, all with --output"
+    found = {name: np.linalg.norm(one, axis=1) for name, one in levels(model, vehicle).items()}
+    lines = [
+        f"participation of attachments and places: |shape| over its mean in the body, sqrt(m) |Phi| [-]{cut}",
+        f"  {'mode':<28}" + "".join(f"{number:>6}" for number in range(1, count + 1)),
+    ]
+    return lines + [f"  {name:<28}" + "".join(f"{one:>6.2f}" for one in own[:count]) for name, own in found.items()]
+
+
+def residual_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
+    """Residual flexibility of each attachment, and where there is none."""
+    import numpy as np
+
     if model.residual:
-        lines.append("residual flexibility [m/N], principal values")
-        for name, flexibility in model.residual.items():
-            values = ", ".join(f"{value:.3g}" for value in np.linalg.eigvalsh(flexibility))
-            lines.append(f"  {name:<28} {values}")
-    return [*lines, *rotation_lines(model, vehicle)]
+        lines = ["residual flexibility [m/N]: along x, y, z, and the largest value in any direction"]
+        for name, own in model.residual.items():
+            along = "".join(f"{value:>11.3g}" for value in np.diag(own))
+            lines.append(f"  {name:<28}{along}{np.linalg.eigvalsh(own)[-1]:>11.3g}")
+    else:
+        lines = ["residual flexibility: none known"]
+    bare = _bare(model, vehicle)
+    if bare:
+        lines.append(
+            f"  none of {', '.join(bare)}: beyond the modes of the model the body is rigid there, as after a modal "
+            "test; `body import --residual` takes measured values"
+        )
+    return lines
+
+
+def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
+    """Points at which something acts on the body and whose node has no residual flexibility."""
+    from vehicle.flexbody.superelement import attached_nodes
+
+    own = vehicle.composition
+    acting = {one.point: one.at for one in own.connections if "body" in (one.moving, one.carrier)}
+    nodes = attached_nodes(model, acting)
+    return [name for name, at in acting.items() if nodes.get(at) not in model.residual]
 
 
 def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:

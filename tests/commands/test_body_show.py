@@ -1,0 +1,86 @@
+"""`python -m vehicle body show`: tables, files, and a model that is not the body of the vehicle file."""
+
+from __future__ import annotations
+
+import csv
+import tomllib
+
+import numpy as np
+import pytest
+
+from vehicle.car import Car
+from vehicle.commands.body import main
+from vehicle.excitation.signal import Signal
+from vehicle.flexbody.mass_difference import mass_difference, vehicle_lines
+from vehicle.flexbody.rigid_body import rigid_body
+from vehicle.output.run_files import summarise
+from vehicle.parameters.vehicle import load_vehicle
+from vehicle.rendering.body_plot import plot_body
+
+STORED, IMPROVED = "body.superelement=trimmed_body.toml", "body.inertia_variant=improved"
+
+
+def rows_of(path):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def test_tables_and_files(car, tmp_path, capsys):
+    folder = tmp_path / "out"
+    assert main(["show", "--output", str(folder)]) == 0
+    printed = capsys.readouterr().out
+    body = car.trimmed_body
+    assert "mass [kg]              813.00     813.00       +0.00" in printed
+    assert "   2   25.500   3.00 %  torsion" in printed and "-0.0" not in printed
+    assert "is not one body" not in printed  # the frame has the mass properties of its vehicle
+    modes, attachments, residuals = (rows_of(folder / f"{name}.csv") for name in ("modes", "attachments", "residuals"))
+    assert [float(row["frequency [Hz]"]) for row in modes] == pytest.approx(body.frequencies.tolist(), rel=1e-8)
+    level = np.array([[float(row[f"mode_{n + 1} [-]"]) for n in range(9)] for row in attachments]).reshape(-1, 3, 9)
+    names = [row["attachment"] for row in attachments[::3]]
+    # Against its mean in the body: of all nodes, weighed with their masses, the mean square is 1.
+    weighed = np.einsum("mni,mni,n->m", body.shapes, body.shapes, body.node_mass)
+    assert weighed == pytest.approx(np.ones(9), abs=1e-6)
+    rail = names.index("seat_rail")
+    assert level[rail] == pytest.approx(np.sqrt(813.0) * body.shape_at("seat_rail"), rel=1e-5, abs=1e-6)
+    assert f"  {'seat_rail':<28}" + "".join(f"{one:>6.2f}" for one in np.linalg.norm(level[rail], axis=0)) in printed
+    assert {row["attachment"]: float(row["zz [m/N]"]) for row in residuals} == pytest.approx(
+        {name: own[2, 2] for name, own in body.residual.items()}, rel=1e-5
+    )
+    assert (folder / "shapes.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_a_model_of_another_mass_is_named_in_every_run(capsys):
+    car = Car.load(overrides=[STORED, IMPROVED, "body.mass=823"])
+    said = mass_difference(car.trimmed_body, car.vehicle.body)
+    assert len(said) == 1 and said[0].startswith("body model trimmed_body: 813.0 kg with the CoG at [2.157, 0.000, 1.0")
+    signal = Signal(time=np.arange(0.0, 0.2, 1e-3), displacement={"fr": 1e-5 * np.sin(np.arange(200.0))})
+    run = car.run(signal, engine="reduced")
+    assert said[0] in summarise(run, (), {})["notices"]
+    assert main(["show", "--set", STORED, "--set", IMPROVED, "--set", "body.cog.z=1.035"]) == 0
+    printed = capsys.readouterr().out
+    assert "and a CoG 24 mm away" in printed
+    # What it says to write is what the model has.
+    lines = printed.partition("[body] of this model:\n")[2].splitlines()[:9]
+    table = tomllib.loads("\n".join(lines))
+    mended = Car.load(overrides=[STORED, *(f"body.{key}={value!r}" for key, value in table.items())])
+    own, model = rigid_body(mended.vehicle.body), mended.trimmed_body
+    assert own.inertia == pytest.approx(model.inertia, abs=0.05)
+    assert not mass_difference(model, mended.vehicle.body) and vehicle_lines(model)[0] == "mass = 813"
+
+
+@pytest.mark.parametrize(("change", "said"), [("body.mass=820", 0), ("body.mass=822", 1), ("body.cog.z=1.03", 0)])
+def test_what_scales_cannot_tell_is_not_said(change, said):
+    vehicle = load_vehicle(None, [STORED, change])
+    assert len(mass_difference(Car.load(overrides=[STORED]).trimmed_body, vehicle.body)) == said
+
+
+def test_a_rigid_body_says_nothing():
+    vehicle = load_vehicle(None, [STORED, "body.mass=900", "body.flexible=false"])
+    assert mass_difference(Car.load(overrides=[STORED]).trimmed_body, vehicle.body) == []
+
+
+def test_a_body_without_lines_is_a_picture_of_dots(car, tmp_path):
+    body = car.trimmed_body
+    none = np.zeros((0, 2), dtype=int)
+    plot_body(tmp_path / "dots.png", body.positions, none, body.shapes[:1], ["mode"], np.arange(3), "dots", "")
+    assert (tmp_path / "dots.png").stat().st_size > 5000

@@ -1,0 +1,56 @@
+"""Mass and centre of gravity of a body model against those of the vehicle file.
+
+Rigid motions take the mass properties of the vehicle file, and the modes are free-free modes of those of the model.
+Where both are the same body there is no inertia coupling between them. Where not, M phi' R is left out: of the order of
+the relative difference of the masses, and of the distance of the centres over the radius of gyration.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle.flexbody.superelement import Superelement
+from vehicle.parameters.body import TrimmedBody
+
+MASS_DIFFERENCE = 0.01
+"""Relative difference of two masses of one trimmed body from which they are not the same: a scale is good to 0.1 %, but
+fluids, trim and the mass of glue, paint and wiring in a model are known to a percent only."""
+
+COG_DISTANCE = 0.02
+"""Distance of two centres of gravity of one trimmed body from which they are not the same [m]. Wheel loads tell the
+place along and across it to millimetres; the height, about 1 m, follows from a lifted axle within a few percent
+(ISO 10392:2011, scope)."""
+
+
+def mass_difference(model: Superelement, body: TrimmedBody) -> list[str]:
+    """A sentence where model and vehicle file differ by more than weighing and tilting can be wrong; else nothing.
+
+    Args:
+        model: body model without what is fixed to it.
+        body: of the vehicle file.
+    """
+    if not (body.flexible and len(model.frequencies)):
+        return []
+    relative = abs(model.mass / body.mass - 1.0)
+    apart = float(np.linalg.norm(model.cog - np.array(body.cog)))
+    if relative <= MASS_DIFFERENCE and apart <= COG_DISTANCE:
+        return []
+    place = ", ".join(f"{value:z.3f}" for value in model.cog)
+    return [
+        f"body model {model.name}: {model.mass:.1f} kg with the CoG at [{place}] m; the vehicle file has "
+        f"{body.mass:.1f} kg and a CoG {1e3 * apart:.0f} mm away. More than {100 * MASS_DIFFERENCE:g} % or "
+        f"{1e3 * COG_DISTANCE:g} mm is not one body: rigid motions take the vehicle file, modes the model, and their "
+        "inertia coupling is left out. `python -m vehicle body show` prints the table [body] of the model"
+    ]
+
+
+def vehicle_lines(model: Superelement) -> list[str]:
+    """Mass properties of a body model as a vehicle file has them: about the origin, products as integrals."""
+    cog, mass = np.asarray(model.cog), model.mass
+    tensor = model.inertia + mass * (cog @ cog * np.eye(3) - np.outer(cog, cog))
+    moments = {"ixx_improved": (0, 0, 1.0), "iyy": (1, 1, 1.0), "izz": (2, 2, 1.0)}
+    moments |= {"ixy": (0, 1, -1.0), "izx": (2, 0, -1.0), "iyz": (1, 2, -1.0)}
+    numbers = {"mass": f"{mass:.6g}", "cog": f"[{', '.join(f'{value:.5g}' for value in cog)}]"}
+    numbers |= {"inertia_variant": '"improved"'}
+    numbers |= {name: f"{sign * tensor[i, j]:z.6g}" for name, (i, j, sign) in moments.items()}
+    return [f"{name} = {value}" for name, value in numbers.items()]
