@@ -18,8 +18,9 @@ Vector = npt.NDArray[np.float64]
 MEAN, WORST = "mean", "worst"
 """Behind the @: over all inputs."""
 
-DIGITS = 5
-"""Significant digits of a value that is tried: what is found can be typed, and is then the same car."""
+FINEST = 1e-4
+"""Values are tried in decimal steps of at most this share of their range: what is found can be typed, and is then the
+same car."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -129,8 +130,9 @@ class Problem:
         """Values of the parameters, rounded, at shares of their ranges; (n, p) of (n, p)."""
         low, high = np.array([(one.low, one.high) for one in self.ranges]).T
         exact = low + shares * (high - low)
-        rounded = np.array([float(f"{value:.{DIGITS}g}") for value in exact.ravel()]).reshape(exact.shape)
-        return np.clip(rounded, low, high)
+        places = [math.ceil(-math.log10(FINEST * (one.high - one.low))) for one in self.ranges]
+        rounded = [[round(value, place) for value, place in zip(row, places, strict=True)] for row in exact.tolist()]
+        return np.clip(np.array(rounded).reshape(exact.shape), low, high)
 
     def share(self, values: Vector) -> Vector:
         """Places of values in their ranges, 0 to 1 inside; (..., p)."""
