@@ -96,7 +96,7 @@ class RideMeasure:
         step = run.recording.timestep
         kept = slice(round(LEAD_S / step), None)
         xyz = np.array([run[name] for name in RAIL])
-        static = run.car.model.static.tyre_load
+        static = run.car.static.tyre_load
         loads = np.array([run[f"tyre_{wheel}_force_z"][kept] / static[wheel] for wheel in self.wheels])
         return {
             "weighted": weighted_rms_of(step, xyz, skip=LEAD_S)[2],

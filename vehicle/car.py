@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -32,13 +32,17 @@ from vehicle.linear.first_order import first_order
 from vehicle.linear.load_rows import LoadRows, load_rows
 from vehicle.linear.matrices import CarMatrices, car_matrices
 from vehicle.linear.modes import Mode, car_modes, require_stable
+from vehicle.linear.natural_modes import grows
 from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.step_error import accurate_step, require_accurate_step
+from vehicle.linear.varied import Terms, VariedCar
 from vehicle.names import AXES, ENGINES
 from vehicle.notebook.frames import recording_dataset, recording_frame
 from vehicle.notebook.picture import Picture, card, frame_drawing, line_drawing, picture
 from vehicle.notebook.run_response import RunResponse, named
+from vehicle.parameters.paths import override
 from vehicle.parameters.shipped import vehicle_file
+from vehicle.parameters.varied import Varied
 from vehicle.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
@@ -47,6 +51,7 @@ from vehicle.simulation.car_model import CarModel, build_model
 from vehicle.simulation.judgement import require_finite, require_memory
 from vehicle.simulation.recording import Recording
 from vehicle.simulation.run import Progress, simulate
+from vehicle.simulation.static_trim import StaticTrim
 
 FRF_BAND = (1.0, 50.0)
 """Frequencies of an FRF [Hz]."""
@@ -71,6 +76,8 @@ class Car:
         self.overrides: tuple[str, ...] = ()
         self._checked: set[str] = set()
         self._stepped: Car | None = None
+        self._like: Car | None = None
+        self._loaded, self._file = False, cast("Path | str | None", None)
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
@@ -91,6 +98,34 @@ class Car:
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
+        car._loaded, car._file = True, path
+        return car
+
+    def varied(self, overrides: Iterable[str]) -> Car:
+        """This car with other values in their places, for many cars of one kind.
+
+        Where the values move numbers of laws and masses alone, its matrices and static loads come from terms of this
+        car, which are read once (`vehicle.linear.varied`), and its MuJoCo model is built only where it is asked for.
+        Every other car is built, as by `load`.
+
+        Args:
+            overrides: texts as of `load`, after those of this car.
+
+        Raises:
+            ConfigurationError: a name or a value is wrong.
+        """
+        more = list(overrides)
+        changes = [*self.overrides, *more]
+        vehicle = self._varied.vehicle_of(more)
+        if vehicle is not None:
+            car = Car(vehicle, folder=self.folder)
+        elif self._loaded:
+            car = Car.load(self._file, changes)
+        else:
+            car = Car(vehicle_of(override(self.vehicle.table, more), self.folder), folder=self.folder)
+        car.origin, car.overrides = {**self.origin, "overrides": changes}, tuple(changes)
+        car._loaded, car._file = self._loaded, self._file
+        car._like = self
         return car
 
     def __repr__(self) -> str:
@@ -101,7 +136,7 @@ class Car:
     def _repr_html_(self) -> str:
         from vehicle.rendering.wireframe import car_wireframe
 
-        own, static = self.vehicle, self.model.static
+        own, static = self.vehicle, self.static
         rows = {
             "changes": "; ".join(self.overrides) or "none",
             "mass of the trimmed body": f"{own.body.mass:g} kg",
@@ -122,9 +157,27 @@ class Car:
         return build_model(self.vehicle, self.trimmed_body)
 
     @cached_property
+    def _varied(self) -> Varied:
+        return Varied(self.vehicle)
+
+    @cached_property
+    def _terms(self) -> Terms:
+        return Terms(self.model, self.matrices)
+
+    @cached_property
+    def _short(self) -> VariedCar | None:
+        """What the terms of another car make of this one; None where it has to be built."""
+        return None if self._like is None else self._like._terms.car_of(self.vehicle)
+
+    @cached_property
     def matrices(self) -> CarMatrices:
         """Mass, damping and stiffness matrices of the same model in its design position."""
-        return car_matrices(self.model.model, self.model.static)
+        return self._short.matrices if self._short else car_matrices(self.model.model, self.model.static)
+
+    @property
+    def static(self) -> StaticTrim:
+        """Preloads, and static loads of the tyres and of other contacts with the ground."""
+        return self._short.static if self._short else self.model.static
 
     @cached_property
     def poles(self) -> PoleModel:
@@ -150,7 +203,8 @@ class Car:
         if engine == "mujoco":
             self.stepped()
         else:
-            require_stable(self.model, self.matrices, self.poles.poles)
+            if np.any(grows(self.poles.poles)):
+                require_stable(self.model, self.matrices, self.poles.poles)
         self._checked.add(engine)
 
     def stepped(self) -> Car:
@@ -175,7 +229,8 @@ class Car:
 
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
-        names = self.model.superelement.mode_names
+        model = self._like.model if self._like and self._short else self.model
+        names = model.superelement.mode_names
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
 
     def matrix_frf(
@@ -234,7 +289,7 @@ class Car:
                 signal,
                 dampers=[damper.law for damper in self.vehicle.composition.dampers],
                 record_rate=self.vehicle.solver.record_rate,
-                tyre_load=self.model.static.tyre_load,
+                tyre_load=self.static.tyre_load,
                 channels=channels,
                 loads=self.load_rows if loads else None,
             )

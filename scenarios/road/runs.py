@@ -88,7 +88,7 @@ class RideMeasure:
             seat = np.array([run[f"seat_acc_{axis}"] for axis in AXES])
             found["seat_weighted"] = weighted_rms_of(step, seat, skip=LEAD_S)[3]
             found["seat_value"] = seat_value(step, seat[2], rail[2], skip=LEAD_S).rms
-        static = run.car.model.static.tyre_load
+        static = run.car.static.tyre_load
         loads = {wheel: run[f"tyre_{wheel}_force_z"][kept] / static[wheel] for wheel, _ in self.wheels}
         for axle, wheels in self.by_axle:
             found[f"load_{axle}"] = float(np.sqrt(np.mean([np.mean((loads[one] - 1.0) ** 2) for one in wheels])))

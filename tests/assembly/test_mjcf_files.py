@@ -48,12 +48,13 @@ def test_scene_opens_and_stands_still_without_callbacks(files, tmp_path):
 
 
 def test_the_file_alone_holds_the_element_constants(files, tmp_path):
-    from vehicle.simulation.layout import element_names, read_layout
+    from vehicle.simulation.law_numbers import law_names
+    from vehicle.simulation.layout import read_layout
 
     write_mjcf(tmp_path, files)
     own, built_model = mujoco.MjModel.from_xml_path(str(tmp_path / "car.xml")), Car.load().model.model
     loaded, built = read_layout(own), read_layout(built_model)
-    assert element_names(own) == element_names(built_model) and loaded.row_count == built.row_count
+    assert law_names(own) == law_names(built_model) and loaded.row_count == built.row_count
     # MuJoCo writes six digits.
     np.testing.assert_allclose(loaded.bushings.stiffness, built.bushings.stiffness, rtol=1e-5)
     np.testing.assert_allclose(loaded.modes.node_shapes, built.modes.node_shapes, rtol=1e-5, atol=1e-9)

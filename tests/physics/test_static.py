@@ -10,7 +10,8 @@ import pytest
 
 from vehicle.car import Car
 from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.simulation.layout import element_names, read_layout
+from vehicle.simulation.law_numbers import law_names
+from vehicle.simulation.layout import read_layout
 
 
 def at_rest(seconds):
@@ -38,7 +39,7 @@ def test_ground_forces_and_weight_are_in_equilibrium(car):
     mujoco.mj_forward(model, data)
     layout = read_layout(model)
     force, moment = np.zeros(3), np.zeros(3)
-    for name, rows in zip(element_names(model), layout.bushings.rows, strict=True):
+    for name, rows in zip(law_names(model).bushings, layout.bushings.rows, strict=True):
         if name.startswith(("bushing/tyre", "bushing/rear_support")):
             load = static.preload[rows]
             force += load

@@ -9,13 +9,18 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.assembly.connections import element_law
+from vehicle.assembly.law_numbers import (
+    connection_name,
+    connection_numbers,
+    damper_numbers,
+    joint_numbers,
+    mass_numbers,
+    mode_numbers,
+    spring_numbers,
+)
 from vehicle.flexbody.attached_mass import with_attached_masses
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, attached_nodes
-from vehicle.laws import semi_active
-from vehicle.laws.damper import actuator_parameters, damper_curve, pack
-from vehicle.names import AXES
 from vehicle.parameters.composition import (
     PlacedConnection,
     PlacedDamper,
@@ -24,7 +29,6 @@ from vehicle.parameters.composition import (
     PlacedSpring,
     PlacedWheel,
 )
-from vehicle.parameters.elements import ForceTable
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.vehicle import Vehicle
 
@@ -98,8 +102,8 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
     for part in car.parts:
         builder.add_part(part)
     for on_joint in car.joint_springs:
-        joint = spec.joint(on_joint.joint)
-        joint.stiffness, joint.damping = [on_joint.stiffness, 0.0, 0.0], [on_joint.damping, 0.0, 0.0]
+        joint, ((stiffness, damping),) = spec.joint(on_joint.joint), joint_numbers(on_joint).values()
+        joint.stiffness, joint.damping = [stiffness, 0.0, 0.0], [damping, 0.0, 0.0]
     for wheel in car.wheels:
         builder.add_plate(wheel)
     for connection in car.connections:
@@ -169,13 +173,14 @@ class _Builder:
         place = np.array(point) - self.origins[body]
         self.bodies[body].add_site(name=name, pos=place, size=[0.012, 0.012, 0.012], group=4)
 
-    def _numeric(self, name: str, data: npt.ArrayLike) -> None:
-        self.spec.add_numeric(name=name, data=np.atleast_1d(np.asarray(data, dtype=float)).ravel())
+    def _numerics(self, numbers: Mapping[str, Vector]) -> None:
+        for name, data in numbers.items():
+            self.spec.add_numeric(name=name, data=data)
 
     def _node_shape(self, name: str, point: Point) -> None:
         """Write the modal displacement of the body's node at a point, (3, modes) row by row [kg^-1/2]."""
         if self.vehicle.body.flexible:
-            self._numeric(f"shape/{name}", self.superelement.shape_at(self.nodes[point]))
+            self._numerics({f"shape/{name}": self.superelement.shape_at(self.nodes[point]).ravel()})
 
     def _node_rotation(self, name: str, point: Point) -> None:
         """Write the modal rotation of the body's node at a point, where its model knows it [rad m^-1 kg^-1/2]."""
@@ -189,29 +194,23 @@ class _Builder:
         self._add("body", "world", body.cog, body.mass, body.full_inertia).add_freejoint(name="body")
         if not self.vehicle.body.flexible:
             return
-        scale = self.vehicle.body.frequency_scale
-        for number, (frequency, ratio) in enumerate(
-            zip(self.superelement.frequencies, self.superelement.damping_ratio, strict=True), start=1
-        ):
-            omega = 2.0 * np.pi * frequency * scale
-            name = f"mode_{number}"
+        for field, (stiffness, damping) in mode_numbers(self.vehicle.body, self.superelement).items():
+            name = field.removeprefix("joint/")
             # Along x, so that gravity does not act on it.
             self._add(name, "world", np.zeros(3), MODAL_BODY_MASS, np.full(3, MODAL_BODY_MASS)).add_joint(
                 name=name,
                 type=mujoco.mjtJoint.mjJNT_SLIDE,
                 axis=[1.0, 0.0, 0.0],
                 armature=1.0 - MODAL_BODY_MASS,
-                stiffness=omega**2,
-                damping=2.0 * ratio * omega,
+                stiffness=stiffness,
+                damping=damping,
             )
 
     def add_part(self, part: PlacedPart) -> None:
         """A rigid part with its joints."""
-        numbers, products = part.numbers, np.array([part.side, 1.0, part.side]) * part.numbers.products
-        moments = numbers.inertia or (0.0, 0.0, 0.0)
-        # MuJoCo's tensor has negative products, in the order xy, xz, yz.
-        full = [*moments, *-products] if products.any() else moments
-        body = self._add(part.name, part.parent, np.array(part.cog), numbers.mass, full)
+        (numbers,) = mass_numbers(part).values()
+        moments = numbers[1:] if numbers[4:].any() else numbers[1:4]
+        body = self._add(part.name, part.parent, np.array(part.cog), float(numbers[0]), moments)
         for joint in part.joints:
             if joint.kind == "free":
                 body.add_freejoint(name=joint.name)
@@ -228,8 +227,8 @@ class _Builder:
     def connect(self, connection: PlacedConnection) -> None:
         """Add the rows of a bushing or of a loop-closing ball joint, and the constants of its law."""
         on_body = "body" in (connection.moving, connection.carrier)
-        law = element_law(connection, self.vehicle.body, self.superelement)
-        name = f"{'ball' if connection.law is None else 'bushing'}/{connection.name}"
+        numbers = connection_numbers(connection, self.vehicle.body, self.superelement)
+        name = connection_name(connection)
         sites = (f"{name}/moving", f"{name}/carrier")
         self._site(sites[0], connection.moving, connection.at)
         self._site(sites[1], connection.carrier, connection.at)
@@ -240,23 +239,14 @@ class _Builder:
             name1=sites[0],
             name2=sites[1],
         )
-        if law is None:
+        if not numbers:
             # Ideal joint: MuJoCo's own reference, critically damped, as stiff as the step allows.
             row.solref = [JOINT_TIME_STEPS * self.vehicle.solver.step, 1.0]
             row.solimp = [JOINT_IMPEDANCE, JOINT_IMPEDANCE, 0.001, 0.5, 2.0]
         else:
             # Only for a viewer without the callbacks: stiffer than MuJoCo's own, so that the car sags by 4 mm.
             row.solimp = [VIEWER_IMPEDANCE, VIEWER_IMPEDANCE, 0.001, 0.5, 2.0]
-            # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
-            branch_damping = law.branch_stiffness * law.branch_time
-            constants = np.concatenate([law.stiffness, law.damping, law.branch_stiffness, branch_damping])
-            for axis, local in zip(AXES, law.local, strict=True):
-                self._table(f"{name}/{axis}", getattr(connection.law, f"table_{axis}", None), float(local))
-            if getattr(connection.law, "one_sided", False):
-                self._numeric(f"one_sided/{name}", 1.0)
-            self._numeric(f"law/{name}", [*constants, law.rotational_stiffness, float(law.averaged)])
-            if law.directions is not None:
-                self._numeric(f"directions/{name}", law.directions)
+            self._numerics(numbers)
         if on_body:
             self._node_shape(name, connection.at)
             if law is not None and law.rotational_stiffness > 0.0:
@@ -272,8 +262,7 @@ class _Builder:
             if body == "body":
                 self._node_shape(name, point)
         self.spec.add_equality(name=name, type=mujoco.mjtEq.mjEQ_TENDON, objtype=mujoco.mjtObj.mjOBJ_TENDON, name1=name)
-        self._numeric(f"law/{name}", [spring.stiffness])
-        self._table(name, spring.table)
+        self._numerics(spring_numbers(spring))
 
     def add_damper(self, placed: PlacedDamper) -> None:
         """Damper as a user actuator on its slide joint; the joint's friction row holds the set-valued part."""
@@ -284,30 +273,24 @@ class _Builder:
         self.spec.add_equality(
             name=placed.name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name
         )
-        laws = pack(damper)
-        self._table(placed.name, damper.stop)
-        for number, piece in enumerate(damper_curve(damper).clamped()):
-            # Each steeper piece of the curve is a further friction row, which a joint cannot have: a tendon.
-            tendon = self.spec.add_tendon(name=f"valve/{placed.name}" + (f"/{number}" if number else ""))
-            tendon.wrap_joint(name, 1.0)
-            tendon.frictionloss = piece[2]
-            self._numeric(f"law/{tendon.name}", piece)
+        numbers = damper_numbers(placed)
+        parameters = numbers.pop(f"actuator/{placed.name}")
+        self._numerics(numbers)
+        for field, piece in numbers.items():
+            if field.startswith("law/valve/"):
+                # Each steeper piece of the curve is a further friction row, which a joint cannot have: a tendon.
+                tendon = self.spec.add_tendon(name=field.removeprefix("law/"))
+                tendon.wrap_joint(name, 1.0)
+                tendon.frictionloss = piece[2]
         actuator = self.spec.add_actuator(name=placed.name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER
         actuator.biastype = mujoco.mjtBias.mjBIAS_USER
-        actuator.biasprm = actuator_parameters(laws)
+        actuator.biasprm = parameters
         if damper.controlled is not None:
-            self._numeric(f"control/{placed.name}", semi_active.pack(damper.controlled))
             for end, part, at in zip(("lower", "upper"), placed.sensors, placed.at, strict=True):
                 self._site(f"sensor/{placed.name}/{end}", part, at)
                 if part == "body":
                     self._node_shape(f"sensor/{placed.name}/{end}", at)
-
-    def _table(self, name: str, table: ForceTable | None, local: float = np.inf) -> None:
-        """Points of a law over displacement, behind a local stiffness [N/m]: in series displacements add up."""
-        if table is not None:
-            gives = [x + force / local for x, force in zip(table.displacement, table.force, strict=True)]
-            self._numeric(f"table/{name}", [*gives, *table.force])
 
     def add_place(self, output: PlacedOutput) -> None:
         """Site and acceleration sensor of a recorded place."""

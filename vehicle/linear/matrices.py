@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -91,37 +92,21 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     """
     data = mujoco.MjData(model)
     rows = Rows(model, static.preload)
-    e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
-    viscous = rows.layout.dampers.laws["viscous_damping"]
+    e = rows.layout
     stiffness = _tangent_stiffness(rows, model)
     with installed(rows):
         mujoco.mj_forward(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
-    # In the design position all carriers are parallel to the vehicle frame, so rows are element axes.
-    row_damping = np.zeros(e.row_count)
-    row_damping[bushings.rows] = bushings.damping
-    damping = jacobian.T @ (row_damping[:, None] * jacobian)
-    damping[np.diag_indices(model.nv)] += joint_dampers(model)
-    damping[dofs, dofs] += viscous
-    present = bushings.branch_stiffness > 0.0
-    vertical = jacobian[bushings.rows[e.tyres][:, 2]]
-    still = np.zeros(len(e.tyres))
-    count = int(np.count_nonzero(present))
+    dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
+    laws = law_matrices(rows, jacobian, joint_dampers(model))
     return CarMatrices(
         system=LinearSystem(
             coordinates=(),
             inputs=wheels_of(model),
             mass=mass,
-            damping=damping,
             stiffness=stiffness,
-            input_damping=vertical.T * bushings.damping[e.tyres, 2],
-            input_stiffness=vertical.T * bushings.stiffness[e.tyres, 2],
-            branch_rows=jacobian[bushings.rows[present]],
-            branch_inputs=np.zeros((count, len(e.tyres))),
-            branch_stiffness=bushings.branch_stiffness[present],
-            branch_time=bushings.branch_time[present],
             slide_rows=np.eye(model.nv)[dofs],
             slide_inputs=np.zeros((len(dofs), len(e.tyres))),
             constraints=jacobian[e.joints.ravel()],
@@ -129,22 +114,63 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
             outputs={
                 name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modes.velocities).items()
             },
+            **laws.system,
         ),
         dampers=dofs,
-        viscous=viscous,
+        **laws.car,
         sensors=_sensors(rows, data),
-        bends=_bends(rows, jacobian),
         one_sided=frozenset(
-            wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in bushings.one_sided
+            wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in e.bushings.one_sided
         ),
-        tyre_stiffness=bushings.stiffness[e.tyres, 2],
-        tyre_damping=bushings.damping[e.tyres, 2],
         body_rows=_body_rows(model, data),
         body_masses=_body_masses(model, data),
         carried_by={
             str(model.body(i).name): str(model.body(int(root)).name) for i, root in enumerate(model.body_weldid)
         },
         modal=e.modes.velocities,
+    )
+
+
+class LawMatrices(NamedTuple):
+    """What the laws of a car make of its linear form, but the stiffness matrix: fields of both classes."""
+
+    system: dict[str, Any]
+    car: dict[str, Any]
+
+
+def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector) -> LawMatrices:
+    """Fields of `LinearSystem` and of `CarMatrices` that depend on the numbers of the laws.
+
+    Args:
+        rows: of the car at rest.
+        jacobian: of its rows; (rows, n).
+        joint_damping: damping inside joints; (n,).
+    """
+    e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
+    viscous = e.dampers.laws["viscous_damping"]
+    # In the design position all carriers are parallel to the vehicle frame, so rows are element axes.
+    row_damping = np.zeros(e.row_count)
+    row_damping[bushings.rows] = bushings.damping
+    damping = jacobian.T @ (row_damping[:, None] * jacobian)
+    damping[np.diag_indices(len(damping))] += joint_damping
+    damping[dofs, dofs] += viscous
+    present = bushings.branch_stiffness > 0.0
+    vertical = jacobian[bushings.rows[e.tyres][:, 2]]
+    tyres = {"stiffness": bushings.stiffness[e.tyres, 2], "damping": bushings.damping[e.tyres, 2]}
+    return LawMatrices(
+        system={
+            "damping": damping,
+            "branch_rows": jacobian[bushings.rows[present]],
+            "branch_inputs": np.zeros((int(np.count_nonzero(present)), len(e.tyres))),
+            "branch_stiffness": bushings.branch_stiffness[present],
+            "branch_time": bushings.branch_time[present],
+            **{f"input_{kind}": vertical.T * numbers for kind, numbers in tyres.items()},
+        },
+        car={
+            "viscous": viscous,
+            "bends": _bends(rows, jacobian),
+            **{f"tyre_{kind}": numbers for kind, numbers in tyres.items()},
+        },
     )
 
 
@@ -166,12 +192,25 @@ def _bends(rows: Rows, jacobian: Vector) -> tuple[Bend, ...]:
 
 def _tangent_stiffness(rows: Rows, model: mujoco.MjModel) -> Vector:
     """K = -dF/du of all static forces, by central differences."""
+    return -differences(rows, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
+
+
+def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector]) -> Vector:
+    """Central differences of what is read from a state, over the velocity coordinates in the design position.
+
+    Args:
+        rows: of the car at rest.
+        read: an array of a state whose rows are written, (...); of the step everything is there but the solution.
+
+    Returns:
+        (..., n).
+    """
+    model = rows.model
     data = mujoco.MjData(model)
     rewrite = _rewriter(rows, data)
-    start, way = data.qpos.copy(), np.zeros(model.nv)
-    stiffness = np.zeros((model.nv, model.nv))
+    start, way, found = data.qpos.copy(), np.zeros(model.nv), []
     for column in range(model.nv):
-        forces = []
+        ends = []
         for sign in (1.0, -1.0):
             data.qpos[:] = start
             way[column] = sign
@@ -180,10 +219,10 @@ def _tangent_stiffness(rows: Rows, model: mujoco.MjModel) -> Vector:
             mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
             rewrite(model, data)
-            forces.append(data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
+            ends.append(read(data))
         way[column] = 0.0
-        stiffness[:, column] = -(forces[0] - forces[1]) / (2.0 * DIFFERENCE_STEP)
-    return stiffness
+        found.append((ends[0] - ends[1]) / (2.0 * DIFFERENCE_STEP))
+    return np.stack(found, axis=-1)
 
 
 def _rewriter(rows: Rows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:

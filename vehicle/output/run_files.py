@@ -199,7 +199,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
     Returns:
         Plain numbers, texts, lists and dictionaries; None where a value does not exist.
     """
-    statistics, static, damper = run.recording.statistics, run.car.model.static, run.car.vehicle.damper
+    statistics, static, damper = run.recording.statistics, run.car.static, run.car.vehicle.damper
     energies, wheels = statistics.energies, run.car.vehicle.wheels
     response, channels = (responses[0].response if responses else None), run.car.vehicle.acceleration_channels
     said = what_moves([one.motion for one in responses]) if responses else ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from vehicle.parameters.composition import (
     PlacedPart,
     PlacedSpring,
     PlacedWheel,
+    Source,
 )
 from vehicle.parameters.dampers import placed_damper
 from vehicle.parameters.elements import Damper
@@ -62,22 +63,35 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     names |= {i.label(name, side) for i in car.values() for name in i.template.parts for side in i.sides()}
     require_ports(car, names)
     parts, wheels = _parts(car), _wheels(car)
-    connections = [_connection(*one) for one in sorted(_elements(car, "connection"), key=lambda one: _rank(one[2]))]
-    connections.sort(key=lambda one: one.law is None)
+    laws = _made(_connection, sorted(_elements(car, "connection"), key=lambda one: _rank(one[2])))
+    laws.sort(key=lambda one: one[0].law is None)
+    connections = [one for one, _ in laws]
     connections += [further_connection(name, one, names, points) for name, one in given["connection"].items()]
-    springs = [placed_spring(*one) for one in _elements(car, "spring")]
+    springs = _made(placed_spring, _elements(car, "spring"))
+    between, on_joints = ([one for one in springs if isinstance(one[0], kind)] for kind in (PlacedSpring, JointSpring))
+    dampers = _made(placed_damper, _elements(car, "damper"))
     added = [further_output(name, one, names, points) for name, one in given["outputs"].items()]
     composed = Composition(
-        parts=tuple(parts),
+        parts=tuple(one for one, _ in parts),
         connections=tuple(connections),
-        springs=tuple(one for one in springs if isinstance(one, PlacedSpring)),
-        joint_springs=tuple(one for one in springs if isinstance(one, JointSpring)),
-        dampers=tuple(placed_damper(*one) for one in _elements(car, "damper")),
+        springs=tuple(one for one, _ in between),
+        joint_springs=tuple(one for one, _ in on_joints),
+        dampers=tuple(one for one, _ in dampers),
         outputs=tuple(_outputs(car, added)),
         wheels=tuple(wheels),
         points=points,
         kinds=kinds(car, table),
         meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},
+        sources={
+            kind: tuple(source for _, source in made)
+            for kind, made in (
+                ("parts", parts),
+                ("connections", laws),
+                ("springs", between),
+                ("joint_springs", on_joints),
+                ("dampers", dampers),
+            )
+        },
     )
     require_sound(composed)
     require_taken(car)
@@ -128,7 +142,12 @@ def _names_a_side(entry: Any) -> bool:
     return any(":" in (word or "") for word in (*parts, *getattr(entry, "child", ())))
 
 
-def _parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
+def _made(make: Callable[[Instance, Any, str | None], Any], elements: Elements) -> list[tuple[Any, Source]]:
+    """Elements, each with what it is made from."""
+    return [(make(*one), Source(make, *one)) for one in elements]
+
+
+def _parts(car: Mapping[str, Instance]) -> list[tuple[Any, Source]]:
     """Every part behind its parent, with its joints."""
     held: dict[str, tuple[Instance, str, str | None, str, list[tuple[topology.Joint, str | None]]]] = {}
     for i, joint, side in _elements(car, "joint"):
@@ -173,17 +192,16 @@ def _parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
         raise ConfigurationError(
             f"{i.template.file}: joints of {', '.join(loose)} lead to no free part; close a loop by a connection"
         )
-    return [_part(label, *held[label]) for label in order]
+    made = ((label, *held[label]) for label in order)
+    return _made(_part, [(i, (label, name, parent, joints), side) for label, i, name, side, parent, joints in made])
 
 
-def _part(
-    label: str,
-    i: Instance,
-    name: str,
-    side: str | None,
-    parent: str,
-    joints: list[tuple[topology.Joint, str | None]],
-) -> PlacedPart:
+Held = tuple[str, str, str, list[tuple[topology.Joint, str | None]]]
+"""A part: its label, its name in the template, what holds it, and the joints between them."""
+
+
+def _part(i: Instance, held: Held, side: str | None) -> PlacedPart:
+    label, name, parent, joints = held
     first, own = joints[0]
     return PlacedPart(
         name=label,

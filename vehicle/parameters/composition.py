@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 from vehicle.parameters.axes import Axes
 from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
@@ -138,6 +139,15 @@ class PlacedWheel:
     paths: tuple[str, str]
 
 
+class Source(NamedTuple):
+    """What an element was made from: `make(instance, entry, side)` makes it again."""
+
+    make: Callable[[Any, Any, str | None], Any]
+    instance: Any
+    entry: Any
+    side: str | None
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Composition:
     """Everything that a car consists of beside its trimmed body, in the order of the model.
@@ -147,6 +157,7 @@ class Composition:
         points: hardpoints by name, as "strut_top_fr" [m].
         kinds: parameter class of each table of the vehicle file, by its path.
         meanings: of each hardpoint, by its path.
+        sources: of the elements of instances, by the kind of element, in the order of its first ones.
     """
 
     parts: tuple[PlacedPart, ...] = ()
@@ -159,6 +170,7 @@ class Composition:
     points: Mapping[str, Point] = field(default_factory=dict)
     kinds: Mapping[str, type] = field(default_factory=dict)
     meanings: Mapping[str, str] = field(default_factory=dict)
+    sources: Mapping[str, tuple[Source, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     def attachments(self) -> dict[str, Point]:
         """Points at which something acts on the trimmed body, or is measured on it, by name [m]."""

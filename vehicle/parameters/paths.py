@@ -21,6 +21,9 @@ from vehicle.parameters.toml_file import as_table, copy_table
 Optional = Callable[[], Iterable[str]]
 """Paths that may be given beside those of a table."""
 
+DECIMAL = re.compile(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)")
+"""A TOML number that is not whole."""
+
 SHOWN = 4
 """Most paths that a message lists."""
 
@@ -35,7 +38,7 @@ def full_path(table: Mapping[str, Any], path: str) -> str:
     Raises:
         ConfigurationError: nothing is called so (with the nearest path), or more than one thing is.
     """
-    if _at(table, path) is not None:
+    if value_at(table, path) is not None:
         return path
     if isinstance(other := table.get("alias", {}).get(path), str):
         return full_path({**table, "alias": {}}, other)
@@ -135,11 +138,11 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
 
 def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
     """Put a value into its place; tables that an optional one needs are made."""
-    old, given = _at(table, path), assignment.partition("=")[0].strip()
+    old, given = value_at(table, path), assignment.partition("=")[0].strip()
     if isinstance(old, Mapping):
         inside = ", ".join(f"{path}.{key}" for key in list(old)[:6])
         raise ConfigurationError(f"--set {assignment}: {given} is a group; set one of {inside}")
-    value = _value(assignment, text, "" if old is None else old)
+    value = parsed_value(assignment, text, "" if old is None else old)
     if _is_vector(old) and isinstance(value, int | float):
         raise ConfigurationError(
             f"--set {assignment}: {given} is a vector; give all as [x, y, z], or one component with its axis "
@@ -169,7 +172,7 @@ def value_of(vehicle: Any, path: str) -> float:
             return float(declared["default"])
         raise ConfigurationError(f"parameter {path}: not given in this vehicle, and without a default; give its value")
     try:
-        found = _at(table, full_path(table, path))
+        found = value_at(table, full_path(table, path))
         if _is_number(found):
             return float(found)
         raise ConfigurationError(f"the nearest is {nearest(path, _numbers(table))}")
@@ -221,7 +224,7 @@ def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
     return found
 
 
-def _at(table: Any, path: str) -> Any:
+def value_at(table: Any, path: str) -> Any:
     """What a whole path leads to; None where it leads nowhere."""
     inner = table
     for key in path.split("."):
@@ -233,7 +236,7 @@ def _at(table: Any, path: str) -> Any:
 
 
 def _numbers(table: Mapping[str, Any]) -> list[str]:
-    return [path for path in paths(table) if _is_number(_at(table, path))]
+    return [path for path in paths(table) if _is_number(value_at(table, path))]
 
 
 def _is_vector(value: Any) -> bool:
@@ -244,8 +247,19 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _value(assignment: str, text: str, old: Any) -> Any:
-    """Parse the value of an override; a bare word stands for a text where a text is wanted."""
+def parsed_value(assignment: str, text: str, old: Any) -> Any:
+    """Parse the value of an override; a bare word stands for a text where a text is wanted.
+
+    Args:
+        assignment: the override, for messages.
+        text: its value.
+        old: what stands there; a bare word is a text in place of one.
+
+    Raises:
+        ConfigurationError: it is no value.
+    """
+    if DECIMAL.fullmatch(text):
+        return float(text)  # by far the most of them, and a parser of files takes its time
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except RecursionError:

@@ -69,7 +69,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     Raises:
         ConfigurationError: an unknown name (with the nearest known one), a missing name or a wrong type.
     """
-    hints = _type_hints(cls)  # type: ignore[arg-type]
+    hints = type_hints(cls)  # type: ignore[arg-type]
     fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
@@ -239,6 +239,6 @@ def _join(path: str, name: str) -> str:
 
 
 @functools.cache
-def _type_hints(kind: type[Any]) -> dict[str, Any]:
+def type_hints(kind: type[Any]) -> dict[str, Any]:
     """Types of the fields of a dataclass; a sweep asks for them thousands of times."""
     return typing.get_type_hints(kind)

@@ -10,13 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.assembly.spec import assemble
-from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.errors import SimulationError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.vehicle import Vehicle
-from vehicle.simulation.rows import Rows, weights
+from vehicle.simulation.rows import Rows
 from vehicle.simulation.standing import require_body_modes, require_standing
 from vehicle.simulation.static_trim import StaticTrim, trim
-from vehicle.simulation.tables import curve_of, standing_on
 
 Vector = npt.NDArray[np.float64]
 
@@ -42,49 +41,6 @@ class CarModel:
     static: StaticTrim
 
 
-MOST_TRIMS = 50
-"""Trims in which the operating points of the curves settle; two, as a rule."""
-
-
-def _trimmed(rows: Rows) -> StaticTrim:
-    """Trim with every law over displacement as its tangent at the force that it carries.
-
-    Raises:
-        ConfigurationError: a curve that no point of carries its static force.
-    """
-    static = trim(rows)
-    if not len(rows.layout.tables.at):
-        return static
-    for _ in range(MOST_TRIMS):
-        layout, last = standing_on(rows.layout, static.preload), rows.layout
-        rows.layout, rows.weights = layout, weights(rows.model, layout, rows.weights.preload)
-        static = trim(rows)
-        same = (layout.bushings.stiffness, layout.springs.stiffness, layout.tables.at)
-        if all(map(np.allclose, same, (last.bushings.stiffness, last.springs.stiffness, last.tables.at))):
-            break
-    t = rows.layout.tables
-    for index, (kind, element, axis, at) in enumerate(zip(t.kinds, t.elements, t.axes, t.at, strict=True)):
-        if kind < 2:
-            row = rows.layout.bushings.rows[element, axis] if kind == 0 else rows.layout.springs.rows[element]
-            needed, found = -static.preload[row], float(curve_of(t, index).force(at))
-            if abs(found - needed) > 1e-6 * max(abs(needed), 1.0):
-                raise ConfigurationError(
-                    f"the table of {_table_names(rows)[index]}: carries {found:.4g} N nearest to the {needed:.4g} N "
-                    "with which the car stands in its design position; give it points up to that force"
-                )
-    return static
-
-
-def _table_names(rows: Rows) -> list[str]:
-    """Names of the elements whose laws are curves."""
-    t, model = rows.layout.tables, rows.model
-    springs = [model.equality(i).name for i in range(model.neq) if model.eq_type[i] == mujoco.mjtEq.mjEQ_TENDON]
-    return [
-        f"the stop of damper {element + 1}" if kind == 2 else springs[element] if kind == 1 else rows.names[element]
-        for kind, element in zip(t.kinds, t.elements, strict=True)
-    ]
-
-
 def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     """Assemble, compile and trim a car.
 
@@ -106,7 +62,7 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     except ValueError as error:
         raise SimulationError(f"MuJoCo refuses the generated car: {' '.join(str(error).split())}") from None
     rows = Rows(model)
-    static = _trimmed(rows)
+    static = trim(rows)
     require_standing(vehicle, rows, static)
     return CarModel(
         vehicle=vehicle,

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vehicle.laws.damper import unpack
 from vehicle.laws.semi_active import in_steps
-from vehicle.names import AXES
+from vehicle.simulation.law_numbers import TURNING, law_names, laws_of, model_numbers, with_numbers
 from vehicle.simulation.records import (
     Bushings,
     Controls,
@@ -23,7 +23,6 @@ from vehicle.simulation.records import (
     Rotations,
     Springs,
     Table,
-    Tables,
     Vector,
 )
 from vehicle.simulation.tables import tables_through
@@ -38,13 +37,6 @@ def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
     return np.array(model.numeric_data[start : start + model.numeric_size[index]])
 
 
-def element_names(model: mujoco.MjModel) -> tuple[str, ...]:
-    """Names of the elements with a law along three axes, in the order of `Bushings`."""
-    connect = [index for index in range(model.neq) if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT]
-    names = [str(model.equality(index).name) for index in connect]
-    return tuple(name for name in names if numeric(model, f"law/{name}") is not None)
-
-
 def read_layout(model: mujoco.MjModel) -> Layout:
     """Collect the elements from the custom fields of a compiled car.
 
@@ -54,7 +46,8 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     Returns:
         The arrays, in the order of the constraint rows.
     """
-    kinds, names = mujoco.mjtEq, element_names(model)
+    kinds, law, numbers = mujoco.mjtEq, law_names(model), model_numbers(model)
+    names, springs, laws = law.bushings, law.springs, laws_of(law, numbers)
     types = [kinds(kind) for kind in model.eq_type]
     heights = [3 if kind == kinds.mjEQ_CONNECT else 1 for kind in types]
     first_rows = np.cumsum([0, *heights])
@@ -73,54 +66,50 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     def rows_of(chosen: Sequence[str]) -> Index:
         return _whole([first_rows[equalities[name]] for name in chosen])
 
-    springs = [name for name in ends if types[equalities[name]] == kinds.mjEQ_TENDON]
     balls = [name for name in ends if name not in springs]
     carriers = _whole([model.site_bodyid[ends[name][1]] for name in names])
-    laws = np.array([numeric(model, f"law/{name}") for name in names]).reshape(-1, 14)
-    ways = {index: numeric(model, f"directions/{name}") for index, name in enumerate(names)}
-    oblique = {index: way for index, way in ways.items() if way is not None}
-    turning = [name for name, law in zip(names, laws, strict=True) if law[12] > 0.0]
+    turning = [name for name, own in zip(names, laws, strict=True) if own[TURNING] > 0.0]
     plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
-    return Layout(
+    empty = np.zeros((0, 3))
+    layout = Layout(
         bushings=Bushings(
             rows=_triples(rows_of(names)),
             carriers=carriers,
-            stiffness=laws[:, 0:3].copy(),
-            damping=laws[:, 3:6].copy(),
-            branch_stiffness=laws[:, 6:9].copy(),
-            branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=laws[:, 6:9] > 0.0),
-            averaged=_whole(laws[:, 13] > 0.0),
-            one_sided=_whole([i for i, name in enumerate(names) if numeric(model, f"one_sided/{name}") is not None]),
-            oblique=_whole(list(oblique)),
-            directions=np.array(list(oblique.values())).reshape(-1, 9),
+            stiffness=empty,
+            damping=empty,
+            branch_stiffness=empty,
+            branch_time=empty,
+            averaged=_whole([]),
+            one_sided=_whole([]),
+            oblique=_whole([]),
+            directions=np.zeros((0, 9)),
         ),
         rotations=Rotations(
             sites=_whole([ends[name] for name in turning], 2),
-            stiffness=laws[laws[:, 12] > 0.0, 12].copy(),
+            stiffness=np.zeros(0),
             turning=_turning(model, [ends[name] for name in turning]),
             **_node_rotations(model, turning, ends, modes),
         ),
         springs=Springs(
             rows=rows_of(springs),
-            stiffness=np.array([_required(model, f"law/{name}")[0] for name in springs]),
+            stiffness=np.zeros(0),
             lengths=np.array([model.tendon_length0[model.eq_obj1id[equalities[name]]] for name in springs]),
             sites=_whole([ends[name] for name in springs], 2),
             shapes=_shapes(model, springs, modes),
             dofs=_spring_dofs(model, [ends[name] for name in springs]),
         ),
         dampers=_dampers(model, rows_of, int(first_rows[-1])),
-        controls=_controls(model, modes),
-        tables=_tables(model, names, springs),
+        controls=_controls(model, [name for name in law.dampers if f"control/{name}" in numbers], modes),
+        tables=tables_through([]),
         modes=_modes(
             model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal
         ),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=_whole(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
         reach=_whole(reach, 4),
-        row_count=int(first_rows[-1])
-        + int(np.count_nonzero(model.dof_frictionloss > 0.0))
-        + int(np.count_nonzero(model.tendon_frictionloss > 0.0)),
+        row_count=int(first_rows[-1]) + int(np.count_nonzero(model.dof_frictionloss > 0.0)) + len(law.valves),
     )
+    return with_numbers(layout, law, numbers, float(model.opt.timestep))
 
 
 def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
@@ -132,12 +121,6 @@ def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
 def places_of(model: mujoco.MjModel) -> tuple[str, ...]:
     """Names of the recorded places of a car, in the order of their sensors."""
     return tuple(str(model.sensor(index).name).removesuffix("_acc") for index in range(model.nsensor))
-
-
-def _required(model: mujoco.MjModel, name: str) -> Vector:
-    found = numeric(model, name)
-    assert found is not None, name
-    return found
 
 
 def _whole(values: Any, columns: int = 0) -> Index:
@@ -200,16 +183,15 @@ def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], f
     tendons = np.flatnonzero(model.tendon_frictionloss > 0.0)
     wrapped = [joints.index(int(model.wrap_objid[model.tendon_adr[tendon]])) for tendon in tendons]
     # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
-    laws = [_required(model, f"law/{model.tendon(tendon).name}") for tendon in tendons]
     valves = [(first + len(own) + index, damper) for index, damper in enumerate(wrapped)]
     return Dampers(
-        laws=unpack(model.actuator_biasprm[own]) if own else unpack(np.zeros((0, 10))),
+        laws=unpack(np.zeros((0, 10))),
         rows=rows_of([str(model.actuator(index).name) for index in own]),
         frictions=first + np.argsort(np.argsort(dofs)),
         dofs=dofs,
         places=_whole([model.jnt_qposadr[joint] for joint in joints]),
         valves=_whole(valves, 2),
-        pieces=np.reshape(laws, (-1, 3)).astype(float),
+        pieces=np.zeros((0, 3)),
     )
 
 
@@ -217,31 +199,17 @@ def _damper_actuators(model: mujoco.MjModel) -> list[int]:
     return [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
 
 
-def _controls(model: mujoco.MjModel, modes: int) -> Controls:
+def _controls(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> Controls:
     """The controlled dampers, each with the sites of its sensors."""
-    names = [str(model.actuator(index).name) for index in _damper_actuators(model)]
-    read = {name: numeric(model, f"control/{name}") for name in names}
-    chosen = {name: found for name, found in read.items() if found is not None}
     places = [(f"sensor/{name}/lower", f"sensor/{name}/upper") for name in chosen]
     sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in places]
     return Controls(
-        dampers=_whole([names.index(name) for name in chosen]),
-        laws=in_steps(np.reshape([*chosen.values()], (-1, 8)), float(model.opt.timestep)),
+        dampers=_whole([]),
+        laws=in_steps(np.zeros((0, 8)), 1.0),
         sites=_whole(sites, 2),
         shapes=_shapes(model, [place for both in places for place in both], modes),
         dofs=_spring_dofs(model, sites),
     )
-
-
-def _tables(model: mujoco.MjModel, bushings: Sequence[str], springs: Sequence[str]) -> Tables:
-    """The laws that are curves, without load."""
-    dampers = [str(model.actuator(index).name) for index in _damper_actuators(model)]
-    names = [(f"{name}/{axis}", (0, index, place)) for index, name in enumerate(bushings)
-             for place, axis in enumerate(AXES)]  # fmt: skip
-    names += [(name, (1, index, 0)) for index, name in enumerate(springs)]
-    names += [(name, (2, index, 0)) for index, name in enumerate(dampers)]
-    read = [(numeric(model, f"table/{name}"), where) for name, where in names]
-    return tables_through([(points.reshape(2, -1), where) for points, where in read if points is not None])
 
 
 def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from vehicle.laws.semi_active import RING
 from vehicle.simulation.kernel import EMPTY_ROW, damper_force, rewrite
-from vehicle.simulation.layout import element_names, read_layout
+from vehicle.simulation.law_numbers import Numbers, law_names, with_numbers
+from vehicle.simulation.layout import read_layout
 from vehicle.simulation.records import Efc, Fields, Layout, State, Weights
 from vehicle.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
 from vehicle.simulation.tables import standing_on
@@ -70,12 +71,13 @@ class Rows:
         preload: static forces as in `Weights`; zeros by default.
 
     Attributes:
-        names: of the elements, in the order of `layout.bushings`.
+        laws: names of all elements. names: of those in the order of `layout.bushings`.
         layout, weights, state: records of the laws.
     """
 
     def __init__(self, model: mujoco.MjModel, preload: Vector | None = None) -> None:
-        self.model, self.names, layout = model, element_names(model), read_layout(model)
+        self.model, self.laws, layout = model, law_names(model), read_layout(model)
+        self.names = self.laws.bushings
         force = np.zeros(layout.row_count + 3 * len(layout.rotations.sites)) if preload is None else preload
         self.layout = standing_on(layout, preload)
         self.weights = weights(model, self.layout, force)
@@ -94,6 +96,13 @@ class Rows:
             other.layout = standing_on(self.layout, preload)
             other.weights = weights(self.model, other.layout, preload)
         other.state = _at_rest(self.layout)
+        return other
+
+    def with_laws(self, numbers: Numbers) -> Rows:
+        """The rows of a car with other numbers of its laws; not for a run: weights and state are those of this one."""
+        other = copy.copy(self)
+        timestep = float(self.model.opt.timestep)
+        other.layout = standing_on(with_numbers(self.layout, self.laws, numbers, timestep), None)
         return other
 
     def reset(self) -> None:
