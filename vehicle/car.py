@@ -9,22 +9,19 @@ run.comfort().overall                 # comfort value of source 1
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
-from vehicle.analysis.dependence import what_moves
-from vehicle.analysis.input_floor import rounding_step
-from vehicle.analysis.motion_response import MotionResponse, motion_responses
+from vehicle.analysis.motion_response import MotionResponse
 from vehicle.analysis.slip import first_slip, slip_share
-from vehicle.errors import ConfigurationError, DataError
+from vehicle.errors import ConfigurationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.library import body_model
 from vehicle.flexbody.superelement import Superelement
@@ -37,12 +34,13 @@ from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.step_error import accurate_step, require_accurate_step
 from vehicle.linear.varied import Terms, VariedCar
 from vehicle.names import AXES, ENGINES
+from vehicle.notebook.cards import car_card, run_card
 from vehicle.notebook.frames import recording_dataset, recording_frame
-from vehicle.notebook.picture import Picture, card, frame_drawing, line_drawing, picture
-from vehicle.notebook.run_response import RunResponse, named
+from vehicle.notebook.picture import Picture, picture
+from vehicle.notebook.run_response import RunResponse, of_wheel, require_moving, responses
 from vehicle.parameters.paths import override
 from vehicle.parameters.shipped import vehicle_file
-from vehicle.parameters.varied import Varied
+from vehicle.parameters.varied import Family
 from vehicle.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
@@ -77,7 +75,8 @@ class Car:
         self._checked: set[str] = set()
         self._stepped: Car | None = None
         self._like: Car | None = None
-        self._loaded, self._file = False, cast("Path | str | None", None)
+        own = self.vehicle
+        self._family = Family(own, lambda more: vehicle_of(override(own.table, more), folder))
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
@@ -98,7 +97,7 @@ class Car:
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
-        car._loaded, car._file = True, path
+        car._family = Family(car.vehicle, lambda more: load_vehicle(file, [*changes, *more]))
         return car
 
     def varied(self, overrides: Iterable[str]) -> Car:
@@ -115,16 +114,9 @@ class Car:
             ConfigurationError: a name or a value is wrong.
         """
         more = list(overrides)
-        changes = [*self.overrides, *more]
-        vehicle = self._varied.vehicle_of(more)
-        if vehicle is not None:
-            car = Car(vehicle, folder=self.folder)
-        elif self._loaded:
-            car = Car.load(self._file, changes)
-        else:
-            car = Car(vehicle_of(override(self.vehicle.table, more), self.folder), folder=self.folder)
-        car.origin, car.overrides = {**self.origin, "overrides": changes}, tuple(changes)
-        car._loaded, car._file = self._loaded, self._file
+        car = Car(self._family.vehicle_of(more), folder=self.folder)
+        car.overrides = (*self.overrides, *more)
+        car.origin = {**self.origin, "overrides": list(car.overrides)}
         car._like = self
         return car
 
@@ -134,17 +126,7 @@ class Car:
         return f"Car({self.vehicle.name}, wheels {', '.join(self.vehicle.wheels)}{changes})"
 
     def _repr_html_(self) -> str:
-        from vehicle.rendering.wireframe import car_wireframe
-
-        own, static = self.vehicle, self.static
-        rows = {
-            "changes": "; ".join(self.overrides) or "none",
-            "mass of the trimmed body": f"{own.body.mass:g} kg",
-            "tyre loads": ", ".join(f"{wheel} {load:.0f} N" for wheel, load in static.tyre_load.items()),
-            "channels": f"{len(own.channels)}, and {len(own.load_channels)} loads",
-        }
-        wire = car_wireframe(self.model)
-        return card(f"Car {own.name}", rows, frame_drawing(wire.points, wire.lines, "seen from the right"))
+        return car_card(self)
 
     @cached_property
     def trimmed_body(self) -> Superelement:
@@ -155,10 +137,6 @@ class Car:
     def model(self) -> CarModel:
         """The assembled, compiled and trimmed MuJoCo model."""
         return build_model(self.vehicle, self.trimmed_body)
-
-    @cached_property
-    def _varied(self) -> Varied:
-        return Varied(self.vehicle)
 
     @cached_property
     def _terms(self) -> Terms:
@@ -202,9 +180,8 @@ class Car:
             return
         if engine == "mujoco":
             self.stepped()
-        else:
-            if np.any(grows(self.poles.poles)):
-                require_stable(self.model, self.matrices, self.poles.poles)
+        elif np.any(grows(self.poles.poles)):
+            require_stable(self.model, self.matrices, self.poles.poles)
         self._checked.add(engine)
 
     def stepped(self) -> Car:
@@ -324,18 +301,7 @@ class Run:
         return f"Run({short}, {self.signal.duration:g} s, {engine}, {self.car!r})"
 
     def _repr_html_(self) -> str:
-        shares = {wheel: self.slip_share(wheel) for wheel in self.car.vehicle.wheels}
-        rows = {
-            "signal": f"{Path(self.signal.source).name}, {self.signal.duration:g} s, "
-            f"RMS {1e3 * self.signal.rms(self.wheel):.3g} mm at wheel {self.wheel}",
-            "car": repr(self.car),
-            "engine": self.recording.statistics.engine,
-            "time in slip": ", ".join(f"{wheel} {100 * share:.1f} %" for wheel, share in shares.items()),
-        }
-        shown = next(name for name in ("seat_rail_acc_z", *self.recording.channels) if name in self.recording.channels)
-        if "seat_rail_acc_x" in self.recording.channels:
-            rows["comfort, seat rail"] = f"{self.comfort().overall:.3g} m/s² RMS, 2 to 50 Hz; lower is better"
-        return card("Run", rows, line_drawing(self.time, self[shown], f"{shown} over {self.signal.duration:g} s"))
+        return run_card(self)
 
     def plot(self) -> Picture:
         """The main time histories as a figure that a notebook shows."""
@@ -386,18 +352,9 @@ class Run:
             DataError: the record is too short, or no plate moves.
             DependentInputsError: one plate moves as the other some time before.
         """
-        moving = self.recording.excited
-        if moving and wheel is not None and wheel not in moving:
-            raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
-        found = self.frfs(channels, window=window)
-        asked = found[0].first if wheel is None else wheel
-        chosen = next(number for number, group in enumerate(found) if asked in group.motion)
-        note = what_moves([group.motion for group in found], chosen)
-        response = found[chosen].response
+        require_moving(self.recording, wheel)
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
-        plate = " and ".join(f"plate_{one}_displacement" for one in found[chosen].motion)
-        reasons = (*([note] if note else []), *response.reasons)
-        return named(dataclasses.replace(response, reasons=reasons), names, plate)
+        return of_wheel(self.frfs(channels, window=window), wheel, names)
 
     def frfs(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> tuple[MotionResponse, ...]:
         """FRFs of acceleration channels to each plate that moves by itself, separated; arguments as of `frf`.
@@ -409,23 +366,7 @@ class Run:
             DataError, DependentInputsError: as of `frf`.
         """
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
-        moving = self.recording.excited
-        if not moving:
-            raise DataError(
-                f"{self.signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that "
-                "moves one"
-            )
-        plates = {one: f"plate_{one}_displacement" for one in moving}
-        return motion_responses(
-            self.recording.timestep,
-            {one: self.recording[plate] for one, plate in plates.items()},
-            np.array([self.recording[name] for name in names]),
-            labels=plates,
-            names=names,
-            band=FRF_BAND,
-            rounding={one: rounding_step(self.signal.displacement[one]) for one in moving},
-            window=window,
-        )
+        return responses(self.recording, self.signal, names, FRF_BAND, window)
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
         """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""

@@ -25,6 +25,12 @@ from vehicle.parameters.vehicle import Vehicle
 Vector = npt.NDArray[np.float64]
 Numbers = dict[str, Vector]
 
+WIDTH = 14
+"""Length of the field of a law along three axes."""
+
+TURNING, AVERAGED = 12, 13
+"""Places in it of the stiffness against rotation, and of the mark of a stiffness that is averaged."""
+
 
 def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> Numbers:
     """Numbers of the law of a connection; nothing of an ideal ball joint. Arguments as of `element_law`."""

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.assembly.law_numbers import (
+    TURNING,
     connection_name,
     connection_numbers,
     damper_numbers,
@@ -186,7 +187,7 @@ class _Builder:
         """Write the modal rotation of the body's node at a point, where its model knows it [rad m^-1 kg^-1/2]."""
         psi = self.superelement.rotations.get(self.nodes[point]) if self.vehicle.body.flexible else None
         if psi is not None:
-            self._numeric(f"rotation/{name}", psi.T)
+            self._numerics({f"rotation/{name}": psi.T.ravel()})
 
     def add_body(self) -> None:
         """Trimmed body, and its mass-normalised modal coordinates q as slides: q'' + 2 zeta w q' + w2 q = force."""
@@ -249,7 +250,7 @@ class _Builder:
             self._numerics(numbers)
         if on_body:
             self._node_shape(name, connection.at)
-            if law is not None and law.rotational_stiffness > 0.0:
+            if numbers and numbers[f"law/{name}"][TURNING] > 0.0:
                 self._node_rotation(name, connection.at)
 
     def add_spring(self, spring: PlacedSpring) -> None:

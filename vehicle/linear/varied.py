@@ -22,11 +22,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.assembly.law_numbers import Numbers, element_numbers
+from vehicle.assembly.law_numbers import TURNING, WIDTH, Numbers, element_numbers
 from vehicle.linear.matrices import DIFFERENCE_STEP, CarMatrices, differences, law_matrices
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.law_numbers import TURNING, WIDTH
 from vehicle.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.simulation.standing import require_body_modes, require_standing
 from vehicle.simulation.static_trim import StaticTrim, at_rest, settle, static_loads, unsolved

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from vehicle.analysis.dependence import what_moves
 from vehicle.analysis.frf import FrequencyResponse
+from vehicle.analysis.input_floor import rounding_step
+from vehicle.analysis.motion_response import MotionResponse, motion_responses
+from vehicle.errors import DataError
 from vehicle.notebook.frames import response_frame
 from vehicle.notebook.picture import Picture, card, line_drawing, picture
+from vehicle.simulation.recording import Recording
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -63,3 +69,58 @@ def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> Ru
     """FRFs with their names."""
     values = {one.name: getattr(response, one.name) for one in fields(FrequencyResponse)}
     return RunResponse(**values, names=names, plate=plate)
+
+
+def require_moving(recording: Recording, wheel: str | None) -> None:
+    """Refuse a wheel whose plate does not move.
+
+    Raises:
+        DataError: naming it.
+    """
+    moving = recording.excited
+    if moving and wheel is not None and wheel not in moving:
+        raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
+
+
+def of_wheel(found: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...]) -> RunResponse:
+    """The response to one wheel among those to all motions; to the first one by default."""
+    asked = found[0].first if wheel is None else wheel
+    chosen = next(number for number, group in enumerate(found) if asked in group.motion)
+    note = what_moves([group.motion for group in found], chosen)
+    response = found[chosen].response
+    plate = " and ".join(f"plate_{one}_displacement" for one in found[chosen].motion)
+    reasons = (*([note] if note else []), *response.reasons)
+    return named(replace(response, reasons=reasons), names, plate)
+
+
+def responses(
+    recording: Recording, signal: Any, names: tuple[str, ...], band: tuple[float, float], window: float | None
+) -> tuple[MotionResponse, ...]:
+    """FRFs of a run to each plate that moves by itself.
+
+    Args:
+        recording, signal: of the run.
+        names: acceleration channels.
+        band: frequencies [Hz].
+        window: as of `vehicle.car.Run.frf`.
+
+    Raises:
+        DataError: no plate moves, or the record is too short.
+        DependentInputsError: one plate moves as the other some time before.
+    """
+    moving = recording.excited
+    if not moving:
+        raise DataError(
+            f"{signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that moves one"
+        )
+    plates = {one: f"plate_{one}_displacement" for one in moving}
+    return motion_responses(
+        recording.timestep,
+        {one: recording[plate] for one, plate in plates.items()},
+        np.array([recording[name] for name in names]),
+        labels=plates,
+        names=names,
+        band=band,
+        rounding={one: rounding_step(signal.displacement[one]) for one in moving},
+        window=window,
+    )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import contextlib
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -20,32 +21,35 @@ WHOLE: dict[str, type] = {"body": TrimmedBody, "solver": Solver}
 """Tables that are one element each."""
 
 
-class Varied:
-    """Vehicles that differ from one in numbers.
+class Family:
+    """Vehicles that differ from one in the values of parameters.
 
     Args:
         vehicle: the one.
+        whole: reads and composes it anew with overrides.
     """
 
-    def __init__(self, vehicle: Vehicle) -> None:
-        self.vehicle = vehicle
+    def __init__(self, vehicle: Vehicle, whole: Callable[[Iterable[str]], Vehicle]) -> None:
+        self.vehicle, self._whole = vehicle, whole
         self._places: dict[str, list[tuple[str, str]] | None] = {}
 
-    def vehicle_of(self, overrides: Iterable[str]) -> Vehicle | None:
-        """The vehicle with other numbers.
+    def vehicle_of(self, overrides: Iterable[str]) -> Vehicle:
+        """The vehicle with other values.
 
         Args:
             overrides: texts "path=value".
 
-        Returns:
-            The vehicle; None where its file has to be read and composed anew, which says what is wrong, too.
+        Raises:
+            ConfigurationError: a name or a value is wrong.
         """
-        try:
-            return self._vehicle_of(overrides)
-        except ConfigurationError:
-            return None
+        # What is wrong is said where the whole is read.
+        with contextlib.suppress(ConfigurationError):
+            if (found := self._vehicle_of(overrides)) is not None:
+                return found
+        return self._whole(overrides)
 
     def _vehicle_of(self, overrides: Iterable[str]) -> Vehicle | None:
+        """The vehicle, None where more than single numbers of elements change."""
         table, moved = dict(self.vehicle.table), dict[str, None]()
         fresh: set[int] = {id(table)}
         for assignment in overrides:

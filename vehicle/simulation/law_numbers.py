@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
+from vehicle.assembly.law_numbers import AVERAGED, TURNING, WIDTH
 from vehicle.laws.damper import unpack
 from vehicle.laws.semi_active import in_steps
 from vehicle.names import AXES
@@ -15,12 +16,6 @@ from vehicle.simulation.records import Layout, Tables, Vector
 from vehicle.simulation.tables import tables_through
 
 Numbers = Mapping[str, Vector]
-
-WIDTH = 14
-"""Length of the field of a law along three axes."""
-
-TURNING, AVERAGED = 12, 13
-"""Places in it of the stiffness against rotation, and of the mark of a stiffness that is averaged."""
 
 
 class LawNames(NamedTuple):

@@ -9,9 +9,10 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.assembly.law_numbers import TURNING
 from vehicle.laws.damper import unpack
 from vehicle.laws.semi_active import in_steps
-from vehicle.simulation.law_numbers import TURNING, law_names, laws_of, model_numbers, with_numbers
+from vehicle.simulation.law_numbers import law_names, laws_of, model_numbers, with_numbers
 from vehicle.simulation.records import (
     Bushings,
     Controls,

@@ -56,5 +56,5 @@ def single(run: Run) -> Runs:
         time=recording.time,
         channels={name: values[None] for name, values in recording.channels.items()},
         vehicles=(run.car.vehicle,),
-        tyre_load={wheel: np.array([load]) for wheel, load in run.car.model.static.tyre_load.items()},
+        tyre_load={wheel: np.array([load]) for wheel, load in run.car.static.tyre_load.items()},
     )
