@@ -99,7 +99,7 @@ def simulate_reduced(
         friction = run.friction(samples)
         for name, static, row in zip(chosen.names, chosen.static, direct_forces(model, chosen), strict=True):
             channel[name] = channel[name] + static + friction @ row
-    wall = clock.perf_counter() - started
+    wall, validity = clock.perf_counter() - started, watch.found()
     return Recording(
         time=uniform_time(samples=samples, timestep=interval),
         channels={name: channel[name] for name in names},
@@ -113,8 +113,8 @@ def simulate_reduced(
             timestep=step,
             steps=(samples - 1) * every,
             wall_time=wall,
-            warnings=watch.warnings(),
-            within_validity=watch.held,
+            warnings=validity.warnings(),
+            within_validity=validity.held,
             energies=None,
         ),
     )

@@ -8,10 +8,12 @@ piece on which the car stands. All are watched, and the run says so.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.linear.matrices import Bend, CarMatrices
 from vehicle.reduced.pole_model import Outputs, PoleModel
 from vehicle.reduced.readout import Readout
 from vehicle.reduced.step_factors import StepFactors
@@ -28,6 +30,99 @@ LOOK_EVERY = 16
 """Samples between two looks: 16 ms at 1 kHz, a tenth of the period of the fastest rigid-body mode."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Validity:
+    """What a run has shown of the limits of the matrices.
+
+    Attributes:
+        angles: largest rotation of each body [rad].
+        loads: lowest tyre load of each wheel [N].
+        one_sided: wheels whose tyres do not pull.
+        left: how far a law over displacement left its piece [m], where it did.
+    """
+
+    angles: Mapping[str, float]
+    loads: Mapping[str, float]
+    one_sided: frozenset[str]
+    left: Mapping[str, float]
+
+    @property
+    def small_angles(self) -> bool:
+        """Whether all parts turned little enough."""
+        return all(angle <= LARGEST_ANGLE for angle in self.angles.values())
+
+    @property
+    def held(self) -> bool:
+        """Whether the motion stayed within what the matrices hold for."""
+        return self.small_angles and not self.left and not self.lifted
+
+    @property
+    def lifted(self) -> dict[str, float]:
+        """Lowest load [N] of each one-sided tyre that would have to pull: MuJoCo lets it go."""
+        return {wheel: load for wheel, load in self.loads.items() if wheel in self.one_sided and load < 0.0}
+
+    def warnings(self) -> tuple[str, ...]:
+        """A sentence for each way in which the motion left the validity of the matrices."""
+        found = []
+        worst = max(self.angles, key=lambda body: self.angles[body])
+        if not self.small_angles:
+            found.append(
+                f"{worst} turned by {self.angles[worst]:.3f} rad; the reduced engine, which takes the car "
+                f"as linear but for its dampers, holds up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine"
+            )
+        for name, distance in self.left.items():
+            found.append(
+                f"{name} left the piece of its table on which the car stands by {1e3 * distance:.2g} mm; the reduced "
+                "engine knows that piece alone: use the MuJoCo engine"
+            )
+        for wheel, load in self.lifted.items():
+            found.append(
+                f"tyre {wheel} lifts off its plate (load {load:.0f} N in the reduced engine, which is linear): use the "
+                "MuJoCo engine"
+            )
+        for wheel, load in self.loads.items():
+            if load < 0.0 and wheel not in self.lifted:
+                found.append(
+                    f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); the model pulls there, so the "
+                    "result is out of its validity"
+                )
+        return tuple(found)
+
+
+def turning_bodies(matrices: CarMatrices) -> tuple[str, ...]:
+    """The first body of each part that turns by itself: bodies that are fixed to each other turn alike."""
+    first: dict[str, str] = {}
+    for body in matrices.body_rows:
+        first.setdefault(matrices.carried_by.get(body, body), body)
+    return tuple(first.values())
+
+
+def rotation_outputs(model: PoleModel, bodies: Sequence[str]) -> Outputs:
+    """Rotations of bodies about three axes; (3 bodies, ...)."""
+    turns = np.vstack([model.matrices.body_rows[body][3:] for body in bodies]) @ model.modal
+    none = np.zeros((len(turns), len(model.matrices.system.inputs)))
+    return Outputs(poles=turns, height=none, velocity=none)
+
+
+def bend_outputs(model: PoleModel) -> Outputs:
+    """Displacements of the laws that bend; (bends, ...)."""
+    bends, wheels = model.matrices.bends, len(model.matrices.system.inputs)
+    stretch = np.array([bend.row @ model.modal for bend in bends], dtype=complex).reshape(-1, len(model.poles))
+    height = np.array([-1.0 * (np.arange(wheels) == bend.plate) for bend in bends]).reshape(-1, wheels)
+    return Outputs(poles=stretch, height=height, velocity=np.zeros_like(height))
+
+
+def tyre_outputs(model: PoleModel) -> Outputs:
+    """Tyre loads without their static values."""
+    return model.outputs([f"tyre_{wheel}_force_z" for wheel in model.matrices.system.inputs])
+
+
+def left_pieces(bends: Sequence[Bend], low: Vector, high: Vector) -> dict[str, float]:
+    """How far each bend left its piece [m], of those that did; low, high: extremes of the displacements; (bends,)."""
+    beyond = [max(bend.low - a, b - bend.high) for bend, a, b in zip(bends, low.tolist(), high.tolist(), strict=True)]
+    return {bend.name: distance for bend, distance in zip(bends, beyond, strict=True) if distance > 0.0}
+
+
 class ValidityWatch:
     """Largest rotation of the parts and lowest tyre loads of a run.
 
@@ -41,26 +136,14 @@ class ValidityWatch:
     def __init__(
         self, model: PoleModel, factors: StepFactors, columns: Sequence[int], tyre_load: Mapping[str, float]
     ) -> None:
-        rows = model.matrices.body_rows
-        self.bodies, self.wheels = tuple(rows), model.matrices.system.inputs
-        turns = np.vstack([rows[body][3:] for body in self.bodies]) @ model.modal
-        none = np.zeros((len(turns), len(model.matrices.system.inputs)))
-        rotations = Outputs(poles=turns, height=none, velocity=none)
-        self.rotations = Readout(rotations, factors, model.pairs, columns)
-        self.tyres = Readout(
-            model.outputs([f"tyre_{wheel}_force_z" for wheel in self.wheels]), factors, model.pairs, columns
+        self.matrices, self.bodies = model.matrices, tuple(model.matrices.body_rows)
+        self.rotations, self.tyres, self.stretches = (
+            Readout(outputs, factors, model.pairs, columns)
+            for outputs in (rotation_outputs(model, self.bodies), tyre_outputs(model), bend_outputs(model))
         )
-        self.bends, self.one_sided = model.matrices.bends, model.matrices.one_sided
-        rows_of = [bend.row @ model.modal for bend in self.bends]
-        stretch = np.array(rows_of, dtype=complex).reshape(-1, len(model.poles))
-        height = np.array([-1.0 * (np.arange(len(self.wheels)) == bend.plate) for bend in self.bends])
-        height = height.reshape(-1, len(self.wheels))
-        stretches = Outputs(poles=stretch, height=height, velocity=np.zeros_like(height))
-        self.stretches = Readout(stretches, factors, model.pairs, columns)
-        self.left: dict[str, float] = {}
-        self.static = np.array([tyre_load[wheel] for wheel in self.wheels])
-        self.angle = np.zeros(len(self.bodies))
-        self.load = self.static.copy()
+        self.static = np.array([tyre_load[wheel] for wheel in model.matrices.system.inputs])
+        self.angle, self.load = np.zeros(len(self.bodies)), self.static.copy()
+        self.low, self.high = np.zeros((2, len(model.matrices.bends)))
 
     def look(self, states: Vector, plates: Vector, before: Vector) -> None:
         """Take a block of samples into account; arguments as of `Readout.at`."""
@@ -69,52 +152,15 @@ class ValidityWatch:
         self.angle = np.maximum(self.angle, np.sqrt(np.max(np.sum(turns**2, axis=1), axis=1)))
         loads = self.tyres.at(states[seen], plates[seen], before[seen]) + self.static[:, None]
         self.load = np.minimum(self.load, np.min(loads, axis=1))
+        if self.matrices.bends:
+            values = self.stretches.at(states, plates, before)
+            self.low, self.high = np.minimum(self.low, values.min(axis=1)), np.maximum(self.high, values.max(axis=1))
 
-        if self.bends:
-            for bend, values in zip(self.bends, self.stretches.at(states, plates, before), strict=True):
-                worst = float(max(bend.low - np.min(values), np.max(values) - bend.high))
-                if worst > 0.0:
-                    self.left[bend.name] = max(worst, self.left.get(bend.name, 0.0))
-
-    @property
-    def small_angles(self) -> bool:
-        """Whether all parts turned little enough."""
-        return bool(np.max(self.angle) <= LARGEST_ANGLE)
-
-    @property
-    def held(self) -> bool:
-        """Whether the motion stayed within what the matrices hold for."""
-        return self.small_angles and not self.left and not self.lifted
-
-    @property
-    def lifted(self) -> dict[str, float]:
-        """Lowest load [N] of each one-sided tyre that would have to pull: MuJoCo lets it go."""
-        loads = zip(self.wheels, self.load.tolist(), strict=True)
-        return {wheel: load for wheel, load in loads if wheel in self.one_sided and load < 0.0}
-
-    def warnings(self) -> tuple[str, ...]:
-        """A sentence for each way in which the motion left the validity of the matrices."""
-        found = []
-        worst = int(np.argmax(self.angle))
-        if not self.small_angles:
-            found.append(
-                f"{self.bodies[worst]} turned by {self.angle[worst]:.3f} rad; the reduced engine, which takes the car "
-                f"as linear but for its dampers, holds up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine"
-            )
-        for name, distance in self.left.items():
-            found.append(
-                f"{name} left the piece of its table on which the car stands by {1e3 * distance:.2g} mm; the reduced "
-                "engine knows that piece alone: use the MuJoCo engine"
-            )
-        for wheel, load in self.lifted.items():
-            found.append(
-                f"tyre {wheel} lifts off its plate (load {load:.0f} N in the reduced engine, which is linear): use the "
-                "MuJoCo engine"
-            )
-        for wheel, load in zip(self.wheels, self.load, strict=True):
-            if load < 0.0 and wheel not in self.lifted:
-                found.append(
-                    f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); the model pulls there, so the "
-                    "result is out of its validity"
-                )
-        return tuple(found)
+    def found(self) -> Validity:
+        """What was seen."""
+        return Validity(
+            angles=dict(zip(self.bodies, self.angle.tolist(), strict=True)),
+            loads=dict(zip(self.matrices.system.inputs, self.load.tolist(), strict=True)),
+            one_sided=self.matrices.one_sided,
+            left=left_pieces(self.matrices.bends, self.low, self.high),
+        )
