@@ -26,7 +26,9 @@ _ANSYS = (
 )
 REFUSED = {
     ".op2": "Nastran OP2: no reader of it works with today's numpy; export modes as a universal file (datasets 15, 55) "
-    "through the pre-processor, or punch K and M (DMIG) and convert them to Matrix Market",
+    "through the pre-processor, or punch K and M with PARAM,EXTOUT,DMIGPCH and give JOB.pch with --nodes JOB.bdf",
+    ".op4": "Nastran OP4: it names no directions; punch K and M with PARAM,EXTOUT,DMIGPCH and give JOB.pch with "
+    "--nodes JOB.bdf",
     ".rst": f"ANSYS results: a modal analysis of the free body leaves JOB.full too; {_ANSYS}",
     ".full": f"ANSYS full file: {_ANSYS}",
     ".odb": "Abaqus database: write K and M with *MATRIX GENERATE, STIFFNESS, MASS and *MATRIX OUTPUT",
@@ -41,8 +43,9 @@ def add(tasks: Any) -> None:
         "file",
         type=Path,
         metavar="FILE",
-        help="JOB.sti of CalculiX (with .mas, .dof, .inp); K as Matrix Market, Harwell-Boeing, FILE.mat:K, text;"
-        " with --mass, --dofs, --nodes; modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
+        help="JOB.sti of CalculiX (with .mas, .dof, .inp); JOB.pch of Nastran (DMIG); K as Matrix Market,"
+        " Harwell-Boeing, FILE.mat:K, text with --mass, --dofs, --nodes;"
+        " modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
     )
     taken.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
     taken.add_argument(
@@ -51,7 +54,7 @@ def add(tasks: Any) -> None:
         metavar="FILE",
         help="of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
     )
-    taken.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z, or an input deck with *NODE")
+    taken.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z; deck with *NODE; .bdf with GRID")
     taken.add_argument("--length-unit", choices=LENGTHS, default="m", help="unit of length of matrices and .frd; m")
     taken.add_argument("--mass-unit", choices=MASSES, default="kg", help="unit of mass of the matrices; kg, with mm: t")
     taken.add_argument(
@@ -144,10 +147,13 @@ def _matrices(options: argparse.Namespace) -> Any:
         from vehicle.flexbody.sources.calculix import read_calculix
 
         return read_calculix(file)
-    if options.mass is None:
-        return None
-    if options.nodes is None:
-        raise ConfigurationError("--mass: a stiffness and a mass matrix need --nodes too, where their nodes are")
+    from vehicle.flexbody.sources.nastran import is_bulk_data
+
+    if not is_bulk_data(file):
+        if options.mass is None:
+            return None
+        if options.nodes is None:
+            raise ConfigurationError("--mass: a stiffness and a mass matrix need --nodes too, where their nodes are")
     from vehicle.flexbody.sources.matrix_files import read_matrices
 
     return read_matrices(file, options.mass, options.dofs, options.nodes)

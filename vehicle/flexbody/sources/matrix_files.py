@@ -11,32 +11,39 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.flexbody.sources.calculix import assembled
-from vehicle.flexbody.sources.deck import read_deck
+from vehicle.flexbody.sources.deck import Deck, read_deck
 from vehicle.flexbody.sources.dof_list import read_dofs
 from vehicle.flexbody.sources.harwell_boeing import is_harwell_boeing, read_harwell_boeing
 from vehicle.flexbody.sources.matrices import BodyMatrices
+from vehicle.flexbody.sources.nastran import dmig_pair, is_bulk_data, read_bulk_data
 from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole, whole_numbers
 
 _FIVE = re.compile(r"\s*(\d+[\s,]+){4}[-+.\d]")
 """Node, direction, node, direction, value."""
 
 
-def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -> BodyMatrices:
+def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: Path | None) -> BodyMatrices:
     """Matrices of a body, in the units of the source.
 
     Args:
         stiffness, mass: Matrix Market, as `*EXPORT,...,MMF` of ANSYS; Harwell-Boeing, as its `HBMAT`; `.mat` of MATLAB,
             "FILE.mat:NAME" where it holds several matrices; `.mtx` or text of Abaqus'
             `*MATRIX OUTPUT`, rows "node, direction, node, direction, value", which need no list of degrees of freedom;
-            text "row column value".
+            text "row column value"; DMIG of Nastran, both in one file.
         dofs: of each row of the matrices, as of `read_dofs`.
-        nodes: table "node,x,y,z", or an input deck.
+        nodes: table "node,x,y,z", or an input deck; GRID of the file of the matrices where none is given.
 
     Raises:
-        ConfigurationError: no list of degrees of freedom where one is needed.
+        ConfigurationError: no mass, nodes or list of degrees of freedom where they are needed.
         DataError: a file is missing or damaged, or they do not belong together.
     """
-    deck = read_deck(nodes)
+    if is_bulk_data(stiffness):
+        return _of_bulk_data(stiffness, mass, nodes)
+    if mass is None or nodes is None:
+        raise ConfigurationError(
+            f"{stiffness.name}: a stiffness matrix needs --mass and, for where its nodes are, --nodes beside it"
+        )
+    deck = _nodes(nodes)
     by_node = _is_by_node(stiffness)
     if by_node:
         table, other = rows_of_numbers(stiffness, 1, columns=5), rows_of_numbers(mass, 1, columns=5)
@@ -58,6 +65,23 @@ def read_matrices(stiffness: Path, mass: Path, dofs: Path | None, nodes: Path) -
         identity, direction = read_dofs(dofs)
         matrices = [_matrix(file, len(identity)) for file in (stiffness, mass)]
     return assembled(stiffness, matrices[0], matrices[1], identity, direction, deck, "finite elements")
+
+
+def _of_bulk_data(stiffness: Path, mass: Path | None, nodes: Path | None) -> BodyMatrices:
+    """K and M of a punch file of Nastran, "FILE:NAME" where it holds several."""
+    file, _, name = stiffness.name.partition(":")
+    path, other = stiffness.with_name(file), "" if mass is None else mass.name.partition(":")[2]
+    data = read_bulk_data(path)
+    first, second, identity, direction = dmig_pair(path, data, (name, other))
+    deck = _nodes(nodes) if nodes else Deck(places=data.places, edges=frozenset())
+    return assembled(path, first, second, identity, direction, deck, "Nastran")
+
+
+def _nodes(path: Path) -> Deck:
+    """Where nodes are: a table, a deck of Abaqus or CalculiX, or bulk data of Nastran."""
+    if is_bulk_data(path):
+        return Deck(places=read_bulk_data(path).places, edges=frozenset())
+    return read_deck(path)
 
 
 def _is_by_node(path: Path) -> bool:
