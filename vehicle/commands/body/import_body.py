@@ -81,7 +81,7 @@ def add(tasks: Any) -> None:
         "--attachment-modes",
         type=float,
         metavar="HZ",
-        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 2.5 times --up-to by default",
+        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 5 times --up-to by default",
     )
     taken.add_argument(
         "--damping", type=float, default=0.02, metavar="RATIO", help="modal damping ratio; 0.02 by default"
