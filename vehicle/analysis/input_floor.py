@@ -10,11 +10,13 @@ Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
+
+from vehicle.analysis.segments import stretches_of_one_length
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -89,7 +91,7 @@ def silent_lines(
     inputs: Real,
     spectra: Complex,
     centres: NDArray[np.int_],
-    half_width: Callable[[int], int],
+    halves: NDArray[np.int_],
     rounding: Sequence[float],
 ) -> NDArray[np.int_]:
     """Why nothing can be said at a line.
@@ -98,7 +100,7 @@ def silent_lines(
         inputs: samples, shape (p, n).
         spectra: their transform without mean, shape (p, n // 2 + 1).
         centres: lines of the FRF, shape (m,).
-        half_width: of the stretch around a line [lines].
+        halves: lines on each side in the stretch around each, shape (m,).
         rounding: step of each input, 0 where unknown.
 
     Returns:
@@ -107,24 +109,26 @@ def silent_lines(
     found, chance = np.zeros(centres.size, dtype=np.int_), np.ones(centres.size, dtype=np.bool_)
     for samples, spectrum, step in zip(inputs, spectra, rounding, strict=True):
         power, floor = tapered_power(samples, step or rounding_step(samples))
-        for index, centre in enumerate(centres):
-            half = half_width(int(centre))
-            offset = np.arange(-half, half + 1) / half
-            drive = spectrum[centre - half : centre + half + 1]
+        for which, lines in stretches_of_one_length(centres, halves):
+            half = lines.shape[1] // 2
+            smooth = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]
+            drive, own = spectrum[lines], power[centres[which]]
             energy = np.abs(drive) ** 2
-            smooth = np.linalg.qr(np.vander(offset, 4))[0]
-            rough = float(np.mean(np.abs(drive - smooth @ (smooth.T @ drive)) ** 2))
-            tests = (
-                power[centre] < ABOVE_FLOOR * floor,
-                power[centre] < OF_STRETCH * np.mean(power[centre - half : centre + half + 1]),
-                energy.sum() ** 2 < FEWEST_LINES * np.sum(energy**2),
-                power[centre] < OF_OCTAVES * power[centre // 2 : 2 * centre].max(),
-                rough < max(ROUGHNESS * power[centre], ROUGH_SHARE * energy.mean()),
+            rough = np.mean(np.abs(drive - (drive @ smooth) @ smooth.T) ** 2, axis=1)
+            lone = energy.sum(axis=1) ** 2 / np.sum(energy**2, axis=1)  # effective number of driven lines
+            octaves = np.array([power[centre // 2 : 2 * centre].max() for centre in centres[which]])
+            tests = np.array(
+                [
+                    own < ABOVE_FLOOR * floor,
+                    own < OF_STRETCH * np.mean(power[lines], axis=1),
+                    lone < FEWEST_LINES,
+                    own < OF_OCTAVES * octaves,
+                    rough < np.maximum(ROUGHNESS * own, ROUGH_SHARE * energy.mean(axis=1)),
+                ]
             )
-            if any(tests) and not found[index]:
-                found[index] = 1 + tests.index(True)
-            only_few = not any(tests[:2] + tests[3:])
-            chance[index] &= only_few and energy.sum() ** 2 >= FEWEST_BY_CHANCE * np.sum(energy**2)
+            cause = np.where(tests.any(axis=0), 1 + np.argmax(tests, axis=0), 0)
+            found[which] = np.where(found[which], found[which], cause)
+            chance[which] &= ~tests[[0, 1, 3, 4]].any(axis=0) & (lone >= FEWEST_BY_CHANCE)
     driven = np.concatenate([[False], found == 0, [False]])
     found[chance & driven[:-2] & driven[2:]] = 0
     return found

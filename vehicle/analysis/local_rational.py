@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from vehicle.analysis.dependence import refuse_copies
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.input_floor import CAUSES, sentences, silent_lines
-from vehicle.analysis.output_error import StretchFit, fit_stretch
+from vehicle.analysis.output_error import StretchFit, fit_stretches
 from vehicle.analysis.samples import (
     checked_names,
     checked_same_length,
@@ -30,6 +30,7 @@ from vehicle.analysis.samples import (
     checked_time_step,
     is_constant,
 )
+from vehicle.analysis.segments import stretches_of_one_length
 from vehicle.errors import DataError
 
 LEAST_HALF_WIDTH, LINES_OF_AN_INPUT = 8, 5
@@ -133,40 +134,42 @@ def local_rational_responses(
     if len(inputs) > 1:
         refuse_copies(step, inputs, labels, band)
     spectra = np.fft.rfft(inputs - inputs.mean(axis=1, keepdims=True))
-    answers = np.fft.rfft(outputs - outputs.mean(axis=1, keepdims=True))
     last = spectra.shape[1] - 1
-
-    def half_width(centre: int) -> int:
-        wanted = int(np.clip(round(RELATIVE_WIDTH * centre), least, MOST_HALF_WIDTH))
-        return min(wanted, centre - 1, int(last) - centre)
 
     wanted = np.arange(band[0], band[1] + resolution / 2, max(resolution, line))
     low = np.arange(band[0], min(band[1], BODY_MODES), max(resolution / 2, line))
     wanted = np.union1d(wanted, low)
     centres = np.unique(np.round(wanted / line).astype(int))
     centres = centres[(centres > least) & (centres < last - least)]
-    silent = silent_lines(inputs, spectra, centres, half_width, rounding or (0.0,) * len(inputs))
+    halves = np.clip(np.round(RELATIVE_WIDTH * centres), least, MOST_HALF_WIDTH).astype(int)
+    halves = np.minimum(halves, np.minimum(centres - 1, last - centres))
+    silent = silent_lines(inputs, spectra, centres, halves, rounding or (0.0,) * len(inputs))
     moving = ~is_constant(outputs)
     shape = (len(inputs), len(outputs), centres.size)
     response, coherence = np.full(shape, complex(np.nan, np.nan)), np.full(shape[1:], np.nan)
     deviation, averages = np.full((2, *shape), np.nan)
-    for index in np.flatnonzero(silent == 0):
-        centre = int(centres[index])
-        half = half_width(centre)
-        lines = slice(centre - half, centre + half + 1)
-        drives, drive_level = _scaled(spectra[:, lines])
-        gram = drives @ drives.conj().T / drives.shape[1]
-        if np.linalg.eigvalsh(gram)[0] < INDEPENDENT:
-            silent[index] = len(CAUSES) + 1
+    # One response after the other, and of each the lines that are asked for: a long record is large enough once.
+    needed = int(np.max(centres + halves, initial=0)) + 1
+    answers = np.array([np.fft.rfft(row - row.mean())[:needed] for row in outputs[moving]]).reshape(-1, needed)
+    driven = np.flatnonzero(silent == 0)
+    for some, lines in stretches_of_one_length(centres[driven], halves[driven]):
+        which = driven[some]
+        drives, drive_level = _scaled(spectra[:, lines])  # (s, p, N), (s, p)
+        gram = drives @ drives.conj().swapaxes(1, 2) / lines.shape[1]
+        apart = np.linalg.eigvalsh(gram)[:, 0] >= INDEPENDENT
+        silent[which[~apart]] = len(CAUSES) + 1
+        if not apart.any():
             continue
-        scaled, level = _scaled(answers[moving, lines])
-        fit = fit_stretch(drives, scaled, wide=half > least)
-        variance = np.real(np.einsum("kii->ik", fit.covariance))
-        ratio = level / drive_level[:, None]  # (p, k)
-        response[:, moving, index] = fit.response.T * ratio
-        deviation[:, moving, index] = np.sqrt(variance / 2.0) * ratio
-        averages[:, moving, index] = fit.noise / variance
-        coherence[moving, index] = _coherence(fit, gram)
+        which, gram = which[apart], gram[apart]
+        scaled, level = _scaled(answers[:, lines[apart]])
+        fit = fit_stretches(drives[apart], scaled, wide=lines.shape[1] // 2 > least)
+        variance = np.real(np.einsum("skii->isk", fit.covariance))
+        ratio = level / drive_level[apart].T[:, :, None]  # (p, s, k)
+        rows = np.ix_(np.arange(len(inputs)), np.flatnonzero(moving), which)
+        response[rows] = (fit.response.transpose(2, 0, 1) * ratio).swapaxes(1, 2)
+        deviation[rows] = (np.sqrt(variance / 2.0) * ratio).swapaxes(1, 2)
+        averages[rows] = (fit.noise / variance).swapaxes(1, 2)
+        coherence[rows[1][0], which] = _coherence(fit, gram).T
     frequency = centres * line
     reasons = (
         *_coarse(line),
@@ -191,18 +194,19 @@ def local_rational_responses(
 
 
 def _scaled(spectra: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Rows scaled to unit mean power, and their levels; a row of zeros stays one."""
-    level = np.sqrt(np.mean(np.abs(spectra) ** 2, axis=1))
-    return spectra / np.where(level > 0.0, level, 1.0)[:, None], level
+    """Stretches (r, s, N) of r rows as (s, r, N), scaled to unit mean power, and their levels (s, r); zeros stay."""
+    rows = spectra.swapaxes(0, 1)
+    level = np.sqrt(np.mean(np.abs(rows) ** 2, axis=2))
+    return rows / np.where(level > 0.0, level, 1.0)[:, :, None], level
 
 
 def _coherence(fit: StretchFit, gram: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Share of a response that the inputs explain, shape (k,).
+    """Share of a response that the inputs explain, shape (s, k).
 
     The power H' S H of the estimate is too large by what its own noise adds, trace(S C), on average.
     """
-    power = np.einsum("ki,kj,ij->k", fit.response, fit.response.conj(), gram).real
-    power = np.maximum(power - np.einsum("kij,ij->k", fit.covariance, gram).real, 0.0)
+    power = np.einsum("ski,skj,sij->sk", fit.response, fit.response.conj(), gram).real
+    power = np.maximum(power - np.einsum("skij,sij->sk", fit.covariance, gram).real, 0.0)
     return np.asarray(power / (power + fit.noise))
 
 

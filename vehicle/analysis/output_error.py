@@ -1,4 +1,4 @@
-"""A local rational model of one stretch of spectral lines, fitted to the error of the output.
+"""A local rational model of stretches of spectral lines, fitted to the error of the output.
 
 Over the lines k + r, |r| <= n, x = r / n, with the inputs U_i,
 
@@ -20,6 +20,7 @@ Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413 (projection); Bretthorst, 
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -64,104 +65,123 @@ EXACT = 1e-13
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StretchFit:
-    """What one stretch says about its centre line, for k responses and p inputs."""
+    """What each of s stretches says about its centre line, for k responses and p inputs."""
 
     response: Complex
-    """H, shape (k, p)"""
+    """H, shape (s, k, p)"""
     covariance: Complex
-    """E dH_i conj(dH_j), shape (k, p, p)"""
+    """E dH_i conj(dH_j), shape (s, k, p, p)"""
     noise: Real
-    """power of e in a line, shape (k,)"""
+    """power of e in a line, shape (s, k)"""
 
 
-def fit_stretch(drives: Complex, answers: Complex, *, wide: bool) -> StretchFit:
-    """Fit every response over one stretch.
+def fit_stretches(drives: Complex, answers: Complex, *, wide: bool) -> StretchFit:
+    """Fit every response over every stretch; those of one length share the grid of poles, and are fitted at once.
 
     Args:
-        drives: U on N = 2 n + 1 lines, scaled to unit mean power, shape (p, N).
-        answers: Y, scaled likewise, shape (k, N).
+        drives: U on N = 2 n + 1 lines, scaled to unit mean power, shape (s, p, N).
+        answers: Y, scaled likewise, shape (s, k, N).
         wide: whether n is a share of the frequency, not the least number of lines.
     """
-    inputs, lines = drives.shape
+    inputs, lines = drives.shape[1:]
     half, dof = lines // 2, lines - 3 * inputs - 3  # less b, t and a
     offset = np.arange(-half, half + 1) / half
     floor = EXACT * _power(answers)
-    stretch = _Stretch(offset, drives)
-    known = stretch.basis.conj().T @ answers.T  # (2p + 1, k)
-    rest = np.ascontiguousarray(answers - (stretch.basis @ known).T)
+    stretch = _Stretches(offset, drives)
+    known = _adjoint(stretch.basis) @ _turned(answers)  # (s, 2p + 1, k)
+    rest = np.ascontiguousarray(answers - _turned(stretch.basis @ known))
     total = _power(rest)
 
     # Every pole of the grid, and none: there x^2 and, for the transient, x take the place of 1 / (1 + a x).
     poles, spacing, sharpest, shapes = _pole_grid(half, wide)
     gram, direct = (np.concatenate(parts) for parts in zip(stretch.without_pole(), stretch.seen(shapes), strict=True))
-    heard = stretch.tail.T.conj()[:, :, None] * rest.T  # (p + 1, N, k)
-    right = np.stack([shapes.conj() @ part for part in heard], axis=1)  # (G, p + 1, k)
-    right = np.concatenate([(stretch.smooth.conj().T @ rest.T)[None], right])
+    heard = stretch.tail.conj().transpose(1, 0, 2)[:, :, :, None] * rest.transpose(2, 0, 1)[:, :, None]
+    right = (shapes.conj() @ heard.reshape(lines, -1)).reshape(-1, *heard.shape[1:])  # (G, s, p + 1, k)
+    right = np.concatenate([(_adjoint(stretch.smooth) @ _turned(rest))[None], right])
     inverse = np.linalg.inv(gram)
-    unknowns = inverse @ right  # (G, p + 1, k)
-    explained = np.sum(right.real * unknowns.real + right.imag * unknowns.imag, axis=1)
-    left = np.maximum(total - explained, floor)  # (G, k)
+    unknowns = inverse @ right  # (G, s, p + 1, k)
+    explained = np.sum(right.real * unknowns.real + right.imag * unknowns.imag, axis=2)
+    left = np.maximum(total - explained, floor)  # (G, s, k)
     likely = np.exp(dof * (np.log(left.min(axis=0)) - np.log(left)))
     likely /= likely.sum(axis=0)
-    part = direct @ unknowns  # (G, p, k)
-    mean = np.sum(likely[:, None] * part, axis=0)  # (p, k)
+    part = direct @ unknowns  # (G, s, p, k)
+    mean = np.sum(likely[:, :, None] * part, axis=0)  # (s, p, k)
     noise = np.sum(likely * left, axis=0) / dof
-    own = stretch.covariance + direct @ inverse @ direct.conj().transpose(0, 2, 1)  # (G, p, p)
-    covariance = np.tensordot((likely * left).T / dof, own, axes=1)  # (k, p, p)
+    own = stretch.covariance + direct @ inverse @ _adjoint(direct)  # (G, s, p, p)
+    spread = np.ascontiguousarray((likely * left).transpose(1, 2, 0)) / dof  # (s, k, G)
+    covariance = (spread @ own.reshape(*own.shape[:2], -1).swapaxes(0, 1)).reshape(*total.shape, inputs, inputs)
     scatter = part - mean
     for i, j in np.ndindex(inputs, inputs):
-        covariance[:, i, j] += np.sum(likely * scatter[:, i] * scatter[:, j].conj(), axis=0)
-    response = (stretch.weights @ known + mean).T
+        covariance[..., i, j] += np.sum(likely * scatter[:, :, i] * scatter[:, :, j].conj(), axis=0)
+    response = _turned(stretch.weights @ known + mean)
 
     # Where the pole is sharper than a cell of the grid, the best node is refined and takes over.
     best = np.argmin(left, axis=0)
-    sharp = np.flatnonzero((best > 0) & (likely.max(axis=0) > SHARP_SHARE))
+    of, sharp = np.nonzero((best > 0) & (likely.max(axis=0) > SHARP_SHARE))
     if sharp.size:
-        node = best[sharp] - 1
-        refined = _refine(poles[node], rest[sharp], stretch, sharpest)
-        spread = np.maximum(refined.cost, floor[sharp]) / dof
+        node, own_stretch = best[of, sharp] - 1, stretch.of(of)
+        refined = _refine(poles[node], rest[of, sharp], own_stretch, sharpest)
+        spread = np.maximum(refined.cost, floor[of, sharp]) / dof
         cells = np.sqrt(spread) * refined.error / np.abs(refined.a) ** 2 / spacing[node]
         trust = 1.0 / (1.0 + (2.0 * cells) ** 4)
-        whole = (stretch.weights @ known[:, sharp]).T + refined.part
-        own = (stretch.covariance + refined.covariance) * spread[:, None, None]
-        response[sharp] += trust[:, None] * (whole - response[sharp])
-        covariance[sharp] += trust[:, None, None] * (own - covariance[sharp])
-        noise[sharp] += trust * (spread - noise[sharp])
+        whole = (own_stretch.weights @ known[of, :, sharp][:, :, None])[:, :, 0] + refined.part
+        own = (own_stretch.covariance + refined.covariance) * spread[:, None, None]
+        response[of, sharp] += trust[:, None] * (whole - response[of, sharp])
+        covariance[of, sharp] += trust[:, None, None] * (own - covariance[of, sharp])
+        noise[of, sharp] += trust * (spread - noise[of, sharp])
     return StretchFit(response=response, covariance=covariance, noise=noise)
 
 
-class _Stretch:
-    """What all poles and responses share: the inputs, and the terms without a pole, projected out.
+class _Stretches:
+    """What all poles and responses of a stretch share: the inputs, and the terms without a pole, projected out.
 
     A pole enters by sums over the lines only: of |s|^2 U_i* U_j for the Gram matrix and of s q* U for what the basis q
     of the other terms already holds, s = 1 / (1 + a x), with 1 as the last U for the transient.
     """
 
     def __init__(self, offset: Real, drives: Complex) -> None:
-        inputs, lines = drives.shape
-        one = np.ones((1, lines))
+        inputs, lines = drives.shape[1:]
+        one = np.ones((len(drives), 1, lines))
         self.offset = offset
-        self.tail = np.concatenate([drives, one]).T  # (N, p + 1)
-        self.basis, triangle = np.linalg.qr(np.concatenate([drives, drives * offset, one]).T)  # (N, 2p + 1)
-        self.weights = np.linalg.inv(triangle)[:inputs]  # H = weights @ (basis' Y) + the part of the pole
-        self.covariance = self.weights @ self.weights.conj().T
-        self.pairs = np.ascontiguousarray((self.tail.conj()[:, :, None] * self.tail[:, None]).reshape(lines, -1))
-        self.shared = (self.basis.conj()[:, :, None] * self.tail[:, None]).reshape(lines, -1)
-        smooth = np.concatenate([drives * offset**2, offset[None]]).T
-        self.smooth = smooth - self.basis @ (self.basis.conj().T @ smooth)
-        self.lost = self.weights @ (self.basis.conj().T @ smooth)
+        self.tail = _turned(np.concatenate([drives, one], axis=1))  # (s, N, p + 1)
+        smooth = _turned(np.concatenate([drives, drives * offset, one], axis=1))
+        self.basis, triangle = np.linalg.qr(smooth)  # (s, N, 2p + 1)
+        self.weights = np.linalg.inv(triangle)[:, :inputs]  # H = weights @ (basis' Y) + the part of the pole
+        self.covariance = self.weights @ _adjoint(self.weights)
+        smooth = _turned(np.concatenate([drives * offset**2, offset * one], axis=1))
+        held = _adjoint(self.basis) @ smooth
+        self.smooth = smooth - self.basis @ held
+        self.lost = self.weights @ held
+
+    def of(self, which: NDArray[np.intp]) -> _Stretches:
+        """These stretches, each as often as it is named."""
+        found = copy.copy(self)
+        for name in ("tail", "basis", "weights", "covariance"):
+            setattr(found, name, getattr(self, name)[which])
+        return found
 
     def without_pole(self) -> tuple[Complex, Complex]:
-        """Gram matrix (1, p + 1, p + 1) of x^2 and x, and their part in H, (1, p, p + 1)."""
-        return (self.smooth.conj().T @ self.smooth)[None], -self.lost[None]
+        """Gram matrices (1, s, p + 1, p + 1) of x^2 and x, and their parts in H, (1, s, p, p + 1)."""
+        return (_adjoint(self.smooth) @ self.smooth)[None], -self.lost[None]
 
     def seen(self, shapes: Complex) -> tuple[Complex, Complex]:
-        """Gram matrices (G, p + 1, p + 1) of poles of given s, (G, N), and their parts in H, (G, p, p + 1)."""
-        size, inputs = self.tail.shape[1], len(self.weights)
-        power = (shapes.real**2 + shapes.imag**2) @ self.pairs.view(np.float64)
-        share = (shapes @ self.shared).reshape(len(shapes), -1, size)  # (G, 2p + 1, p + 1)
-        gram = power.view(np.complex128).reshape(-1, size, size) - share.conj().transpose(0, 2, 1) @ share
-        return gram, np.eye(inputs, size) - self.weights @ share
+        """Gram matrices (G, s, p + 1, p + 1) of poles of given s, (G, N), and their parts in H, (G, s, p, p + 1)."""
+        count, _, size = self.tail.shape
+        pairs = self.tail.conj()[..., None] * self.tail[:, :, None]
+        shared = self.basis.conj()[..., None] * self.tail[:, :, None]
+        power = (shapes.real**2 + shapes.imag**2) @ _lines_first(pairs).view(np.float64)
+        share = (shapes @ _lines_first(shared)).reshape(len(shapes), count, -1, size)  # (G, s, 2p + 1, p + 1)
+        return self._projected(power.view(np.complex128).reshape(-1, count, size, size), share)
+
+    def seen_each(self, shapes: Complex) -> tuple[Complex, Complex]:
+        """The same of a pole for each stretch, shapes (s, N): (s, p + 1, p + 1) and (s, p, p + 1)."""
+        with_pole = shapes[:, :, None] * self.tail
+        return self._projected(_adjoint(with_pole) @ with_pole, _adjoint(self.basis) @ with_pole)
+
+    def _projected(self, power: Complex, share: Complex) -> tuple[Complex, Complex]:
+        """Gram matrices less what the other terms hold of them, and the part in H of what is left."""
+        inputs, size = self.weights.shape[1], self.tail.shape[2]
+        return power - _adjoint(share) @ share, np.eye(inputs, size) - self.weights @ share
 
 
 class _PoleGrid(NamedTuple):
@@ -197,37 +217,36 @@ class _Refined(NamedTuple):
     covariance: Complex  # of that part per unit of noise power (k, p, p)
 
 
-def _at(a: Complex, rest: Complex, total: Real, stretch: _Stretch) -> _Refined:
+def _at(a: Complex, rest: Complex, total: Real, stretch: _Stretches) -> _Refined:
     """Least squares with one pole for each response, and the Gauss-Newton step of the pole."""
-    adjoint = stretch.tail.conj()
     shapes = 1.0 / (1.0 + a[:, None] * stretch.offset)  # (k, N)
-    gram, direct = stretch.seen(shapes)
+    gram, direct = stretch.seen_each(shapes)
     inverse = np.linalg.inv(gram)
-    right = ((shapes.conj() * rest) @ adjoint)[:, :, None]  # (k, p + 1, 1)
+    adjoint = _adjoint(stretch.tail)  # (k, p + 1, N)
+    right = adjoint @ (shapes.conj() * rest)[:, :, None]  # (k, p + 1, 1)
     theta = inverse @ right
     # d(model) / da = -x s^2 (sum_i c_i2 U_i + d1), less its share in all other terms: those without a pole, then those
     # with it (Schur complement).
-    slope = -stretch.offset * shapes**2 * (theta[:, :, 0] @ stretch.tail.T)
+    slope = -stretch.offset * shapes**2 * (stretch.tail @ theta)[:, :, 0]
     least = ROUNDING * _power(slope) + TINY
-    held = slope @ stretch.basis.conj()  # (k, 2p + 1)
-    slope -= held @ stretch.basis.T
-    with_pole = ((shapes.conj() * slope) @ adjoint)[:, :, None]
+    held = _adjoint(stretch.basis) @ slope[:, :, None]  # (k, 2p + 1, 1)
+    slope -= (stretch.basis @ held)[:, :, 0]
+    with_pole = adjoint @ (shapes.conj() * slope)[:, :, None]
     coupled = inverse @ with_pole
     alone = np.maximum(_power(slope) - _inner(with_pole, coupled).real, least)
     pull = np.sum(slope.conj() * rest, axis=1) - _inner(with_pole, theta)
-    turn = held @ stretch.weights.T + (direct @ coupled)[:, :, 0]  # dH / da, (k, p)
+    turn = (stretch.weights @ held + direct @ coupled)[:, :, 0]  # dH / da, (k, p)
     return _Refined(
         a=a,
         cost=total - _inner(right, theta).real,
         step=pull / alone,
         error=1.0 / np.sqrt(alone),
         part=(direct @ theta)[:, :, 0],
-        covariance=direct @ inverse @ direct.conj().transpose(0, 2, 1)
-        + turn[:, :, None] * turn[:, None].conj() / alone[:, None, None],
+        covariance=direct @ inverse @ _adjoint(direct) + turn[:, :, None] * turn[:, None].conj() / alone[:, None, None],
     )
 
 
-def _refine(start: Complex, rest: Complex, stretch: _Stretch, least: float) -> _Refined:
+def _refine(start: Complex, rest: Complex, stretch: _Stretches, least: float) -> _Refined:
     """Output-error Gauss-Newton on the pole of every response; the linear unknowns follow exactly."""
     total = _power(rest)
     now, scale = _at(start, rest, total, stretch), np.ones(len(start))
@@ -238,7 +257,7 @@ def _refine(start: Complex, rest: Complex, stretch: _Stretch, least: float) -> _
             break
         a = now.a[active] + scale[active] * now.step[active]
         a = np.where(np.abs(a) > SMALLEST, a, now.a[active])
-        trial = _at(a, rest[active], total[active], stretch)
+        trial = _at(a, rest[active], total[active], stretch.of(active))
         pole = -1.0 / a
         better = (trial.cost < now.cost[active]) & ((pole.imag >= least) | (np.abs(pole.real) > REACH + 0.2))
         scale[active] = np.where(better, 1.0, 0.3 * scale[active])
@@ -248,8 +267,23 @@ def _refine(start: Complex, rest: Complex, stretch: _Stretch, least: float) -> _
 
 
 def _power(rows: Complex) -> Real:
-    """Sum of |z|^2 of each row."""
-    return np.asarray(np.sum(rows.real**2 + rows.imag**2, axis=1))
+    """Sum of |z|^2 over the last axis."""
+    return np.asarray(np.sum(rows.real**2 + rows.imag**2, axis=-1))
+
+
+def _turned(matrices: Complex) -> Complex:
+    """Transposed matrices."""
+    return np.swapaxes(matrices, -1, -2)
+
+
+def _adjoint(matrices: Complex) -> Complex:
+    """Transposed and conjugate matrices."""
+    return np.swapaxes(matrices.conj(), -1, -2)
+
+
+def _lines_first(products: Complex) -> Complex:
+    """Products (s, N, i, j) as columns over the lines, (N, s i j)."""
+    return np.ascontiguousarray(products.swapaxes(0, 1)).reshape(products.shape[1], -1)
 
 
 def _inner(first: Complex, second: Complex) -> Complex:

@@ -1,7 +1,9 @@
-"""How a record is cut: overlapping segments and the averages they are worth; the largest magnitude in every window."""
+"""How a record is cut: overlapping segments and the averages they are worth; the largest magnitude in every window;
+stretches of its spectrum."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +15,10 @@ from vehicle.errors import ConfigurationError, DataError
 
 MINIMUM_AVERAGES = 8.0
 """Below this the coherence of unrelated signals is already 1/8 and the random error of an FRF above 25 % at 0.5."""
+
+
+STRETCHES = 12
+"""Stretches of a spectrum that are worked on at once: what they need stays in the nearest caches."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,6 +100,25 @@ def cut_into_segments(
             f"{(length + (needed - 1) * step) * time_step:g} s, or a shorter window (coarser lines)"
         )
     return Segments(length=length, step=step, count=count, averages=averages, window=window)
+
+
+def stretches_of_one_length(
+    centres: NDArray[np.int_], halves: NDArray[np.int_]
+) -> Iterator[tuple[NDArray[np.intp], NDArray[np.int_]]]:
+    """Stretches of spectral lines by their length, some at once.
+
+    Args:
+        centres: line in the middle of each stretch, shape (m,).
+        halves: lines n on each side of it, shape (m,).
+
+    Yields:
+        Which stretches, shape (s,), and their lines, shape (s, 2 n + 1).
+    """
+    for half in np.unique(halves):
+        alike = np.flatnonzero(halves == half)
+        for first in range(0, alike.size, STRETCHES):
+            some = alike[first : first + STRETCHES]
+            yield some, centres[some, None] + np.arange(-half, half + 1)
 
 
 def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) -> NDArray[np.float64]:
