@@ -27,6 +27,12 @@ FADING = ((-1.0, 0.5, 0.2), (0.5, 0.8, 0.5), (0.8, 2.0, 1.0))
 FADED = "pale: coherence below 0.8, paler: below 0.5"
 """What a caption says of it."""
 
+EDGE = 0.06
+"""From the edge of a figure to its title and its caption [inch], where the axes are placed."""
+
+COMPRESSION = 3
+"""Of PNG files: higher ones take three times as long and spare a tenth of the file."""
+
 INK = "#444444"
 """Colour of captions."""
 
@@ -66,7 +72,9 @@ SVG = {
 
 
 @contextmanager
-def saved_figure(path: Path, size: tuple[float, float], title: str = "", caption: str = "") -> Iterator[Figure]:
+def saved_figure(
+    path: Path, size: tuple[float, float], title: str = "", caption: str = "", *, placed: bool = False
+) -> Iterator[Figure]:
     """Give an empty figure; write it when the block is done.
 
     Args:
@@ -74,6 +82,7 @@ def saved_figure(path: Path, size: tuple[float, float], title: str = "", caption
         size: width and height [inch].
         title: above the figure; none if empty.
         caption: below it; none if empty.
+        placed: the axes are those of `placed_axes`, so that no layout is to be found.
 
     Yields:
         The figure.
@@ -84,19 +93,23 @@ def saved_figure(path: Path, size: tuple[float, float], title: str = "", caption
     # The reader's own matplotlibrc must not change the files of a run.
     form = "svg" if path.suffix == ".svg" else "png"
     with style.context(["default", STYLE, SVG if form == "svg" else {}]):
-        figure = Figure(figsize=size, layout="constrained")
+        figure = Figure(figsize=size, layout=None if placed else "constrained")
         yield figure
+        edge = {"y": EDGE / size[1]} if placed else {}
         if title:
-            figure.suptitle(title, fontsize=12)
+            figure.suptitle(title, fontsize=12, **({"y": 1.0 - edge["y"]} if placed else {}))
         if caption:
-            figure.supxlabel(caption, fontsize=8.5, color=INK)
+            figure.supxlabel(caption, fontsize=8.5, color=INK, **edge)
         # The layout is computed once; left to the writer of the file, it costs one more drawing of everything.
         engine = figure.get_layout_engine()
-        assert engine is not None
-        engine.execute(figure)
-        figure.set_layout_engine(None)
+        if engine is not None:
+            engine.execute(figure)
+            figure.set_layout_engine(None)
         figure.savefig(
-            path, format=form, metadata=dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",))
+            path,
+            format=form,
+            metadata=dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",)),
+            **({} if form == "svg" else {"pil_kwargs": {"compress_level": COMPRESSION}}),
         )
 
 

@@ -21,6 +21,7 @@ from vehicle.rendering.figure import (
     shade,
     wrapped_phase,
 )
+from vehicle.rendering.placed_axes import Margins, placed_axes
 from vehicle.rendering.recorded_run import RecordedRun, dampers_of, level_words, liveliest, wheels_of
 
 REGION = 1.96
@@ -34,6 +35,10 @@ DETAIL = 2.0
 
 LEGEND_ROOM = 0.22
 """Share of the height of a panel kept free for its legend."""
+
+FRF_MARGINS = Margins(left=0.74, right=0.14, bottom=0.68, top=0.52, across=0.26, down=0.2)
+HISTORY_MARGINS = Margins(left=0.92, right=3.65, bottom=0.68, top=0.5, across=0.28, down=0.18)
+DAMPER_MARGINS = Margins(left=12.25, right=0.05, bottom=0.68, top=0.5, down=0.72)
 
 SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", INK, "#fff3c4"
 
@@ -65,9 +70,13 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
     inside = np.asarray(np.isfinite(response.response).any(axis=0))
     shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels]])
     with saved_figure(
-        path, (13.0, 8.6), title or f"FRFs to the plate under the {wheel_words(wheel, wheels)}", f"{caption}; {FADED}"
+        path,
+        (13.0, 8.6),
+        title or f"FRFs to the plate under the {wheel_words(wheel, wheels)}",
+        f"{caption}; {FADED}",
+        placed=True,
     ) as figure:
-        axes = figure.subplots(3, 2, sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9))
+        axes = placed_axes(figure, FRF_MARGINS, widths=(1.0, 1.0), heights=(2.2, 1.0, 0.9), sharex=True, sharey="row")
         for column, (title, labels) in enumerate(groups.items()):
             magnitude, phase, coherence = axes[:, column]
             for number, (name, label) in enumerate(labels.items()):
@@ -127,10 +136,10 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         f"{Path(run.signal.source).name}, {level_words(recording, wheel, run.signal.rms(wheel))} at wheel {wheel}; "
         f"dashed: slip velocity ±{1e3 * slip:g} mm/s, red: {side} damper in slip"
     )
-    with saved_figure(path, (15.0, 9.2), "Main time histories", caption) as figure:
-        grid = figure.add_gridspec(1, 2, width_ratios=(3.3, 1.0))
-        histories, characteristics = (figure.add_subfigure(grid[column]) for column in range(2))
-        axes = histories.subplots(len(panels), 2, sharey="row", width_ratios=(2.0, 1.6))
+    with saved_figure(path, (15.0, 9.2), "Main time histories", caption, placed=True) as figure:
+        rows = len(panels) * (1.0,)
+        axes = placed_axes(figure, HISTORY_MARGINS, widths=(2.0, 1.6), heights=rows, sharey="row")
+        characteristics = placed_axes(figure, DAMPER_MARGINS, heights=len(dampers) * (1.0,))[:, 0]
         for (whole, detail), (unit, scale, lines) in zip(axes, panels, strict=True):
             for number, (name, label) in enumerate(lines.items()):
                 style = {"color": COLOURS[number], "linestyle": LINES[number], "zorder": 2.5 - 0.1 * number}
@@ -155,8 +164,7 @@ def plot_time(path: Path, run: RecordedRun) -> None:
             axis.set_xlabel("time [s]")
         axes[0, 0].set_title("whole record")
         axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
-        histories.align_ylabels(axes[:, 0])
-        for axis, name in zip(characteristics.subplots(len(dampers), 1, squeeze=False)[:, 0], dampers, strict=True):
+        for axis, name in zip(characteristics, dampers, strict=True):
             speed, force = 1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"]
             axis.plot(speed, force, ".", markersize=1.5, color=COLOURS[0], zorder=3, rasterized=True)
             for limit in (-1e3 * slip, 1e3 * slip):
