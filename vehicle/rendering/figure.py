@@ -95,22 +95,20 @@ def saved_figure(
     with style.context(["default", STYLE, SVG if form == "svg" else {}]):
         figure = Figure(figsize=size, layout=None if placed else "constrained")
         yield figure
-        edge = {"y": EDGE / size[1]} if placed else {}
+        edge = EDGE / size[1]
         if title:
-            figure.suptitle(title, fontsize=12, **({"y": 1.0 - edge["y"]} if placed else {}))
+            figure.suptitle(title, fontsize=12, **({"y": 1.0 - edge} if placed else {}))
         if caption:
-            figure.supxlabel(caption, fontsize=8.5, color=INK, **edge)
+            figure.supxlabel(caption, fontsize=8.5, color=INK, **({"y": edge} if placed else {}))
         # The layout is computed once; left to the writer of the file, it costs one more drawing of everything.
         engine = figure.get_layout_engine()
         if engine is not None:
             engine.execute(figure)
             figure.set_layout_engine(None)
-        figure.savefig(
-            path,
-            format=form,
-            metadata=dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",)),
-            **({} if form == "svg" else {"pil_kwargs": {"compress_level": COMPRESSION}}),
-        )
+        about: dict[str, Any] = {"metadata": dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",))}
+        if form == "png":
+            about["pil_kwargs"] = {"compress_level": COMPRESSION}
+        figure.savefig(path, format=form, **about)
 
 
 def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[float, ...]) -> None:

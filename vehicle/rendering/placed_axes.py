@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -43,8 +43,8 @@ def placed_axes(
     *,
     widths: Sequence[float] = (1.0,),
     heights: Sequence[float] = (1.0,),
-    sharex: bool | str = False,
-    sharey: bool | str = False,
+    sharex: bool = False,
+    sharey: Literal["row", "none"] = "none",
 ) -> npt.NDArray[Any]:
     """Axes in rows and columns, whose labels and titles have fixed places too.
 
@@ -53,8 +53,8 @@ def placed_axes(
         margins: room around them.
         widths: of the columns, relative to each other.
         heights: of the rows.
-        sharex: as of `matplotlib.figure.Figure.subplots`.
-        sharey: likewise.
+        sharex: one horizontal scale for all.
+        sharey: "row" for one vertical scale in each row.
 
     Returns:
         The axes, (rows, columns).
