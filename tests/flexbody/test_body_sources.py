@@ -61,11 +61,12 @@ def test_modes_of_the_attachments_hold_the_whole_residual_flexibility(box):
         for place in places:
             at = place.moved.T @ added
             whole = static.residual[place.name]
-            np.testing.assert_allclose(at @ at.T + found.residual[place.name], whole, atol=1e-9 * whole.max())
+            left = found.residual.get(place.name, np.zeros((3, 3)))
+            np.testing.assert_allclose(at @ at.T + left, whole, atol=1e-9 * whole.max())
         gram = found.vectors.T @ (box.mass @ found.vectors)
         np.testing.assert_allclose(gram, np.eye(len(gram)), atol=1e-9)
     # Two places of three directions: six shapes, and they reach above the first mode left out (Rayleigh).
-    assert len(found.frequencies) - len(static.frequencies) == 6
+    assert len(found.frequencies) - len(static.frequencies) == 6 and not found.residual
     left_out = free_free_modes(box_stiffness(), MASSES, POSITIONS, 18)[0][len(static.frequencies)]
     assert left_out < found.frequencies[len(static.frequencies)] < 2.0 * left_out
 
@@ -76,7 +77,7 @@ def test_craig_bampton_with_all_modes_of_the_held_body_is_the_body(box):
     frequencies, shapes = free_free_modes(box_stiffness(), MASSES, POSITIONS, 18)
     whole = modes_of_matrices(box, 1e6, places, "craig-bampton")
     np.testing.assert_allclose(whole.frequencies, frequencies, rtol=1e-7)
-    part = modes_of_matrices(box, 60.0, places, "craig-bampton", 80.0)
+    part = modes_of_matrices(box, 60.0, places, "craig-bampton", 20.0)
     assert np.all(part.frequencies > frequencies[: len(part.frequencies)] * (1.0 - 1e-9))
     assert part.frequencies[0] < 1.01 * frequencies[0] and "Craig-Bampton with" in part.remarks[0]
     at = places[0].moved.T @ part.vectors / (2.0 * np.pi * part.frequencies)

@@ -105,7 +105,8 @@ def modes_of_matrices(
             f"the stiffness gives rigid motions {found.rigid_frequency:.2g} Hz; modes orthogonal to them and to each "
             f"other within {found.orthogonality:.1e}",
         ),
-        residual={place.name: value for place, value in zip(places, residual, strict=True)},
+        # Where every mode of the attachments is kept nothing is left: the place is rigid, not of infinite stiffness.
+        residual={place.name: value for place, value in zip(places, residual, strict=True) if value.any()},
     )
 
 
