@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.optimisation.front import MARGIN, distance, ends, front, hypervolume, knee
+from vehicle.optimisation.front import MARGIN, distance, ends, front, hypervolume, knee, thinned
 
 
 @pytest.mark.parametrize("goals", [1, 2, 3])
@@ -43,3 +43,15 @@ def test_distance_of_a_shifted_front():
     # 0.1 along the normal, and the extents of both together are 1 + 0.1 / sqrt(2).
     shift = 0.1 / np.sqrt(2.0)
     assert distance(costs, costs + shift) == pytest.approx(0.1 / (1.0 + shift), rel=0.05)  # ends have no foot
+
+
+def test_a_thinned_front_is_even():
+    # Most of the cars crowd at one end; the rows that are kept do not.
+    line = np.sort(np.random.default_rng(1).random(4000)) ** 3
+    costs = np.column_stack([1e3 * line, 1.0 - line])
+    rows = thinned(costs, [0, 3999], 17)
+    gaps = np.diff(costs[rows, 0]) / 1e3
+    assert len(rows) == 17 and rows[0] == 0 and rows[-1] == 3999
+    # Taking the farthest halves the gaps: none is more than twice another, but for the cars that there are.
+    assert gaps.max() < 2.1 * gaps.min()
+    assert np.array_equal(thinned(costs[:5], [2], 17), np.arange(5))

@@ -248,7 +248,7 @@ def _tell(folder: Path, found: Outcome, trials: Trials, checked: Differences | N
     problem, tried = found.problem, found.tried
     failed = [reason for reason in tried.reasons if reason]
     print(
-        f"{folder}: {len(tried.reasons)} cars, {len(found.front)} on the front, {len(failed)} failed; front.csv, "
+        f"{folder}: {len(tried.reasons)} cars, {found.whole} on the front, {len(failed)} failed; front.csv, "
         "front.png, summary.json, cars.csv"
     )
     if failed:

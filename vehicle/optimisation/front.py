@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -52,6 +54,28 @@ def knee(costs: Vector) -> int:
     Optimization 18 (1999).
     """
     return int(np.argmin(np.sum(scaled(costs, costs), axis=1)))
+
+
+def thinned(costs: Vector, first: Sequence[int], most: int) -> Indices:
+    """Rows of a front that stand far from each other: after the first ones always that farthest from all taken.
+
+    Args:
+        costs: the front; (f, goals).
+        first: rows that are taken.
+        most: number of rows.
+
+    Returns:
+        Their indices in the order of the front; all where there are no more than `most`.
+
+    Source: Gonzalez, Clustering to minimize the maximum intercluster distance, Theoretical Computer Science 38 (1985).
+    """
+    places = scaled(costs, costs)
+    taken = list(dict.fromkeys(first))
+    gaps = np.min([np.linalg.norm(places - places[row], axis=1) for row in taken], axis=0)
+    while len(taken) < min(most, len(costs)):
+        taken.append(int(np.argmax(gaps)))
+        gaps = np.minimum(gaps, np.linalg.norm(places - places[taken[-1]], axis=1))
+    return np.array(sorted(taken), dtype=np.intp)
 
 
 def hypervolume(costs: Vector, like: Vector) -> float:

@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle.errors import SimulationError
-from vehicle.optimisation.front import Indices, ends, front, hypervolume, knee
+from vehicle.optimisation.front import Indices, ends, front, hypervolume, knee, thinned
 from vehicle.optimisation.problem import Problem, Vector
 from vehicle.optimisation.search import Tried, joined
 
 BASE, KNEE, BEST = "base", "knee", "best"
+
+SHOWN = 100
+"""Most cars of a front that are written and drawn: from one to the next about a hundredth of it."""
 
 PARTS = (0.25, 0.5, 0.75)
 """Shares of the cars after which the hypervolume is looked at."""
@@ -26,14 +29,16 @@ class Outcome:
         problem: what was wanted.
         base: the car as it is.
         tried: all others.
-        front: rows of `tried` that no other car beats, by the first objective.
+        whole: number of cars that no other beats.
+        front: rows of `tried` of at most `SHOWN` of them, far from each other, by the first objective.
         named: name to row: best of each objective, knee.
-        reached: share of the hypervolume that was reached after `PARTS` of the cars; empty for a front of one car.
+        reached: share of their hypervolume that was reached after `PARTS` of the cars; empty for a front of one car.
     """
 
     problem: Problem
     base: Tried
     tried: Tried
+    whole: int
     front: Indices
     named: Mapping[str, int]
     reached: Mapping[float, float]
@@ -57,17 +62,25 @@ def outcome(problem: Problem, base: Tried, generations: Sequence[Tried]) -> Outc
     costs = problem.costs(tried.values)
     found = kept[front(costs[kept])]
     own = costs[found]
-    names = [BEST] if len(problem.goals) == 1 else [f"{BEST} {goal.label}" for goal in problem.goals]
-    named = dict(zip(names, (int(found[row]) for row in ends(own)), strict=True))
-    if len(problem.goals) > 1:
-        named[KNEE] = int(found[knee(own)])
     reached = {}
     if len(found) > 1:  # a front of one car has no extent
         whole = hypervolume(own, own)
         for part in PARTS:
             early = costs[kept[kept < part * len(tried.reasons)]]
             reached[part] = hypervolume(early, own) / whole if early.size else 0.0
-    return Outcome(problem=problem, base=base, tried=tried, front=found, named=named, reached=reached)
+    names = [BEST] if len(problem.goals) == 1 else [f"{BEST} {goal.label}" for goal in problem.goals]
+    rows = dict(zip(names, ends(own), strict=True))
+    if len(problem.goals) > 1:
+        rows[KNEE] = knee(own)
+    return Outcome(
+        problem=problem,
+        base=base,
+        tried=tried,
+        whole=len(found),
+        front=found[thinned(own, list(rows.values()), SHOWN)],
+        named={name: int(found[row]) for name, row in rows.items()},
+        reached=reached,
+    )
 
 
 def _none_kept(problem: Problem, tried: Tried) -> str:

@@ -159,7 +159,7 @@ def write_search(
                 "tried": len(found.tried.reasons),
                 "keep_the_limits": int(np.count_nonzero(found.tried.kept(problem))),
                 "failed": sum(bool(reason) for reason in found.tried.reasons),
-                "on_the_front": len(found.front),
+                "on_the_front": found.whole,
             },
             "hypervolume_reached": {f"{part:g}": share for part, share in found.reached.items()},
             "beside": None if beside is None else {"folder": str(beside.folder), **agreement(found, beside)},
