@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.analysis.thinned_wireframe import thinned
 from vehicle.rendering.figure import COLOURS, saved_figure
 from vehicle.rendering.overlay import colours
 
@@ -20,8 +21,8 @@ MOST = 12
 SWING = 0.12
 """Largest displacement drawn, over the length of the body."""
 
-DENSE = 1500
-"""Lines from which they are drawn thinner and paler at rest, or a shell would be a dark patch."""
+DENSE = 500
+"""Lines from which they are drawn thinner, or a mesh would be a dark patch."""
 
 VIEW = np.array([[0.80, 0.60, 0.0], [-0.23, 0.31, 0.92]])
 """Right and up of the page over x to the rear, y to the right, z up: seen from the left in front, 23 degrees above."""
@@ -51,7 +52,7 @@ def plot_body(
     """
     from matplotlib.collections import LineCollection
 
-    count = min(len(shapes), MOST)
+    count, edges = min(len(shapes), MOST), thinned(positions, edges)
     columns = min(3, count)
     flat = positions @ VIEW.T
     length = float(np.ptp(positions, axis=0).max())

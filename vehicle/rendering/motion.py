@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.analysis.thinned_wireframe import MOST_NODES, thinned
 from vehicle.parameters.composition import Composition, PlacedSpring
 from vehicle.rendering.recorded_run import wheels_of
 from vehicle.simulation.car_model import CarModel
@@ -31,6 +32,9 @@ NODE_RADIUS = 0.020
 MEMBER_RADIUS = 0.0085
 SHADOW_RADIUS = 0.005
 """Drawn sizes [m]."""
+
+FRAME_LINES = 200
+"""Lines up to which they have these sizes: those of a frame of beams."""
 
 SHADOW_COLOUR = np.array([0.35, 0.38, 0.42, 0.8], dtype=np.float32)
 """Colour of the members in the design position, against which the motion is seen."""
@@ -171,9 +175,13 @@ class Wireframe:
         element = car.superelement
         self.motion = motion
         self.body = int(motion.model.body("body").id)
-        self.rest = np.asarray(element.positions)
-        self.edges = np.asarray(element.edges, dtype=int)
-        self.shapes = np.asarray(element.shapes)[: len(motion.modal)]  # (modes, n, 3); none where the body is rigid
+        lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
+        # A body without lines is its nodes; of one with lines, those that lines end at.
+        shown, index = np.unique(lines, return_inverse=True) if len(lines) else (slice(MOST_NODES), lines)
+        self.rest, self.edges = np.asarray(element.positions)[shown], index.reshape(-1, 2)
+        self.shapes = np.asarray(element.shapes)[: len(motion.modal), shown]  # (modes, n, 3); none of a rigid body
+        # Members as thick as those of a frame would hide a dense mesh.
+        self.slim = min(1.0, float(np.cbrt(FRAME_LINES / max(len(lines), 1))))
 
     def places(self, state: State, factor: float) -> Vector:
         """Exaggerated positions of the nodes [m], (n, 3)."""
@@ -193,10 +201,13 @@ class Wireframe:
             colours: red, green, blue, opacity of the nodes, (n, 4); a member takes the mean of its ends.
         """
         for place, colour in zip(places, colours, strict=True):
-            _append(scene, mujoco.mjtGeom.mjGEOM_SPHERE, NODE_RADIUS, place, colour)
+            _append(scene, mujoco.mjtGeom.mjGEOM_SPHERE, self.slim * NODE_RADIUS, place, colour)
         middle = 0.5 * (colours[self.edges[:, 0]] + colours[self.edges[:, 1]])
         shadow = np.broadcast_to(SHADOW_COLOUR, middle.shape)
-        for radius, at, shades in ((MEMBER_RADIUS, places, middle), (SHADOW_RADIUS, self.rest, shadow)):
+        for radius, at, shades in (
+            (self.slim * MEMBER_RADIUS, places, middle),
+            (self.slim * SHADOW_RADIUS, self.rest, shadow),
+        ):
             for (first, second), colour in zip(self.edges, shades, strict=True):
                 capsule = _append(scene, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, at[first], colour)
                 mujoco.mjv_connector(capsule, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, at[first], at[second])

@@ -19,8 +19,8 @@ from vehicle.simulation.car_model import CarModel
 
 Picture = npt.NDArray[np.uint8]
 
-MOST_GEOMS = 2000
-"""Room in a scene: shapes, and nodes and members of the wireframe."""
+MOST_GEOMS = 5000
+"""Room in a scene: shapes, and nodes and members of the wireframe, the members twice."""
 
 SAMPLES = 0
 """Multisampling of the picture: four samples take twice as long on a processor; a film halves its colours anyway."""

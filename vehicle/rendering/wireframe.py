@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.analysis.thinned_wireframe import MOST_NODES, thinned
 from vehicle.parameters.composition import Composition, PlacedPart, PlacedWheel
 from vehicle.simulation.car_model import CarModel
 
@@ -74,8 +75,10 @@ def car_wireframe(car: CarModel) -> CarWireframe:
     """
     pen = _Pen(car)
     element, own = car.superelement, car.vehicle.composition
-    nodes = [pen.point(at, "body") for at in element.positions]
-    pen.join([(nodes[first], nodes[second]) for first, second in np.asarray(element.edges, dtype=int)], "body")
+    lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
+    shown = np.unique(lines) if len(lines) else range(min(len(element.positions), MOST_NODES))
+    nodes = {int(node): pen.point(element.positions[node], "body") for node in shown}
+    pen.join([(nodes[int(first)], nodes[int(second)]) for first, second in lines], "body")
     wheels = {wheel.part for wheel in own.wheels}
     for part in own.parts:
         if part.shape != "none" and part.name not in wheels and part.seat is None:

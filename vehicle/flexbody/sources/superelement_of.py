@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy
 
+from vehicle.analysis.thinned_wireframe import thinned
 from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.modes import fix_signs
@@ -149,25 +149,9 @@ def superelement_of(
 
 
 def _picture(body: BodyNodes, most: int) -> tuple[IntArray, IntArray]:
-    """Nodes spread evenly over the body, farthest first, and lines along the edges of its elements between them."""
-    count = len(body.nodes)
-    if count <= most:
-        return np.arange(count), body.edges
-    chosen = [0]
-    gap = np.linalg.norm(body.positions - body.positions[0], axis=1)
-    for _ in range(most - 1):
-        chosen.append(int(gap.argmax()))
-        gap = np.minimum(gap, np.linalg.norm(body.positions - body.positions[chosen[-1]], axis=1))
-    shown: IntArray = np.sort(chosen)
+    """Nodes and lines of the picture; without lines, some of the nodes."""
     if not len(body.edges):
-        return shown, np.zeros((0, 2), dtype=int)
-    # Each node belongs to the nearest one shown, along the elements; an edge between two regions is a line.
-    length = np.linalg.norm(body.positions[body.edges[:, 0]] - body.positions[body.edges[:, 1]], axis=1)
-    graph = scipy.sparse.coo_matrix((length, (body.edges[:, 0], body.edges[:, 1])), shape=(count, count))
-    _, _, owner = scipy.sparse.csgraph.dijkstra(
-        graph, directed=False, indices=shown, min_only=True, return_predecessors=True
-    )
-    index = {int(node): i for i, node in enumerate(shown)}
-    pairs = {tuple(sorted((index.get(int(a), -1), index.get(int(b), -1)))) for a, b in owner[body.edges]}
-    lines = sorted(pair for pair in pairs if pair[0] >= 0 and pair[0] != pair[1])
-    return shown, np.array(lines, dtype=int).reshape(-1, 2)
+        return np.unique(np.linspace(0, len(body.nodes) - 1, most).astype(int)), np.zeros((0, 2), dtype=int)
+    lines = thinned(body.positions, body.edges, most)
+    shown, index = np.unique(lines, return_inverse=True)
+    return shown, index.reshape(-1, 2)
