@@ -63,7 +63,7 @@ class Terms:
         self.rows = Rows(model)
         standing = self.rows.anew(car.static.preload)
         self.numbers = element_numbers(car.vehicle, car.superelement)
-        self.rest = at_rest(standing)
+        self.rest = at_rest(self.rows)
         turning, self.by_preload = _turning_forces(standing)
         self.sum = self._stiffness(standing, joint_springs(model), car.static.preload)
         difference = self.sum + turning - matrices.system.stiffness

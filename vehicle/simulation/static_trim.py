@@ -66,7 +66,7 @@ class AtRest:
     Attributes:
         jacobian: displacement of all rows over the coordinates; (rows, n).
         turned: rotations of the elements that resist them; (m, 3, n).
-        weight: generalised force of gravity; (n,).
+        weight: generalised force of gravity, with what the elements answer to the round-off of their places; (n,).
     """
 
     jacobian: Vector
@@ -75,14 +75,21 @@ class AtRest:
 
 
 def at_rest(rows: Rows) -> AtRest:
-    """Read the design position of a compiled car, in whose model `qpos_spring` is `qpos0`."""
-    data = mujoco.MjData(rows.model)
+    """Read the design position of a compiled car.
+
+    Args:
+        rows: of its elements, without static forces.
+    """
+    data, own = mujoco.MjData(rows.model), rows.layout.dampers
     with installed(rows):
         mujoco.mj_forward(rows.model, data)
+    # What is there besides is constant in the dampers, and in the springs inside joints.
+    weight = data.qfrc_smooth - data.qfrc_passive - unsolved(rows.layout, np.zeros(rows.model.nv))
+    weight[own.dofs] += own.laws["shift"] - own.laws["rest_force"]
     return AtRest(
         jacobian=data.efc_J.reshape(rows.layout.row_count, rows.model.nv).copy(),
         turned=rows.rotation_jacobian(data),
-        weight=-data.qfrc_bias,
+        weight=weight,
     )
 
 
@@ -230,8 +237,8 @@ def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vecto
     scale = np.ones(size + count)
     scale[:size] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
     scaled = system * scale[:, None] * scale[None, :]
-    factors = scipy.linalg.lu_factor(scaled, check_finite=False)
-    near, _ = scipy.linalg.lapack.dgecon(factors[0], np.abs(scaled).sum(axis=0).max())
+    factors, _ = scipy.linalg.lu_factor(scaled, check_finite=False)
+    near, _ = scipy.linalg.lapack.dgecon(factors, np.abs(scaled).sum(axis=0).max())
     # The estimate is off by a factor; near the limit the condition itself is worth its singular values.
     if not near > CONDITION_SURE and not np.linalg.cond(scaled) <= 1.0 / LEAST_CONDITION:
         raise SimulationError(
@@ -240,7 +247,7 @@ def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vecto
         )
 
     def give(force: Vector) -> tuple[Vector, Vector]:
-        solution = scale * scipy.linalg.lu_solve(factors, scale * np.concatenate([force, np.zeros(count)]))
+        solution = scale * np.linalg.solve(scaled, scale * np.concatenate([force, np.zeros(count)]))
         return solution[:size], solution[size:]
 
     return give
