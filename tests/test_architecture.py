@@ -26,7 +26,7 @@ ROOMS: dict[str, set[str]] = {
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},
-    "linear": {"assembly", "laws", "parameters", "simulation"},
+    "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
     "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation"},
     "analysis": set(),
     "lumped": {"parameters", "laws", "linear"},

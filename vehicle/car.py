@@ -140,7 +140,7 @@ class Car:
 
     @cached_property
     def _terms(self) -> Terms:
-        return Terms(self.model, self.matrices)
+        return Terms(self.model, self.matrices, self.trimmed_body)
 
     @cached_property
     def _short(self) -> VariedCar | None:

@@ -23,6 +23,7 @@ import numpy.typing as npt
 import scipy
 
 from vehicle.assembly.law_numbers import TURNING, WIDTH, Numbers, element_numbers
+from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.matrices import DIFFERENCE_STEP, CarMatrices, differences, law_matrices
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.simulation.car_model import CarModel
@@ -55,10 +56,11 @@ class Terms:
     Args:
         car: compiled and trimmed car.
         matrices: of its linear form.
+        trimmed_body: its body without what is fixed to it.
     """
 
-    def __init__(self, car: CarModel, matrices: CarMatrices) -> None:
-        self.car, self.matrices = car, matrices
+    def __init__(self, car: CarModel, matrices: CarMatrices, trimmed_body: Superelement) -> None:
+        self.car, self.matrices, self.trimmed_body = car, matrices, trimmed_body
         model = car.model
         self.rows = Rows(model)
         standing = self.rows.anew(car.static.preload)
@@ -104,7 +106,7 @@ class Terms:
         if not all(map(_same_kinds, every, self.numbers)):
             return None
         numbers = {name: own for one in every for name, own in one.items()}
-        require_body_modes(vehicle, self.car.superelement)
+        require_body_modes(vehicle, self.trimmed_body)
         rows = self.rows.with_laws(numbers)
         springs, dampers = joint_springs(rows.model), joint_dampers(rows.model).copy()
         for name, (stiffness, damping) in _fields(numbers, "joint/"):
