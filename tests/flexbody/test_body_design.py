@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
 from vehicle.car import Car
+from vehicle.commands.body import main
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
-from vehicle.flexbody.build import BODY_DESIGN
+from vehicle.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.flexbody.superelement_file import read_superelement
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.vehicle import load_vehicle
 
@@ -139,3 +142,17 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
     vehicle = load_vehicle()
     with pytest.raises(ConfigurationError, match="mode_count: found 13, but 6 nodes have 12 elastic modes"):
         body_frame(read_design(file), vehicle.points, vehicle.body)
+
+
+def test_a_fit_prints_its_factors_and_builds_with_them(monkeypatch, capsys, tmp_path):
+    """The fit itself takes minutes and has its own tests; here another one takes its place."""
+    design = read_design(BODY_DESIGN)
+    told = {group: 1.1 * factor for group, factor in design.factors.items()}
+    monkeypatch.setattr("vehicle.flexbody.fit.fit_factors", lambda frame, start, weights: told)
+    assert main(["build", "--fit", "--output", str(tmp_path / "fitted.toml")]) == 0
+    printed = capsys.readouterr().out
+    group = design.fitted_groups[0]
+    assert f"members.{group}.factor = {told[group]:.5g}\n" in printed
+    built, shipped = read_superelement(tmp_path / "fitted.toml"), read_superelement(TRIMMED_BODY)
+    assert np.all(built.frequencies > shipped.frequencies)  # every fitted member is a tenth stiffer
+    assert np.all(built.frequencies < np.sqrt(1.1) * shipped.frequencies * 1.001)

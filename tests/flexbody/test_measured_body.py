@@ -9,6 +9,8 @@ from tests.flexbody.modal_test import true_body, write_modes
 from vehicle.analysis.modal_assurance import mac
 from vehicle.car import Car
 from vehicle.commands import body as command
+from vehicle.errors import DataError
+from vehicle.flexbody.sources.residual_table import read_residuals
 from vehicle.flexbody.superelement_file import read_superelement
 from vehicle.parameters.vehicle import load_vehicle
 
@@ -76,3 +78,35 @@ def test_what_a_test_does_not_see_is_the_residual_flexibility(measured, high_pie
     ratio = frequencies(cars["exact"]) / frequencies(car)
     assert 1.05 < ratio.max() < 1.08 and ratio.min() > 0.999
     assert seat_rail(cars["exact"], high_piece) == pytest.approx(seat_rail(car, high_piece), rel=0.02)
+
+
+def test_measured_residuals_bring_back_what_a_test_does_not_see(measured, car):
+    """Local stiffness of every attachment, measured on the true body [N/mm]: the car is the one on that body again."""
+    folder, _ = measured
+    rows = ["point,x [N/mm],y [N/mm],z [N/mm]"]
+    for name, own in car.trimmed_body.residual.items():
+        rows.append(f"{name}," + ",".join(f"{1e-3 / value:.9g}" for value in np.diag(own)))
+    (folder / "stiffness.csv").write_text("\n".join(rows), encoding="utf-8")
+    words = ["import", str(folder / "exact.uff"), "--output", str(folder / "whole.toml")]
+    assert command.main([*words, "--residual", str(folder / "stiffness.csv")]) == 0
+    whole = Car(load_vehicle(None, ["body.superelement=whole.toml"]), folder=folder)
+    np.testing.assert_allclose(frequencies(whole), frequencies(car), rtol=1e-3)  # 7 % without them
+    assert "residual flexibility of 15 points as measured" in whole.trimmed_body.provenance
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    {
+        "no unit": ("point,x,y,z\nseat,1,1,1", r"needed is point,x \[N/m\],y \[N/m\],z \[N/m\] for stiffnesses"),
+        "unknown": ("point,x [m/N],y [m/N],z [m/N]\nbonnet,1e-7,1e-7,1e-7", "'bonnet' is no point of the car; its"),
+        "twice": ("point,x [N/m],y [N/m],z [N/m]\nseat,1e7,1e7,1e7\nseat,1e7,1e7,1e7", "'seat' is given twice"),
+        "zero": ("point,x [N/m],y [N/m],z [N/m]\nseat,1e7,0,1e7", "seat: found 1e7,0,1e7, needed are three numbers"),
+        "word": ("point,x [N/m],y [N/m],z [N/m]\nseat,1e7,stiff,1e7", "needed are three numbers above 0"),
+        "empty": ("", "found the head ''"),
+    }.values(),
+)
+def test_a_bad_table_of_residuals_is_refused(text, message, tmp_path):
+    file = tmp_path / "residual.csv"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(DataError, match=message):
+        read_residuals(file, ("seat", "seat_rail"))

@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.random_road import random_road
 from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
-from vehicle.flexbody.build import BODY_DESIGN, TRIMMED_BODY
+from vehicle.flexbody.library import BODY_DESIGN, TRIMMED_BODY
 from vehicle.flexbody.symmetry import parity
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.vehicle import load_vehicle

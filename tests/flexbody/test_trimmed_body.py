@@ -9,9 +9,9 @@ import scipy.optimize
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
-from vehicle.flexbody.build import BODY_DESIGN, TRIMMED_BODY
 from vehicle.flexbody.fit import TORSION_HZ, fit_factors, residuals
 from vehicle.flexbody.inertia import about_cog, inertia_tensor, second_moments
+from vehicle.flexbody.library import BODY_DESIGN, TRIMMED_BODY
 from vehicle.flexbody.mode_names import global_patterns, modal_assurance
 from vehicle.flexbody.modes import rigid_shapes
 from vehicle.flexbody.node_masses import body_masses, matched_masses

@@ -13,7 +13,7 @@ from vehicle.car import Car
 from vehicle.commands import body as body_command
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.beam import frame_stiffness
-from vehicle.flexbody.build import BODY_DESIGN
+from vehicle.flexbody.library import BODY_DESIGN
 from vehicle.flexbody.modes import condense_rotations
 from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.matrices import car_matrices

@@ -19,6 +19,10 @@ from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.vehicle import Vehicle
 
 PACKAGE_FOLDER = FOCUS_FILE.parent
+BODY_DESIGN = PACKAGE_FOLDER / "body_design.toml"
+TRIMMED_BODY = PACKAGE_FOLDER / "trimmed_body.toml"
+"""The shipped design, and its superelement on the shipped car for those who want it as it was fitted; it is written by
+`python -m vehicle body build --output`."""
 _DESIGN = re.compile(r"""^format *= *["']body design""", re.MULTILINE)
 
 

@@ -19,6 +19,11 @@
     });
     car.size = Math.max(...Array.from({ length: n }, (_, i) =>
       Math.hypot(...[0, 1, 2].map((axis) => car.points[3 * i + axis] - car.middle[axis]))));
+    // How high the car is on the page, seen from the corner: a tall body must not be cut.
+    const [a, e] = VIEWS.corner.map((angle) => angle * TURN / 360);
+    const rise = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
+    car.high = Math.max(...Array.from({ length: n }, (_, i) =>
+      Math.abs([0, 1, 2].reduce((sum, axis) => sum + rise[axis] * (car.points[3 * i + axis] - car.middle[axis]), 0))));
     for (const mode of Object.values(car.states).flat()) {
       mode.reach = Array.from({ length: n }, (_, i) => Math.sqrt([0, 1, 2].reduce(
         (sum, axis) => sum + mode.re[3 * i + axis] ** 2 + mode.im[3 * i + axis] ** 2, 0)) / data.full);
@@ -34,7 +39,7 @@
     const right = [-Math.sin(a), Math.cos(a), 0];
     const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
     const eye = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
-    const scale = zoom * Math.min(0.47 * width, 0.86 * height) / car.size, places = [];
+    const scale = zoom * Math.min(0.47 * width / car.size, 0.86 * height / car.size, 0.42 * height / car.high), places = [];
     for (let i = 0; i < car.points.length; i += 3) {
       let x = 0, y = 0, z = 0;
       for (let axis = 0; axis < 3; axis++) {

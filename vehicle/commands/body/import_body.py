@@ -96,6 +96,12 @@ def add(tasks: Any) -> None:
     )
     taken.add_argument("--map", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car")
     taken.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
+    taken.add_argument(
+        "--residual",
+        type=Path,
+        metavar="FILE",
+        help="beside modes: what attachments give way beyond them, a table point,x [N/m],y [N/m],z [N/m], or in m/N",
+    )
     taken.add_argument("--name", help="name of the body; that of the file by default")
     output_options(taken)
     vehicle_options(taken)
@@ -105,6 +111,7 @@ def add(tasks: Any) -> None:
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Read the source, write the model and print what it is."""
     from vehicle.flexbody.sources.interfaces import interfaces, read_map
+    from vehicle.flexbody.sources.residual_table import read_residuals
     from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
 
     require_output(options)
@@ -119,6 +126,8 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     matrices = _matrices(options)
     if matrices is None and options.method != METHODS[0]:
         raise ConfigurationError(f"--method {options.method}: needs stiffness and mass; {options.file} holds modes")
+    if matrices is not None and options.residual:
+        raise ConfigurationError(f"--residual {options.residual}: follows from stiffness and mass; leave it out")
     if matrices is not None:
         body = matrices.scaled(LENGTHS[options.length_unit], MASSES[options.mass_unit]).placed(options.axes, origin)
         found = interfaces(body, places, **near)
@@ -128,7 +137,8 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
         given = _given_modes(options).placed(options.axes, origin)
         found = interfaces(given.body, places, **near)
-        modes = normalised(given, _vehicle_mass(vehicle), options.modal_mass, options.up_to)
+        residual = read_residuals(options.residual, places) if options.residual else {}
+        modes = normalised(given, _vehicle_mass(vehicle), options.modal_mass, options.up_to, residual)
     model = superelement_of(modes, found, name=options.name or options.file.stem, damping=options.damping)
     write(options, model)
     print("\n".join(report(model, vehicle)))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -94,7 +96,13 @@ def modes_of_measurement(found: Measurement) -> GivenModes:
     )
 
 
-def normalised(given: GivenModes, rigid: MassProperties, stated_mass: float | None, up_to: float) -> BodyModes:
+def normalised(
+    given: GivenModes,
+    rigid: MassProperties,
+    stated_mass: float | None,
+    up_to: float,
+    residual: Mapping[str, FloatArray] = MappingProxyType({}),
+) -> BodyModes:
     """Elastic modes with modal mass 1.
 
     Args:
@@ -102,6 +110,7 @@ def normalised(given: GivenModes, rigid: MassProperties, stated_mass: float | No
         rigid: mass properties of the body.
         stated_mass: modal mass that the user states where the source tells none [kg].
         up_to: modes above are left out [Hz].
+        residual: flexibility of attachments beyond these modes [m/N], (3, 3) each, where it was measured.
 
     Raises:
         DataError: a shape without modal mass, one that is far from real, or no elastic mode.
@@ -149,9 +158,13 @@ def normalised(given: GivenModes, rigid: MassProperties, stated_mass: float | No
         remarks.append(f"modal mass {stated_mass:g} kg stated by the user")
     if largest > 0.0:
         remarks.append(f"complex shapes made real; their imaginary part is at most {largest:.2%} of the real one")
-    remarks.append("without K and M there is no residual flexibility: forces at a node bend the kept modes only")
+    if residual:
+        remarks.append(f"residual flexibility of {len(residual)} points as measured")
+    else:
+        remarks.append("without K and M there is no residual flexibility: forces at a node bend the kept modes only")
     return BodyModes(
         body=given.body,
+        residual=residual,
         frequencies=frequencies[elastic],
         damping_ratio=given.damping_ratio[elastic],
         vectors=np.array(columns).T,
