@@ -40,6 +40,7 @@ class Rows(NamedTuple):
         pieces: of the laws.
         limit, full: friction limits; velocities at which the friction is full.
         inputs: forces, slopes, z' and mean z' of a step.
+        viscous: damping constants that the poles hold.
         velocity, earlier: velocities now, and a step ago.
         hold, stuck, stick: halves of F_c now, 1 where the damper stuck at the end of the last step, 1 where in all of
             it.
@@ -57,6 +58,7 @@ class Rows(NamedTuple):
     limit: int
     full: int
     inputs: int
+    viscous: int
     velocity: int
     earlier: int
     hold: int
@@ -73,8 +75,8 @@ class Reading(NamedTuple):
         turns: a tile of rotations for each body.
         loads: number of the levels that are tyre loads, which come first.
         always: whether levels are needed at every sample; else now and then.
-        wanted: out of which of the rows of a sample the channels are made.
-        accelerations: how many of them are accelerations, which come first.
+        wanted: row of a sample that each channel is made of, positions first; -1 of one that is not made here.
+        rest: what is added to it; (channels, LANES).
         weights: of the differences of positions, for `acceleration`; (2 AHEAD,).
     """
 
@@ -84,7 +86,7 @@ class Reading(NamedTuple):
     loads: int
     always: bool
     wanted: Any
-    accelerations: int
+    rest: Any
     weights: Any
 
 

@@ -19,6 +19,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from vehicle.compiler import OPTIONS, numba_module, stamp
 from vehicle.laws.damper import friction_limit
 from vehicle.reduced.lane_rows import ELEMENT, INNER, LANES, PAST, TILE, Reading, Rows
@@ -214,7 +216,7 @@ def march(
     peaks: Any,
     out: Any,
     first: int,
-    used: int,
+    cars: Any,
     inputs: Any,
     dampers: Any,
 ) -> None:
@@ -231,9 +233,9 @@ def march(
         x: states of the sample before and of INNER samples; changed in place.
         y: outputs of PAST samples before, and room for INNER; changed in place.
         peaks: of the run: squares of rotations, lowest and highest of each level; changed in place.
-        out: channels; (channels, used cars, samples).
+        out: channels of all cars; (channels, cars, samples).
         first: number of the first sample.
-        used: cars in the lanes.
+        cars: which of them are in the lanes.
         inputs, dampers: tuples as long as the inputs of a step and the dampers.
     """
     count, plates = len(dampers), rates.shape[1] // 2
@@ -244,7 +246,8 @@ def march(
     width = TILE * (position_tiles + level_tiles) + 2 * count
     kept = TILE * (position_tiles + level_tiles)
     half = alike(ELEMENT(0.5))
-    done, step = 0, 0
+    # Not literals, or what takes them would be compiled once more.
+    done, step, none_before = 0, np.int64(0), np.int64(-1)
     zero = alike(ELEMENT(0.0))
     for i in range(TILE):
         store(t, r.room + i, zero)
@@ -258,12 +261,14 @@ def march(
                 if phase == 0:
                     row = (PAST + sample - 1) * width + kept + count
                     for i in range(count):
-                        store(y, row + i, load(y, row + i) + half * load(t, r.inputs + i))
+                        store(y, row + i, load(y, row + i) - half * load(t, r.inputs + i))
             keep_states(t, r, rates, step - 1, x, (sample + 1) * states, inputs, dampers)
             row = (PAST + sample) * width + kept
             for i in range(count):
-                store(y, row + i, load(t, r.velocity + i))
-                store(y, row + count + i, half * load(t, r.inputs + i))
+                # The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
+                speed = load(t, r.velocity + i)
+                store(y, row + i, speed)
+                store(y, row + count + i, load(t, r.viscous + i) * speed - half * load(t, r.inputs + i))
         for sample in range(size):
             at, row = (sample + 1) * states, (PAST + sample) * width
             for tile in range(position_tiles):
@@ -272,7 +277,7 @@ def march(
             row += TILE * position_tiles
             looking = (first + done + sample - 1) % LOOK_EVERY == 0
             for tile in range(level_tiles if looking or reading.always else 0):
-                found = read(reading.levels, tile, states, x, at, -1, heights, done + sample, none)
+                found = read(reading.levels, tile, states, x, at, none_before, heights, done + sample, none)
                 keep_tile(y, row + tile * TILE, found)
                 for k in range(tile * TILE, (tile + 1) * TILE):
                     # Tyre loads come first, and are looked at now and then.
@@ -281,7 +286,7 @@ def march(
                         store(peaks, low, smaller(value, load(peaks, low)))
                         store(peaks, low + 1, larger(value, load(peaks, low + 1)))
             for tile in range(bodies if looking else 0):
-                turn = read(reading.turns, tile, states, x, at, -1, heights, done + sample, none)
+                turn = read(reading.turns, tile, states, x, at, none_before, heights, done + sample, none)
                 angle = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]
                 store(peaks, tile, larger(angle, load(peaks, tile)))
         for sample in range(size):
@@ -291,15 +296,17 @@ def march(
                 middle = PAST + sample - AHEAD
                 for channel in range(reading.wanted.shape[0]):
                     row = reading.wanted[channel]
+                    if row < 0:
+                        continue
                     value = load(y, middle * width + row)
-                    if channel < reading.accelerations:
+                    if row < TILE * position_tiles:
                         value = zero
                         for k in range(PAST):
                             past = load(y, (middle - AHEAD + 1 + k) * width + row)
                             value = value + alike(reading.weights[k]) * past
                     store(t, r.room, value)
-                    for lane in range(used):
-                        out[channel, lane, index] = t[r.room, lane]
+                    for lane in range(cars.shape[0]):
+                        out[channel, cars[lane], index] = reading.rest[channel, lane] + t[r.room, lane]
         for k in range(PAST * width):
             store(y, k, load(y, size * width + k))
         for k in range(states):

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.errors import MissingPartError
+from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.laws.damper import pack
 from vehicle.names import channel_units
 from vehicle.parameters.elements import Damper
-from vehicle.reduced.lane_rows import INNER, LANES, PAST, TILE, Reading, aligned
-from vehicle.reduced.lane_tables import CarFactors, LaneTable, fits
+from vehicle.reduced.lane_factors import CarFactors, car_factors
+from vehicle.reduced.lane_rows import ELEMENT, INNER, LANES, PAST, TILE, Reading, aligned
+from vehicle.reduced.lane_tables import LaneTable, Table, damper_lane
 from vehicle.reduced.march import MISSING, has_compiler
 from vehicle.reduced.plate_samples import plate_samples
 from vehicle.reduced.pole_model import PoleModel
@@ -31,7 +31,6 @@ from vehicle.reduced.validity import (
     left_pieces,
     rotation_outputs,
     turning_bodies,
-    tyre_outputs,
 )
 from vehicle.simulation.acceleration import AHEAD, WEIGHTS
 from vehicle.simulation.recording import Recording, Statistics
@@ -93,7 +92,7 @@ def simulate_many(
     """Run many cars of one topology on the same plates with the reduced engine.
 
     The row of a car is the same, bit for bit, whatever the others are and however many. A car that the lanes do
-    not know (`fits`) is run alone, as `simulate_reduced` does it.
+    not know (`car_factors`) is run alone, as `simulate_reduced` does it.
 
     Args:
         models: the cars as sums over their poles: the same wheels, dampers, bodies and channels; any numbers.
@@ -109,16 +108,20 @@ def simulate_many(
 
     Raises:
         MissingPartError: numba is not installed.
+        ConfigurationError: there are no cars.
     """
     if not has_compiler():
         raise MissingPartError(MISSING)
+    if not models:
+        raise ConfigurationError("simulate_many: no cars were given")
     interval = 1.0 / record_rate
-    samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
-    found = {name: np.empty((len(models), samples)) for name in channels}
-    statistics: dict[int, Statistics] = {}
     timestep = interval / int(np.ceil(interval / step - 1e-9))
-    together = [car for car, laws in enumerate(dampers) if fits(models[car], laws, timestep)]
-    for car in sorted({*range(len(models))} - {*together}):
+    samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
+    table = np.empty((len(channels), len(models), samples))
+    statistics: dict[int, Statistics] = {}
+    wheels = models[0].matrices.system.inputs
+    factors = car_factors(models, dampers, timestep, [wheels.index(wheel) for wheel in signal.wheels])
+    for car in {*range(len(models))} - {*factors}:
         run = simulate_reduced(
             models[car],
             signal,
@@ -128,17 +131,28 @@ def simulate_many(
             channels=channels,
         )
         statistics[car] = run.statistics
-        for name in channels:
-            found[name][car] = run[name]
+        table[:, car] = [run[name] for name in channels]
+    together = list(factors)
     for first in range(0, len(together), LANES):
         cars = together[first : first + LANES]
-        group = _Group([models[car] for car in cars], [dampers[car] for car in cars], signal, interval, step)
-        for name, values in group.run(channels, [tyre_load[car] for car in cars]).items():
-            found[name][cars] = values
-        statistics.update(zip(cars, group.statistics(), strict=True))
+        started = clock.perf_counter()
+        run_of = _Group([models[car] for car in cars], [factors[car] for car in cars], signal, interval, timestep)
+        found = run_of.fill(table, cars, channels, [dampers[car] for car in cars], [tyre_load[car] for car in cars])
+        wall = (clock.perf_counter() - started) / len(cars)
+        for car, validity in zip(cars, found, strict=True):
+            statistics[car] = Statistics(
+                engine="reduced",
+                callback="native",
+                timestep=timestep,
+                steps=(samples - 1) * round(interval / timestep),
+                wall_time=wall,
+                warnings=validity.warnings(),
+                within_validity=validity.held,
+                energies=None,
+            )
     return ManyRuns(
         time=uniform_time(samples=samples, timestep=interval),
-        channels=found,
+        channels=dict(zip(channels, table, strict=True)),
         units=channel_units(tuple(channels)),
         excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),
         statistics=tuple(statistics[car] for car in range(len(models))),
@@ -149,141 +163,141 @@ class _Group:
     """Up to eight cars in the lanes.
 
     Args:
-        models, dampers: of the cars.
-        signal, step: as of `simulate_many`.
+        models, factors: of the cars.
+        signal: displacement of the plates.
         interval: between two samples [s].
+        timestep: [s].
     """
 
     def __init__(
         self,
         models: Sequence[PoleModel],
-        dampers: Sequence[Sequence[Damper]],
+        factors: Sequence[CarFactors],
         signal: Signal,
         interval: float,
-        step: float,
+        timestep: float,
     ) -> None:
-        self.started = clock.perf_counter()
-        self.models, self.dampers, self.driven, self.interval = models, dampers, signal.wheels, interval
-        self.wheels = models[0].matrices.system.inputs
-        self.every = int(np.ceil(interval / step - 1e-9))
-        self.samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
-        self.timestep = interval / self.every
-        self.plates = plate_samples(signal, self.timestep, (self.samples - 1) * self.every, AHEAD * self.every)
-        columns = [self.wheels.index(wheel) for wheel in signal.wheels]
-        cars = [CarFactors(model, self.timestep, columns) for model in models]
+        self.models, self.factors, self.driven = models, factors, signal.wheels
+        self.every, self.interval, self.timestep = round(interval / timestep), interval, timestep
+        steps = int(np.floor(signal.duration / interval + 1e-6)) * self.every
+        self.plates = plate_samples(signal, timestep, steps, AHEAD * self.every)
         self.start = self.plates[:1].reshape(-1, 2).T
-        self.lanes = LaneTable(cars, dampers, self.start)
-        self.validity: list[Validity] = []
 
-    def run(self, channels: Sequence[str], tyre_load: Sequence[Mapping[str, float]]) -> dict[str, Vector]:
-        """The channels of the cars; (cars, samples) each."""
-        models, lanes, used, wheels = self.models, self.lanes, len(self.models), self.wheels
-        tyres = {f"tyre_{wheel}_force_z": index for index, wheel in enumerate(wheels)}
-        moved = [name for name in channels if name in models[0].matrices.system.outputs]
-        bodies = turning_bodies(models[0].matrices)
-        # All tyres and bends, so that no digit depends on what is asked for.
-        reading = Reading(
-            positions=lanes.tiles([model.outputs(moved) for model in models]),
-            levels=lanes.tiles([tyre_outputs(model) + bend_outputs(model) for model in models]),
-            turns=lanes.tiles([rotation_outputs(model, bodies) for model in models], each=3),
-            loads=len(tyres),
-            always=any(name in tyres for name in channels) or bool(models[0].matrices.bends),
-            wanted=np.zeros(0, dtype=np.int64),
-            accelerations=len(moved),
-            weights=(np.cumsum(WEIGHTS[::-1])[::-1][1:] / self.interval**2).astype(np.float32),
-        )
+    def fill(
+        self,
+        table: Vector,
+        cars: Sequence[int],
+        channels: Sequence[str],
+        dampers: Sequence[Sequence[Damper]],
+        tyre_load: Sequence[Mapping[str, float]],
+    ) -> list[Validity]:
+        """Fill the rows of the cars.
+
+        Args:
+            table: (channels, all cars, samples).
+            cars: rows of these cars.
+            channels: their names.
+            dampers, tyre_load: of these cars.
+
+        Returns:
+            What the motion of each car has shown.
+        """
+        system, bends = self.models[0].matrices.system, self.models[0].matrices.bends
+        bodies = turning_bodies(self.models[0].matrices)
+        lanes = LaneTable(self.factors, dampers, self.start)
+        count = len(dampers[0])
+        # In a sample: positions, all tyre loads and bends, damper velocities, damper forces.
+        moved = [name for name in channels if name in system.outputs]
+        tyres = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
         levels = TILE * -(-len(moved) // TILE)
-        dampers = levels + TILE * -(-(len(tyres) + len(models[0].matrices.bends)) // TILE)
-        count = len(self.dampers[0])
-        rows = {name: row for row, name in enumerate(moved)}
-        rows |= {name: levels + row for name, row in tyres.items() if name in channels}
-        for row, wheel in enumerate(wheels[:count]):
-            if {f"damper_{wheel}_velocity", f"damper_{wheel}_force"} & set(channels):
-                rows |= {f"damper_{wheel}_velocity": dampers + row}
-            if f"damper_{wheel}_force" in channels:
-                rows |= {f"damper_{wheel}_force": dampers + count + row}
-        reading = reading._replace(wanted=np.array(list(rows.values()), dtype=np.int64))
-        out = np.empty((len(rows), used, self.samples))
-        peaks = self._march(reading, levels, dampers + 2 * count, out)
-        found = dict(zip(rows, out, strict=True))
-        for name, index in tyres.items():
-            if name in found:
-                found[name] += np.array([[load[wheels[index]]] for load in tyre_load])
-        for row, wheel in enumerate(wheels[:count]):
-            name = f"damper_{wheel}_force"
-            if name in found:
-                viscous = np.array([[model.matrices.viscous[row]] for model in models])
-                rest = np.array([[pack(own[row])["rest_force"]] for own in self.dampers])
-                found[name] = viscous * found[f"damper_{wheel}_velocity"] - found[name] + rest
-        for wheel in wheels:
-            if f"plate_{wheel}_displacement" in channels:
-                height = np.zeros(self.samples)
-                if wheel in self.driven:
-                    column = 2 * self.driven.index(wheel)
-                    height = self.plates[: self.samples * self.every : self.every][:, column]
-                found[f"plate_{wheel}_displacement"] = np.tile(height, (used, 1))
-        self._judge(peaks, bodies, tyre_load)
-        return {name: found[name] for name in channels}
+        ends = levels + TILE * -(-(len(tyres) + len(bends)) // TILE)
+        rows = {name: row for row, name in enumerate(moved)} | {name: levels + row for row, name in enumerate(tyres)}
+        rest = np.zeros((len(channels), LANES))
+        for index, wheel in enumerate(system.inputs[:count]):
+            rows |= {f"damper_{wheel}_velocity": ends + index, f"damper_{wheel}_force": ends + count + index}
+        for row, name in enumerate(channels):
+            if name in tyres:
+                rest[row, : len(cars)] = [load[tyres[name]] for load in tyre_load]
+            elif rows.get(name, 0) >= ends + count:
+                rest[row, : len(cars)] = [
+                    damper_lane(own[rows[name] - ends - count])[0]["rest_force"] for own in dampers
+                ]
+            elif name not in rows:
+                table[row, cars] = self._plate(name, table.shape[2])
+        outputs = [
+            model.outputs([*moved, *tyres]) + bend_outputs(model) + rotation_outputs(model, bodies)
+            for model in self.models
+        ]
+        weights = [car.weights(one) for car, one in zip(self.factors, outputs, strict=True)]
+        parts = np.cumsum([0, len(moved), len(tyres) + len(bends), 3 * len(bodies)]).tolist()
+        reading = Reading(
+            positions=lanes.tiles(weights, slice(*parts[0:2])),
+            levels=lanes.tiles(weights, slice(*parts[1:3])),
+            turns=lanes.tiles(weights, slice(*parts[2:4]), each=3),
+            loads=len(tyres),
+            always=bool(bends) or any(name in tyres for name in channels),
+            wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
+            rest=rest,
+            weights=(np.cumsum(WEIGHTS[::-1])[::-1][1:] / self.interval**2).astype(ELEMENT),
+        )
+        y = aligned((PAST + INNER) * (ends + 2 * count))
+        for lane, one in enumerate(outputs):
+            # The first sample: a car that has not yet moved, over plates that may stand anywhere.
+            own, chosen = slice(*parts[1:3]), self.factors[lane].columns
+            begin = np.hstack([one.height[own][:, chosen], one.velocity[own][:, chosen]]) @ self.start.ravel()
+            y[(PAST - 1) * (ends + 2 * count) + levels :, lane][: len(begin)] = begin
+        peaks = aligned(len(bodies) + 2 * (ends - levels))
+        self._march(lanes, reading, y, peaks, table, cars, count)
+        return [
+            self._judge(peaks[:, lane].astype(float), model, bodies, static)
+            for lane, (model, static) in enumerate(zip(self.models, tyre_load, strict=True))
+        ]
 
-    def _march(self, reading: Reading, levels: int, width: int, out: Vector) -> Vector:
-        """Fill the channels block by block; returns the peaks."""
+    def _plate(self, channel: str, samples: int) -> Vector | float:
+        """Displacement of a plate at the samples."""
+        for column, wheel in enumerate(self.driven):
+            if channel == f"plate_{wheel}_displacement":
+                return self.plates[: samples * self.every : self.every][:, 2 * column]
+        return 0.0
+
+    def _march(
+        self,
+        lanes: LaneTable,
+        reading: Reading,
+        y: Table,
+        peaks: Table,
+        table: Vector,
+        cars: Sequence[int],
+        count: int,
+    ) -> None:
+        """Block by block; arguments as of `vehicle.reduced.lanes.march`."""
         from vehicle.reduced.lanes import compiled_lanes
 
-        march, lanes, every, count = compiled_lanes(), self.lanes, self.every, len(self.dampers[0])
-        m = lanes.plates
-        x, y = aligned((INNER + 1) * lanes.states), aligned((PAST + INNER) * width)
-        for lane, model in enumerate(self.models):
-            # The first sample: a car that has not yet moved, over plates that may stand anywhere.
-            own = tyre_outputs(model) + bend_outputs(model)
-            begin = own.height[:, lanes.cars[lane].chosen] @ self.start[0]
-            begin += own.velocity[:, lanes.cars[lane].chosen] @ self.start[1]
-            y[(PAST - 1) * width + levels :][: len(begin), lane] = begin
-        peaks = aligned(len(reading.turns) // lanes.states // TILE + 2 * (width - 2 * count - levels))
+        march, m, every = compiled_lanes(), lanes.plates, self.every
+        x, own = aligned((INNER + 1) * lanes.states), np.array(cars, dtype=np.int64)
         tuples = (0.0,) * (2 * (count + m)), (0.0,) * count
-        done, end = 1, self.samples + AHEAD
+        done, end = 1, table.shape[2] + AHEAD
         while done < end:
-            size = min(BLOCK, end - done)
-            first = (done - 1) * every
+            size, first = min(BLOCK, end - done), (done - 1) * every
             piece = self.plates[first : first + size * every + 1]
-            rates = np.zeros((len(piece), 2 * m), dtype=np.float32)
+            rates = np.zeros((len(piece), 2 * m), dtype=ELEMENT)
             rates[:, :m] = piece[:, 1::2]
             rates[:-1, m:] = np.diff(piece[:, 0::2], axis=0) / self.timestep
             ends = piece[::every, 0::2]
-            heights = np.hstack([ends[1:], np.diff(ends, axis=0)]).astype(np.float32)
-            march(lanes.table, lanes.rows, lanes.laws, rates, heights, every, reading, x, y, peaks, out, done,
-                  len(self.models), *tuples)  # fmt: skip
+            heights = np.hstack([ends[1:], np.diff(ends, axis=0)]).astype(ELEMENT)
+            march(lanes.table, lanes.rows, lanes.laws, rates, heights, every, reading, x, y, peaks, table, done, own,
+                  *tuples)  # fmt: skip
             done += size
-        return peaks
 
-    def _judge(self, peaks: Vector, bodies: Sequence[str], tyre_load: Sequence[Mapping[str, float]]) -> None:
-        """What the motion of each car has shown."""
-        for lane, (model, static) in enumerate(zip(self.models, tyre_load, strict=True)):
-            seen = peaks[:, lane].astype(float)
-            turned, low, high = seen[: len(bodies)], seen[len(bodies) :: 2], seen[len(bodies) + 1 :: 2]
-            bends, wheels = model.matrices.bends, len(self.wheels)
-            own = slice(wheels, wheels + len(bends))
-            self.validity.append(
-                Validity(
-                    angles=dict(zip(bodies, np.sqrt(turned).tolist(), strict=True)),
-                    loads={wheel: static[wheel] + float(low[k]) for k, wheel in enumerate(self.wheels)},
-                    one_sided=model.matrices.one_sided,
-                    left=left_pieces(bends, low[own], high[own]),
-                )
-            )
-
-    def statistics(self) -> list[Statistics]:
-        """Of each car."""
-        wall = (clock.perf_counter() - self.started) / len(self.models)
-        return [
-            Statistics(
-                engine="reduced",
-                callback="native",
-                timestep=self.timestep,
-                steps=(self.samples - 1) * self.every,
-                wall_time=wall,
-                warnings=validity.warnings(),
-                within_validity=validity.held,
-                energies=None,
-            )
-            for validity in self.validity
-        ]
+    @staticmethod
+    def _judge(seen: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]) -> Validity:
+        """What the motion of a car has shown; its peaks are those of `vehicle.reduced.lanes.march`."""
+        turned, low, high = seen[: len(bodies)], seen[len(bodies) :: 2], seen[len(bodies) + 1 :: 2]
+        wheels, bends = model.matrices.system.inputs, model.matrices.bends
+        own = slice(len(wheels), len(wheels) + len(bends))
+        return Validity(
+            angles=dict(zip(bodies, np.sqrt(turned).tolist(), strict=True)),
+            loads={wheel: tyre_load[wheel] + load for wheel, load in zip(wheels, low.tolist(), strict=False)},
+            one_sided=model.matrices.one_sided,
+            left=left_pieces(bends, low[own], high[own]),
+        )

@@ -94,7 +94,7 @@ class PoleModel:
         m, wheels = self.matrices, self.matrices.system.inputs
         index = wheels.index(channel.removeprefix("tyre_").removesuffix("_force_z"))
         spring = m.system.input_stiffness[:, index] @ self.modal
-        drag = m.system.input_damping[:, index] @ (self.modal * self.poles)
+        drag = (m.system.input_damping[:, index] @ self.modal) * self.poles
         here = np.zeros(len(wheels))
         here[index] = 1.0
         return -(spring + drag), m.tyre_stiffness[index] * here, m.tyre_damping[index] * here

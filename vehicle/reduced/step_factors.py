@@ -47,16 +47,17 @@ class StepFactors:
 
 def phi_functions(x: Complex, highest: int) -> list[Complex]:
     """phi_1 ... phi_highest at x, phi_k(x) = sum_i x^i / (i + k)!."""
-    recursive = [np.expm1(np.where(np.abs(x) < SERIES_BELOW, 1.0, x)) / np.where(np.abs(x) < SERIES_BELOW, 1.0, x)]
-    safe = np.where(np.abs(x) < SERIES_BELOW, 1.0, x)
+    far, none = np.abs(x) >= SERIES_BELOW, np.zeros_like(x)
+    safe, small = np.where(far, x, 1.0), np.where(far, 0.0, x)
+    recursive = [np.expm1(safe) / safe]
     for k in range(1, highest):
         recursive.append((recursive[-1] - 1.0 / factorial(k)) / safe)
     found = []
-    for k, far in enumerate(recursive, start=1):
-        near = np.zeros_like(x)
+    for k, beyond in enumerate(recursive, start=1):
+        near = none
         for i in reversed(range(SERIES_TERMS)):
-            near = near * np.where(np.abs(x) < SERIES_BELOW, x, 0.0) + 1.0 / factorial(i + k)
-        found.append(np.where(np.abs(x) < SERIES_BELOW, near, far))
+            near = near * small + 1.0 / factorial(i + k)
+        found.append(np.where(far, beyond, near))
     return found
 
 
