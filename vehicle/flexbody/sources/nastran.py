@@ -60,7 +60,7 @@ def entries(path: Path) -> Iterator[tuple[int, str, list[str]]]:
             text = text.expandtabs(8)
             head = text[:8].strip()
             size, width = (16, 4) if "*" in head else (8, 8)
-            fields = [text[i : i + size].strip() for i in range(8, min(len(text), 72), size)]
+            fields = [text[i : i + size].strip() for i in range(8, len(text), size)]
         fields = (fields + [""] * width)[:width]
         if head[:1] in ("", "+", "*"):
             if started is not None:
