@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from vehicle.car import Car
+from vehicle.commands.body import main as body_command
 from vehicle.commands.report import main
 from vehicle.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.report.comfort_class import reactions
@@ -199,3 +200,18 @@ def test_a_mode_of_the_page_is_that_of_the_car(reported):
     overlap = abs(np.vdot(told, moved)) ** 2 / (np.vdot(told, told).real * np.vdot(moved, moved).real)
     assert overlap > 0.99999
     assert np.linalg.norm(unit_factor(moved) * moved, axis=1).max() == pytest.approx(1.0)
+
+
+def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(reported, capsys):
+    text = unescape(re.sub(r"<[^>]+>", "", reported.text))
+    told = re.findall(r"At ([\d.]+) Hz the vertical acceleration at the seat rail is made by (.+?) [+-]\d+ %", text)
+    assert 1 <= len(told) <= 3
+    peaks = json.loads((reported.folder / "summary.json").read_text())["peaks"]["seat_rail_acc_z"]
+    highest = max(peaks, key=lambda peak: peak["magnitude"])["frequency_hz"]
+    first = next(name for at, name in told if float(at) == pytest.approx(highest, abs=0.051))
+    state = re.search(r"linear car with dampers (\w+): `python -m vehicle body participation`", text)[1]
+    words = ["participation", "--at", str(highest), "--damper", state, "--json"]
+    assert body_command([*words, "--vehicle", str(reported.folder / "vehicle.toml")]) == 0
+    parts = {one["name"]: one["share"] for one in json.loads(capsys.readouterr().out)["contributions"]}
+    assert first in parts and abs(parts[first]) == max(map(abs, parts.values()))
+    assert f"made by {first} {100 * parts[first]:+.0f} %" in text

@@ -10,6 +10,7 @@ import numpy as np
 
 from vehicle.linear.modes import Mode
 from vehicle.names import side_of
+from vehicle.report.body_modes import body_modes
 from vehicle.report.comfort_class import CREST_FACTOR_LIMIT, reactions
 from vehicle.report.finished_run import FinishedRun
 from vehicle.report.markup import number
@@ -43,6 +44,7 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     summary = run.summary
     found = [Finding("Dampers", text) for text in _dampers(summary)]
     found += [Finding("Resonances", text) for text in _resonances(run, modes)]
+    found += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
     found += [Finding("Comfort", text) for text in _comfort(summary)]
     found += [Finding("Linearity", text) for text in _linearity(run)]
     return [*found, *(Finding("Computation", text) for text in _computation(summary))]
@@ -112,11 +114,16 @@ def nearest_mode(run: FinishedRun, frequency: float, modes: Mapping[str, Sequenc
     Returns:
         State of the dampers in words, and the mode; None where none is near.
     """
-    state = "sliding" if max(_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
+    state = damper_state(run)
     nearest = min(modes.get(state, ()), key=lambda mode: abs(mode.frequency - frequency), default=None)
     if nearest is not None and abs(nearest.frequency - frequency) > NEAR * frequency:
         nearest = None
     return f"dampers {state}", nearest
+
+
+def damper_state(run: FinishedRun) -> str:
+    """What its dampers do most of the time, "stuck" or "sliding"."""
+    return "sliding" if max(_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
 
 
 def _comfort(summary: Mapping[str, Any]) -> list[str]:
