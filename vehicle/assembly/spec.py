@@ -89,16 +89,21 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
     Raises:
         DataError: the superelement lacks a node where something acts on the body.
     """
-    car = vehicle.composition
-    nodes = attached_nodes(trimmed_body, car.attachments())
+    nodes = attached_nodes(trimmed_body, vehicle.composition.attachments())
     superelement, masses = trimmed_body, dict[str, float]()
-    for part in car.parts if vehicle.body.flexible else ():
+    for part in vehicle.composition.parts if vehicle.body.flexible else ():
         if part.seat is not None:
             masses[nodes[part.seat]] = masses.get(nodes[part.seat], 0.0) + part.numbers.mass
     if masses:
         superelement = with_attached_masses(trimmed_body, masses)
+    return assemble_on(vehicle, superelement)
+
+
+def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:
+    """Build the car on a body model that has the masses of what is fixed to it; else as `assemble`."""
+    car = vehicle.composition
     spec = _empty_spec(vehicle)
-    builder = _Builder(spec, vehicle, superelement, nodes)
+    builder = _Builder(spec, vehicle, superelement, attached_nodes(superelement, car.attachments()))
     builder.add_body()
     for part in car.parts:
         builder.add_part(part)

@@ -171,6 +171,31 @@ class Superelement:
             derived=True,
         )
 
+    def combined(self, spread: FloatArray, kept: Collection[str]) -> Superelement:
+        """The body in combinations of its modes, without springs, at the nodes that are kept.
+
+        Args:
+            spread: modal coordinates by the new ones, shape (modes, new).
+            kept: names of these nodes.
+        """
+        where = [self.node_index(node) for node in kept]
+        count = spread.shape[1]
+        return replace(
+            self,
+            nodes=tuple(kept),
+            positions=self.positions[where],
+            edges=np.zeros((0, 2)),
+            node_mass=None,
+            mass_properties=self.rigid,
+            frequencies=np.zeros(count),
+            damping_ratio=np.zeros(count),
+            shapes=np.tensordot(spread.T, self.shapes[:, where], 1),
+            rotations={node: spread.T @ turns for node, turns in self.rotations.items() if node in kept},
+            residual={node: value for node, value in self.residual.items() if node in kept},
+            mode_names=tuple(f"combination {number}" for number in range(1, count + 1)),
+            derived=True,
+        )
+
 
 def attached_nodes(body: Superelement, places: Mapping[str, Point]) -> dict[Point, str]:
     """The node of a body model at each point where something acts on it: found by its place, never by its name.

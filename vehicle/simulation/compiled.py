@@ -220,11 +220,9 @@ def _loop(mark: int) -> Any:
         for index in range(first, last + 1):
             move_plates(index, plates)
             recorded = index % order.every == 0
-            if recorded:
-                if (index // order.every) % order.pose_every == 0:
-                    b.poses[posed] = s.position
-                    posed += 1
-                b.modal_position[row] = s.position[order.first_position : order.first_position + order.modes]
+            if recorded and (index // order.every) % order.pose_every == 0:
+                b.poses[posed] = s.position
+                posed += 1
             call_step(order.step, order.model, order.data)
             if recorded:
                 # The constraint forces live in the arena, where each step may put them elsewhere.

@@ -36,6 +36,7 @@ from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import slope_at_rest
 from vehicle.simulation.control import control
 from vehicle.simulation.modal_rows import modal_rows
+from vehicle.simulation.modal_space import advance_modes, modal_forces
 from vehicle.simulation.records import Efc, Fields, Layout, State, Tables, Weights
 from vehicle.simulation.rotations import rotations
 
@@ -286,6 +287,7 @@ def generalised_forces(d: Fields, efc: Efc, e: Layout, s: State) -> None:
 @jitable
 def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """Rewrite the rows of one state."""
+    advance_modes(time, d, e, c, s)
     if e.modes.size > 0:
         modal_rows(d, efc, e, s)
     oblique_rows(d, efc, e)
@@ -297,6 +299,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     ideal_joints(efc, e, c, s)
     dampers(d, efc, e, c, s)
     generalised_forces(d, efc, e, s)
+    modal_forces(d, e, s)
     rotations(d, e, c, s)
     stops(d, e, s)
 

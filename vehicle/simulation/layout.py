@@ -20,6 +20,7 @@ from vehicle.simulation.records import (
     Index,
     Indices,
     Layout,
+    ModalSpace,
     Modes,
     Rotations,
     Springs,
@@ -70,6 +71,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     balls = [name for name in ends if name not in springs]
     carriers = _whole([model.site_bodyid[ends[name][1]] for name in names])
     turning = [name for name, own in zip(names, laws, strict=True) if own[TURNING] > 0.0]
+    none = np.zeros(0)
     plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
     empty = np.zeros((0, 3))
     layout = Layout(
@@ -105,6 +107,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         modes=_modes(
             model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal
         ),
+        space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=_whole(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
         reach=_whole(reach, 4),

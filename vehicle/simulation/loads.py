@@ -58,10 +58,11 @@ class LoadPlaces:
         for spring in own.joint_springs:
             joint = model.joint(spring.joint)
             dof, place = int(joint.dofadr[0]), int(joint.qposadr[0])
+            generated = car.model.joint(spring.joint)  # where a run may hold fewer modal coordinates
             ends = f"{spring.joint}_torque", f"{spring.joint}_spring_force"
             # As generated: the damping of a prepared model is weighted for its step.
-            stiffness, damping = joint_springs(car.model)[dof], joint_dampers(car.model)[dof]
-            unstrained = float(car.model.qpos_spring[place])
+            stiffness, damping = (own(car.model)[generated.dofadr[0]] for own in (joint_springs, joint_dampers))
+            unstrained = float(car.model.qpos_spring[generated.qposadr[0]])
             self.joints.append((ends[joint.type[0] == mujoco.mjtJoint.mjJNT_SLIDE], stiffness, damping, unstrained))
             coordinates.append((place, dof))
         self.coordinates: Indices = np.array(coordinates, dtype=np.int64).reshape(-1, 2)

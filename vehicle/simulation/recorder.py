@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 
 import mujoco
@@ -59,7 +60,7 @@ class Recorder:
         self.places = [output.name for output in car.vehicle.composition.outputs]
         self.wheels, self.dampers = car.vehicle.wheels, [damper.name for damper in car.vehicle.composition.dampers]
         for place in self.places:
-            shape = numeric(model, f"shape/place/{place}")
+            shape = numeric(car.model, f"shape/place/{place}")
             if shape is not None:
                 self.shapes[place] = shape.reshape(3, -1)
         self.settings = [name for name in requested if name in car.vehicle.setting_channels]
@@ -71,8 +72,9 @@ class Recorder:
         self.buffers = Samples(
             places=np.zeros((CHUNK, 3 * len(self.sites))),
             turn=np.zeros((CHUNK, 9)),
-            modal_position=np.zeros((CHUNK, modes.size)),
-            modal_velocity=np.zeros((CHUNK, modes.size)),
+            modal_position=np.zeros((CHUNK, rows.state.modal.shape[1])),
+            modal_velocity=np.zeros((CHUNK, rows.state.modal.shape[1])),
+            modal_pull=np.zeros(len(rows.state.modal_pull)),
             damper_velocity=np.zeros((CHUNK, len(e.dampers.dofs))),
             coefficient=np.zeros((CHUNK, len(e.dampers.dofs))),
             actuator=np.zeros((CHUNK, model.nu)),
@@ -96,12 +98,15 @@ class Recorder:
             explicit=rows.state.explicit,
             rate=rows.state.rate,
             branch=rows.state.branch_past,
+            modal=rows.state.modal,
+            modal_force=rows.state.modal_force,
             sites=self.sites,
             dampers=e.dampers.dofs,
             origins=data.xpos,
             bodies=bodies,
             springs=joints,
             contact=rows.state.contact,
+            space=e.space,
         )
         self.order = Order(
             step=0,
@@ -112,8 +117,6 @@ class Recorder:
             pose_every=pose_every,
             body=modes.body,
             first_velocity=modes.first_velocity,
-            first_position=modes.first_position,
-            modes=modes.size,
             half=-0.5 * self.step,
         )
         self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
@@ -132,8 +135,7 @@ class Recorder:
         self.energy_at_start: float | None = None
 
     def before_step(self) -> None:
-        """Keep what the step will overwrite: the present pose, and the modal coordinates."""
-        self.buffers.modal_position[self.filled] = self.data.qpos[self.rows.layout.modes.positions]
+        """Keep what the step will overwrite: the present pose."""
         if (self.done + self.filled) % self.pose_every == 0:
             self.poses.append(self.data.qpos.copy())
             self.pose_index.append(self.done + self.filled)
@@ -165,7 +167,13 @@ class Recorder:
         """Time [s] and position of the last stored pose among the finished and the first `good` buffered samples."""
         last = max(self.done + good - 1, 0)
         index = max((i for i, sample in enumerate(self.pose_index) if sample <= last), default=0)
-        return self.pose_index[index] / self.car.vehicle.solver.record_rate, self.poses[index]
+        return self.pose_index[index] / self.car.vehicle.solver.record_rate, self._pose(index)
+
+    def _pose(self, index: int) -> Vector:
+        """A stored pose with all modal coordinates; of a sample in the buffers they are there."""
+        sample = self.pose_index[index] - self.done
+        pose = self.poses[index]
+        return pose if sample < 0 else self.rows.whole(pose, self.buffers.modal_position[sample])
 
     def _stored_energy(self, half: float) -> float:
         """Kinetic, elastic and gravity energy [J] at the present time."""
@@ -174,8 +182,10 @@ class Recorder:
         e, state, preload = rows.layout, rows.state, rows.weights.preload
         b, springs = e.bushings, e.springs
         data = mujoco.MjData(model)
-        data.qpos[:] = self.data.qpos if half > 0.0 else self.poses[-1]
-        data.qvel[:] = self.data.qvel + half * self.data.qacc
+        last = self.filled - 1
+        modal = self.buffers.modal_position[last], self.buffers.modal_velocity[last]
+        data.qpos[:] = rows.whole(self.data.qpos if half > 0.0 else self.poses[-1], modal[0])
+        data.qvel[:] = rows.whole(self.data.qvel + half * self.data.qacc, modal[1])
         data.mocap_pos[:] = self.data.mocap_pos
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_energyPos(model, data)
@@ -221,6 +231,8 @@ class Recorder:
         here = slice(self.done, self.done + count)
         steps = slice(index - (count - 1) * every, index + 1, every)
         self._keep_positions(here, b.places, b.turn, b.modal_position)
+        for pose in range(bisect_left(self.pose_index, self.done), len(self.poses)):
+            self.poses[pose] = self._pose(pose)
         e, bushings = self.rows.layout, self.rows.layout.bushings
         total = b.solved + b.explicit
         damper_force = -(b.actuator + total[:, e.dampers.rows] + total[:, e.dampers.frictions])
@@ -261,7 +273,7 @@ class Recorder:
         dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
         loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)
         loss = loss + np.sum(damper_force * b.damper_velocity, axis=1)
-        modal_damping = joint_dampers(self.model)[e.modes.velocities]
+        modal_damping = e.space.damping if e.space.damping.size else joint_dampers(self.model)[e.modes.velocities]
         loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
         self._add_work(power_in, loss, every)
         self.done += count
@@ -280,7 +292,7 @@ class Recorder:
         data, rows = self.data, self.rows
         mujoco.mj_kinematics(self.model, data)
         here = slice(self.samples + sample, self.samples + sample + 1)
-        turn, modal = data.xmat[rows.layout.modes.body][None], data.qpos[rows.layout.modes.positions][None]
+        turn, modal = data.xmat[rows.layout.modes.body][None], rows.modal_positions(data)[None]
         self._keep_positions(here, data.site_xpos[self.sites].reshape(1, -1), turn, modal)
 
     def _add_work(self, power_in: Vector, loss: Vector, every: int) -> None:

@@ -170,11 +170,26 @@ class Modes(NamedTuple):
         return slice(self.first_position, self.first_position + self.size)
 
 
+class ModalSpace(NamedTuple):
+    """The n modal coordinates that the callbacks integrate themselves (`vehicle.simulation.modal_space`), or none.
+
+    Attributes:
+        mass, stiffness, damping, rest: of the modes as a step has them, and where their springs rest; (n,).
+        spread: S, modal coordinates by the r that the model holds; (n, r).
+    """
+
+    mass: Vector
+    stiffness: Vector
+    damping: Vector
+    rest: Vector
+    spread: Table
+
+
 class Layout(NamedTuple):
     """The elements of a car in its rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, controls, tables, modes: see there.
+        bushings, rotations, springs, dampers, controls, tables, modes, space: see there.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: positions among the bushings of those on a plate, in the order of the plates; (t,).
         reach: where rows with explicit forces are not zero: first row, number of rows (3 or 1), first column, end.
@@ -188,6 +203,7 @@ class Layout(NamedTuple):
     controls: Controls
     tables: Tables
     modes: Modes
+    space: ModalSpace
     joints: Indices
     tyres: Index
     reach: Indices
@@ -257,6 +273,9 @@ class State(NamedTuple):
         ends, line: lower and upper ends of the main springs with their modal displacement, and their directions.
         stretch: displacement of the laws that are curves; (t,).
         deflection: modal displacement and velocity of the nodes in body axes; (2, 3 g).
+        modal: modal coordinates and their velocities at the last evaluation; (2, modes).
+        modal_force, modal_rate, modal_pull: of the coordinates that stand for them: force of their springs, velocity,
+            and what the attachments pulled over the last step; (r,), none where the model holds the modes.
         contact: elastic force of the one-sided elements [N], and their r' at the last evaluation [m/s]; (2, k).
         coefficient: what the dampers have in place of D v, F = c v [N s/m]; (w,).
         sensed: velocities at the sensors in the middle of the past step and of the one before it [m/s]; (2 k, 2).
@@ -280,6 +299,10 @@ class State(NamedTuple):
     line: Table
     stretch: Vector
     deflection: Table
+    modal: Table
+    modal_force: Vector
+    modal_rate: Vector
+    modal_pull: Vector
     contact: Table
     coefficient: Vector
     sensed: Table

@@ -12,7 +12,7 @@ from vehicle.laws.semi_active import RING
 from vehicle.simulation.kernel import EMPTY_ROW, damper_force, rewrite
 from vehicle.simulation.law_numbers import Numbers, law_names, with_numbers
 from vehicle.simulation.layout import read_layout
-from vehicle.simulation.records import Efc, Fields, Layout, State, Weights
+from vehicle.simulation.records import Efc, Fields, Layout, ModalSpace, State, Weights
 from vehicle.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
 from vehicle.simulation.tables import standing_on
 
@@ -69,15 +69,17 @@ class Rows:
     Args:
         model: compiled car; its armatures are changed by `prepare_model`.
         preload: static forces as in `Weights`; zeros by default.
+        space: the modes where the rows integrate them; none by default.
 
     Attributes:
         laws: names of all elements. names: of those in the order of `layout.bushings`.
         layout, weights, state: records of the laws.
     """
 
-    def __init__(self, model: mujoco.MjModel, preload: Vector | None = None) -> None:
+    def __init__(self, model: mujoco.MjModel, preload: Vector | None = None, space: ModalSpace | None = None) -> None:
         self.model, self.laws, layout = model, law_names(model), read_layout(model)
         self.names = self.laws.bushings
+        layout = layout if space is None else layout._replace(space=space)
         force = np.zeros(layout.row_count + 3 * len(layout.rotations.sites)) if preload is None else preload
         self.layout = standing_on(layout, preload)
         self.weights = weights(model, self.layout, force)
@@ -130,6 +132,22 @@ class Rows:
     def actuator_gain(model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
         """No control acts on a damper; installed as `mjcb_act_gain`."""
         return 0.0
+
+    def whole(self, held: Vector, modal: Vector) -> Vector:
+        """Positions of the car, or velocities, of those that the model holds and all modal ones."""
+        own = self.layout.modes
+        own_place = own.positions if held.size == self.model.nq else own.velocities
+        return np.concatenate([held[: own_place.start], modal, held[own_place.stop :]])
+
+    def modal_positions(self, data: mujoco.MjData) -> Vector:
+        """Modal coordinates after a step, at which the rows have not been evaluated yet; (modes,)."""
+        own, modes, (q, v) = self.layout.space, self.layout.modes, self.state.modal
+        if not own.mass.size:
+            return np.array(data.qpos[modes.positions])
+        h = self.weights.timestep
+        pull = (data.qvel[modes.velocities] - self.state.modal_rate) / h - self.state.modal_force
+        elastic = own.stiffness * (own.rest - q) - own.damping * v
+        return np.asarray(q + h * (v + h * (elastic / own.mass + own.spread @ pull)))
 
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
         """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""
@@ -235,7 +253,10 @@ def _at_rest(layout: Layout) -> State:
     controls, dampers = len(layout.controls.dampers), len(layout.dampers.dofs)
     shapes |= {"coefficient": (dampers,), "sensed": (2 * controls, 2), "past": (controls, longest), "steps": (1,)}
     shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}
-    shapes |= {"contact": (2, len(layout.bushings.one_sided))}
+    shapes |= {"contact": (2, len(layout.bushings.one_sided)), "modal": (2, layout.modes.size)}
+    if layout.space.mass.size:
+        shapes["modal"] = (2, layout.space.mass.size)
+    shapes |= dict.fromkeys(("modal_force", "modal_rate", "modal_pull"), (layout.space.spread.shape[1],))
     state = State(**{name: np.zeros(shapes[name]) for name in State._fields})
     state.last_time[0] = -1.0
     state.coefficient[:] = layout.dampers.laws["viscous_damping"]

@@ -19,7 +19,8 @@ from vehicle.simulation.judgement import judge_energy
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recorder import CHUNK, Recorder
 from vehicle.simulation.recording import Recording, Statistics
-from vehicle.simulation.rows import Rows, prepare_model
+from vehicle.simulation.rows import Rows
+from vehicle.simulation.run_model import run_model
 from vehicle.simulation.sampling import Plates, move_plates
 
 if TYPE_CHECKING:
@@ -64,13 +65,9 @@ def simulate(
             message says when and where.
     """
     every = record_every(car)
-    model = car.spec.compile()
-    model.qpos_spring[:] = car.model.qpos_spring
-    prepare_model(model)
-    # The recorder takes accelerations from positions; the sensors are for those who load the model elsewhere.
-    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+    model, space = run_model(car)
     data = mujoco.MjData(model)
-    rows = Rows(model, car.static.preload)
+    rows = Rows(model, car.static.preload, space)
     step = model.opt.timestep
     count = int(np.floor(signal.duration / step + 1e-6))
     count -= count % every

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from vehicle.compiler import jitable
-from vehicle.simulation.records import Index, Indices, Table, Vector
+from vehicle.simulation.modal_space import modal_acceleration
+from vehicle.simulation.records import Index, Indices, ModalSpace, Table, Vector
 
 
 class Plates(NamedTuple):
@@ -37,12 +38,15 @@ class Sources(NamedTuple):
     explicit: Vector
     rate: Table
     branch: Table
+    modal: Table
+    modal_force: Vector
     sites: Index
     dampers: Index
     origins: Table
     bodies: Index
     springs: Indices
     contact: Table
+    space: ModalSpace
 
 
 class Samples(NamedTuple):
@@ -52,6 +56,7 @@ class Samples(NamedTuple):
     turn: Table
     modal_position: Table
     modal_velocity: Table
+    modal_pull: Vector
     damper_velocity: Table
     coefficient: Table
     actuator: Table
@@ -67,7 +72,7 @@ class Samples(NamedTuple):
 
 class Order(NamedTuple):
     """Addresses of `mj_step`, mjModel and mjData, offset of the constraint forces, steps to a sample, samples to a
-    pose, the flexible body and its modes, half a step back [s]."""
+    pose, the flexible body and the first velocity of its modes, half a step back [s]."""
 
     step: int
     model: int
@@ -77,8 +82,6 @@ class Order(NamedTuple):
     pose_every: int
     body: int
     first_velocity: int
-    first_position: int
-    modes: int
     half: float
 
 
@@ -92,6 +95,21 @@ def move_plates(index: int, p: Plates) -> None:
 
 
 @jitable
+def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
+    """Copy the modal coordinates of the last evaluation, and their velocities half a step later."""
+    q, v, pull, first = s.modal[0], s.modal[1], b.modal_pull, order.first_velocity
+    for j in range(pull.shape[0]):
+        pull[j] = s.acceleration[first + j] - s.modal_force[j]
+    for mode in range(q.shape[0]):
+        b.modal_position[row, mode] = q[mode]
+        if pull.shape[0] == 0:
+            faster = s.acceleration[first + mode]
+        else:
+            faster = modal_acceleration(mode, q, v, pull, s.space)
+        b.modal_velocity[row, mode] = v[mode] - order.half * faster
+
+
+@jitable
 def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector, b: Samples) -> None:
     """Copy the present time's forces, rates and positions.
 
@@ -101,9 +119,7 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
         for axis in range(3):
             b.places[row, 3 * place + axis] = s.site_positions[s.sites[place], axis]
     b.turn[row] = s.orientation[order.body]
-    for mode in range(order.modes):
-        dof = order.first_velocity + mode
-        b.modal_velocity[row, mode] = s.velocity[dof] + half * s.acceleration[dof]
+    keep_modes(row, order, s, b)
     for damper in range(s.dampers.shape[0]):
         dof = s.dampers[damper]
         b.damper_velocity[row, damper] = s.velocity[dof] + half * s.acceleration[dof]
