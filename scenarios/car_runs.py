@@ -38,7 +38,13 @@ class CarRuns:
             engine: another one than that of the other runs; a film needs "mujoco".
         """
         changes = (*self.overrides, *overrides)
-        return Case(source=source, overrides=changes, engine=engine or self.engine, vehicle=self.vehicle)
+        return Case(
+            source=source,
+            overrides=changes,
+            engine=engine or self.engine,
+            vehicle=self.vehicle,
+            shared=len(self.overrides),
+        )
 
     def car(self, overrides: Sequence[str] = ()) -> Car:
         """The car with some parameters changed; built once."""

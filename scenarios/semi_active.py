@@ -20,7 +20,7 @@ from scenarios.charts import chart
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
 from scenarios.comfort_runs import chosen_engine
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.analysis.comfort import comfort_value
+from vehicle.analysis.comfort import comfort_values
 from vehicle.analysis.seat_value import weighted_rms_of
 from vehicle.car import Run
 from vehicle.commands.options import ROAD_NUMBERS
@@ -31,6 +31,8 @@ from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.rendering.figure import COLOURS
 from vehicle.sweeps.case import Case
+from vehicle.sweeps.measure import of_one
+from vehicle.sweeps.runs import Runs, Vector
 from vehicle.sweeps.sweep import sweep
 
 CAR = "focus_road"
@@ -80,6 +82,8 @@ class RideMeasure:
     """
 
     wheels: tuple[str, ...]
+    timestep: float = 5e-4
+    """longest step of the reduced engine [s]"""
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -93,16 +97,19 @@ class RideMeasure:
 
     def __call__(self, run: Run) -> dict[str, float]:
         """The numbers of a run."""
-        step = run.recording.timestep
+        return of_one(self, run)
+
+    def of(self, runs: Runs) -> dict[str, Vector]:
+        """The numbers of several runs."""
+        step = runs.timestep
         kept = slice(round(LEAD_S / step), None)
-        xyz = np.array([run[name] for name in RAIL])
-        static = run.car.static.tyre_load
-        loads = np.array([run[f"tyre_{wheel}_force_z"][kept] / static[wheel] for wheel in self.wheels])
+        xyz = runs.stacked(*RAIL)
+        loads = [runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None] for wheel in self.wheels]
         return {
-            "weighted": weighted_rms_of(step, xyz, skip=LEAD_S)[2],
-            "unfiltered": comfort_value(step, xyz[:, kept]).overall,
-            "tyre": float(np.sqrt(np.mean((loads - 1.0) ** 2))),
-            "lowest": float(np.min(loads)),
+            "weighted": np.array([weighted_rms_of(step, one, skip=LEAD_S)[2] for one in xyz]),
+            "unfiltered": comfort_values(step, xyz[:, :, kept]).overall,
+            "tyre": np.sqrt(np.mean([np.mean((load - 1.0) ** 2, axis=1) for load in loads], axis=0)),
+            "lowest": np.min([np.min(load, axis=1) for load in loads], axis=0),
         }
 
 
@@ -127,7 +134,9 @@ def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: 
         options = argparse.Namespace(**dict.fromkeys(ROAD_NUMBERS) | {"speed": one.speed, "duration": duration})
         source = road_drive(one.road, options, vehicle)
         changes = (*runs.overrides, *one.changes(vehicle))
-        cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle))
+        cases.append(
+            Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(runs.overrides))
+        )
     table = sweep(cases, RideMeasure(wheels=vehicle.wheels), jobs=runs.jobs)
     if table.failed:
         raise ConfigurationError(f"{table.failed[0][0].label}: {table.failed[0][1]}")

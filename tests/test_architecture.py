@@ -37,7 +37,8 @@ ROOMS: dict[str, set[str]] = {
     | {"simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
     | {"replication"},
-    "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "threads"},
+    "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "reduced"}
+    | {"simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "records", "reduced"},

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.comfort_runs import chosen_engine, standard_error
-from vehicle.analysis.comfort import comfort_value
+from vehicle.analysis.comfort import comfort_values
 from vehicle.analysis.seat_value import seat_value, weighted_rms_of
-from vehicle.analysis.slip import slip_share
+from vehicle.analysis.slip import slip_shares
 from vehicle.car import Car, Run
 from vehicle.commands.options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
@@ -22,6 +22,8 @@ from vehicle.errors import SimulationError
 from vehicle.names import AXES
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.sweeps.case import Case
+from vehicle.sweeps.measure import of_one
+from vehicle.sweeps.runs import Runs, Vector
 from vehicle.sweeps.sweep import sweep
 
 LEAD_S = 2.0
@@ -42,11 +44,13 @@ class RideMeasure:
         wheels: names of wheel and axle of each.
         dampers: names.
         seat: whether the car has the place `seat` at all.
+        timestep: longest step of the reduced engine [s].
     """
 
     wheels: tuple[tuple[str, str], ...]
     dampers: tuple[str, ...]
     seat: bool
+    timestep: float = 5e-4
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -75,27 +79,35 @@ class RideMeasure:
 
     def __call__(self, run: Run) -> dict[str, float]:
         """The numbers of a run."""
-        step, vehicle = run.recording.timestep, run.car.vehicle
+        return of_one(self, run)
+
+    def of(self, runs: Runs) -> dict[str, Vector]:
+        """The numbers of several runs."""
+        step = runs.timestep
         kept = slice(round(LEAD_S / step), None)
-        rail = np.array([run[f"seat_rail_acc_{axis}"] for axis in AXES])
+        rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
         found = {
-            "rail": comfort_value(step, rail[:, kept]).overall,
-            "rail_weighted": weighted_rms_of(step, rail, skip=LEAD_S)[3],
-            "seat_weighted": np.nan,
-            "seat_value": np.nan,
+            "rail": comfort_values(step, rail[:, :, kept]).overall,
+            "rail_weighted": np.array([weighted_rms_of(step, one, skip=LEAD_S)[3] for one in rail]),
+            "seat_weighted": np.full(len(rail), np.nan),
+            "seat_value": np.full(len(rail), np.nan),
         }
-        if vehicle.seated:
-            seat = np.array([run[f"seat_acc_{axis}"] for axis in AXES])
-            found["seat_weighted"] = weighted_rms_of(step, seat, skip=LEAD_S)[3]
-            found["seat_value"] = seat_value(step, seat[2], rail[2], skip=LEAD_S).rms
-        static = run.car.static.tyre_load
-        loads = {wheel: run[f"tyre_{wheel}_force_z"][kept] / static[wheel] for wheel, _ in self.wheels}
+        for row, vehicle in enumerate(runs.vehicles):
+            if vehicle.seated:
+                seat = np.array([runs[f"seat_acc_{axis}"][row] for axis in AXES])
+                found["seat_weighted"][row] = weighted_rms_of(step, seat, skip=LEAD_S)[3]
+                found["seat_value"][row] = seat_value(step, seat[2], rail[row, 2], skip=LEAD_S).rms
+        loads = {
+            wheel: runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None] for wheel, _ in self.wheels
+        }
         for axle, wheels in self.by_axle:
-            found[f"load_{axle}"] = float(np.sqrt(np.mean([np.mean((loads[one] - 1.0) ** 2) for one in wheels])))
-        found["lowest_load"] = min(float(np.min(load)) for load in loads.values())
-        found["pulling"] = max(float(np.mean(load < 0.0)) for load in loads.values())
-        limit = vehicle.damper.slip_velocity
-        found["slip"] = float(np.mean([slip_share(run[f"{one}_velocity"][kept], limit) for one in self.dampers]))
+            found[f"load_{axle}"] = np.sqrt(
+                np.mean([np.mean((loads[one] - 1.0) ** 2, axis=1) for one in wheels], axis=0)
+            )
+        found["lowest_load"] = np.min([np.min(load, axis=1) for load in loads.values()], axis=0)
+        found["pulling"] = np.max([np.mean(load < 0.0, axis=1) for load in loads.values()], axis=0)
+        shares = [slip_shares(runs[f"{one}_velocity"][:, kept], runs.slip_velocity) for one in self.dampers]
+        found["slip"] = np.mean(shares, axis=0)
         return found
 
 
@@ -221,7 +233,10 @@ class RideRuns:
             for seed in range(1, self.records + 1)
         ]
         engine, file = ride.engine or self.engine, self.cars[ride.car]
-        return [Case(source=drive, overrides=tuple(changes), engine=engine, vehicle=file) for drive in drives]
+        shared = len(self.overrides)
+        return [
+            Case(source=drive, overrides=tuple(changes), engine=engine, vehicle=file, shared=shared) for drive in drives
+        ]
 
 
 def all_friction(vehicle: Vehicle, friction: float) -> tuple[str, ...]:

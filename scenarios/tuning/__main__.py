@@ -64,7 +64,7 @@ class Tuning:
 
     def build(self, values: Mapping[str, float]) -> Car:
         """The car with some values; not kept."""
-        return Car.load(self.runs.vehicle, (*self.runs.overrides, *overrides_of(self.vehicle, values)))
+        return self.runs.car().varied(overrides_of(self.vehicle, values))
 
     def fit(
         self,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -14,6 +13,7 @@ from scenarios.semi_active import LEAD_S, RideMeasure, Setting, main, settings
 from vehicle.analysis.weighting import weighted_record
 from vehicle.parameters.semi_active import LAWS
 from vehicle.parameters.vehicle import load_vehicle
+from vehicle.sweeps.runs import Runs
 
 
 def test_settings_cover_laws_roads_delays_and_the_passive_range():
@@ -50,27 +50,15 @@ def test_it_says_what_its_numbers_show(tmp_path, monkeypatch, capsys):
     assert {path.name for path in (tmp_path / "out").glob("*.png")} == {"trade_off.png", "delay.png"}
 
 
-class Made:
-    """A run of made-up channels."""
-
-    def __init__(self):
-        time = 1e-3 * np.arange(13001)
-        wave, sizes = np.sin(2 * np.pi * 8.0 * time), {"x": 3.0, "y": 4.0, "z": 12.0}
-        self.channels = {f"seat_rail_acc_{axis}": size * wave for axis, size in sizes.items()}
-        self.channels |= {"tyre_fr_force_z": 4000.0 + 1000.0 * np.sin(2 * np.pi * 11.0 * time)}
-        self.recording = type("Recording", (), {"timestep": 1e-3})
-        static = type("Static", (), {"tyre_load": {"fr": 4000.0}})
-        self.car = type("Car", (), {"model": type("Model", (), {"static": static})})
-
-    def __getitem__(self, name):
-        return self.channels[name]
-
-
 def test_measure_of_sines():
-    run = Made()
-    numbers = RideMeasure(wheels=("fr",))(cast(Any, run))
+    time = 1e-3 * np.arange(13001, dtype=np.float64)
+    wave, sizes = np.sin(2 * np.pi * 8.0 * time), {"x": 3.0, "y": 4.0, "z": 12.0}
+    channels = {f"seat_rail_acc_{axis}": (size * wave)[None] for axis, size in sizes.items()}
+    channels |= {"tyre_fr_force_z": (4000.0 + 1000.0 * np.sin(2 * np.pi * 11.0 * time))[None]}
+    runs = Runs(time=time, channels=channels, vehicles=(), tyre_load={"fr": np.array([4000.0])})
+    numbers = {name: values[0] for name, values in RideMeasure(wheels=("fr",)).of(runs).items()}
     assert numbers["unfiltered"] == pytest.approx(13.0 / np.sqrt(2.0), rel=5e-3)
     assert numbers["tyre"] == pytest.approx(0.25 / np.sqrt(2.0), rel=1e-3)
     assert numbers["lowest"] == pytest.approx(0.75, rel=1e-3)
-    weighted = weighted_record(1e-3, run["seat_rail_acc_z"], "Wk")[round(LEAD_S / 1e-3) :]
+    weighted = weighted_record(1e-3, runs["seat_rail_acc_z"][0], "Wk")[round(LEAD_S / 1e-3) :]
     assert numbers["weighted"] == pytest.approx(np.sqrt(np.mean(weighted**2)), rel=1e-12)

@@ -13,7 +13,7 @@ import pytest
 from tests.sweeps.pieces import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.sweeps import executors
-from vehicle.sweeps.crew import PER_WORKER
+from vehicle.sweeps.crew import FILL, PER_WORKER
 from vehicle.sweeps.executors import process_pool, workers_of
 from vehicle.sweeps.program import program_digest
 from vehicle.sweeps.result import Result
@@ -98,14 +98,15 @@ def test_a_scheduler_that_is_gone_is_told():
 
 def test_an_interruption_keeps_the_rows(tmp_path):
     def interrupt(fraction):
-        if fraction >= 0.5:
-            raise KeyboardInterrupt
+        raise KeyboardInterrupt
 
+    cases = many(FILL + 2)
     with pytest.raises(KeyboardInterrupt):
-        sweep(many(4), Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=interrupt)
-    assert (tmp_path / "rows.jsonl").read_text(encoding="utf-8").count("\n") == 2
+        sweep(cases, Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=interrupt)
+    # Those of the first task.
+    assert (tmp_path / "rows.jsonl").read_text(encoding="utf-8").count("\n") == FILL
     counted: list[float] = []
-    table = sweep(many(4), Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=counted.append)
+    table = sweep(cases, Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=counted.append)
     assert counted == [0.5, 1.0] and not table.failed
 
 

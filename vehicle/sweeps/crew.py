@@ -134,10 +134,11 @@ class Crew:
         """Take the cases of a task from those that wait: of one vehicle file and engine, about `TASK_S` of work."""
         first = todo[waiting[0]]
         if not size:
-            even = len(waiting) / at_once  # so that all workers end together
             paced = FILL if self.pace is None else TASK_S / max(self.pace, 1e-9)
-            size = int(max(min(paced, even, LARGEST), 1))
-            size = size if first.engine == "mujoco" or size < FILL // 2 else FILL * -(-size // FILL)
+            even = len(waiting) / at_once  # so that all workers end together
+            size = max(int(min(paced, even, LARGEST)), 1)
+            if first.engine != "mujoco" and paced > 2.0:
+                size = min(FILL * -(-size // FILL), -(-PER_WORKER * len(waiting) // at_once))
         task: list[str] = []
         while waiting and len(task) < size:
             case = todo[waiting[0]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import fields
 from pathlib import Path
 
 from vehicle.errors import DataError, OutputError
@@ -13,6 +13,8 @@ from vehicle.output.written_files import note
 from vehicle.sweeps.result import Result
 
 ROWS = "rows.jsonl"
+
+FIELDS = tuple(field.name for field in fields(Result))
 
 
 class Store:
@@ -45,7 +47,8 @@ class Store:
         for key, (label, result) in rows.items():
             self.finished[key] = result
             # JSON writes a float with all its digits, so that a row read again is the same row; NaN is its own word.
-            lines.append(json.dumps({"key": key, "case": label, **asdict(result)}) + "\n")
+            row = {name: getattr(result, name) for name in FIELDS}
+            lines.append(json.dumps({"key": key, "case": label, **row}) + "\n")
         try:
             self._file.write("".join(lines))
             self._file.flush()

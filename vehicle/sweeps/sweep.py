@@ -112,7 +112,10 @@ def case_keys(cases: Sequence[Case], measure: Measure) -> list[str]:
     sources = {id(case.source): case.source for case in cases}
     inputs = {key: digest(source.identity()) for key, source in sources.items()}
     cars = {vehicle: _car_digest(vehicle) for vehicle in dict.fromkeys(case.vehicle for case in cases)}
-    return [digest([*made, cars[case.vehicle], inputs[id(case.source)], case.engine, case.overrides]) for case in cases]
+    return [
+        digest([*made, cars[case.vehicle], inputs[id(case.source)], case.engine, case.shared, case.overrides])
+        for case in cases
+    ]
 
 
 def _car_digest(vehicle: Path | None) -> str:
