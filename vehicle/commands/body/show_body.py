@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
 from vehicle.commands.options import FORCE_HELP, message_options, vehicle_options
+from vehicle.errors import DataError
 
 if TYPE_CHECKING:
     from vehicle.flexbody.superelement import Superelement
@@ -53,8 +54,15 @@ def report(model: Superelement, vehicle: Vehicle) -> list[str]:
     if notices := mass_difference(model, vehicle.body):
         lines += [*notices, "[body] of this model:", *(f"  {line}" for line in vehicle_lines(model))]
     lines += mode_lines(model)
-    lines += attachment_lines(model, vehicle)
-    return [*lines, *residual_lines(model, vehicle), *rotation_lines(model, vehicle)]
+    try:
+        at_points = [
+            *attachment_lines(model, vehicle),
+            *residual_lines(model, vehicle),
+            *rotation_lines(model, vehicle),
+        ]
+    except DataError as error:  # of another car: shown all the same, but for its points
+        return [*lines, f"not on this car: {error}"]
+    return [*lines, *at_points]
 
 
 def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
