@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -102,21 +103,13 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
             if getattr(parameters, f"table_{name}", None) is not None:
                 # Behind a table the spring of the attachment is in its points, and the damper stays beside both.
                 continue
-            element: Kelvin | Maxwell
-            if branch[0, axis] > 0.0:
-                # A dashpot beside the branch (Dz1, zero in the source) stays outside the series.
-                element = Maxwell(
-                    stiffness=stiffness[axis],
-                    branch_stiffness=branch[0, axis],
-                    branch_damping=branch[0, axis] * branch[1, axis],
-                )
-            else:
-                element = Kelvin(stiffness=stiffness[axis], damping=damping[axis])
-                damping[axis] = 0.0
-            joined = in_series(float(local[axis]), element)
-            stiffness[axis] = float(joined.stiffness)
-            if float(joined.branch_damping) > 0.0:
-                branch[:, axis] = float(joined.branch_stiffness), float(joined.relaxation_time)
+            # A dashpot beside the branch (Dz1, zero in the source) stays outside the series.
+            elastomer = float(branch[0, axis]), float(branch[0, axis] * branch[1, axis])
+            own = (float(stiffness[axis]), *(elastomer if elastomer[0] > 0.0 else (float(damping[axis]),)))
+            damping[axis] = damping[axis] if elastomer[0] > 0.0 else 0.0
+            stiffness[axis], joined, time = _behind(float(local[axis]), own)
+            if time > 0.0:
+                branch[:, axis] = joined, time
     return ElementLaw(
         stiffness=stiffness,
         damping=damping,
@@ -125,3 +118,17 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
         rotational_stiffness=parameters.rotational_stiffness,
         local=_rigid() if local is None else local,
     )
+
+
+# The two sides of a car, and all cars of a sweep that leave an axis alone, ask for the same again and again.
+@lru_cache(maxsize=4096)
+def _behind(local: float, own: tuple[float, ...]) -> tuple[float, float, float]:
+    """Stiffness, branch stiffness and branch time of a bushing K, B or an elastomer K1, K2, D2 behind a spring."""
+    element = (
+        Kelvin(stiffness=own[0], damping=own[1])
+        if len(own) == 2
+        else Maxwell(stiffness=own[0], branch_stiffness=own[1], branch_damping=own[2])
+    )
+    joined = in_series(local, element)
+    time = float(joined.relaxation_time) if float(joined.branch_damping) > 0.0 else 0.0
+    return float(joined.stiffness), float(joined.branch_stiffness), time

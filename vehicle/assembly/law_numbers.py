@@ -7,6 +7,7 @@ that differs from another one in such numbers alone needs no model of its own (`
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from vehicle.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.names import AXES
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
-from vehicle.parameters.elements import ForceTable
+from vehicle.parameters.elements import Damper, ForceTable
 from vehicle.parameters.vehicle import Vehicle
 
 Vector = npt.NDArray[np.float64]
@@ -63,13 +64,20 @@ def spring_numbers(spring: PlacedSpring) -> Numbers:
 
 def damper_numbers(placed: PlacedDamper) -> Numbers:
     """Numbers of a damper: its stop, the steeper pieces of its curve, its control; of its actuator."""
-    found = _table(placed.name, placed.law.stop)
-    for number, piece in enumerate(damper_curve(placed.law).clamped()):
+    found, (pieces, control, actuator) = _table(placed.name, placed.law.stop), _packed(placed.law)
+    for number, piece in enumerate(pieces):
         found[f"law/valve/{placed.name}" + (f"/{number}" if number else "")] = piece
-    if placed.law.controlled is not None:
-        found[f"control/{placed.name}"] = semi_active.pack(placed.law.controlled)
-    found[f"actuator/{placed.name}"] = actuator_parameters(pack(placed.law))
+    if control is not None:
+        found[f"control/{placed.name}"] = control
+    found[f"actuator/{placed.name}"] = actuator
     return found
+
+
+@lru_cache(maxsize=16)
+def _packed(law: Damper) -> tuple[Vector, Vector | None, Vector]:
+    """Steeper pieces, control and record of a damper; those of one axle are alike."""
+    control = None if law.controlled is None else semi_active.pack(law.controlled)
+    return damper_curve(law).clamped(), control, actuator_parameters(pack(law))
 
 
 def joint_numbers(spring: JointSpring) -> Numbers:

@@ -37,11 +37,11 @@ def require_plausible(vehicle: Vehicle) -> None:
     Raises:
         ConfigurationError: naming the parameter, the value, what is allowed and why.
     """
-    _parts(vehicle)
+    require_parts(vehicle)
     for wheel in vehicle.composition.wheels:
         _wheel(wheel)
     _ground(vehicle)
-    _body(vehicle)
+    require_body(vehicle)
 
 
 def _within(path: str, value: float, unit: str, limits: tuple[float, float, str]) -> None:
@@ -50,7 +50,8 @@ def _within(path: str, value: float, unit: str, limits: tuple[float, float, str]
         raise ConfigurationError(f"{path}: found {value:g} {unit}, allowed are {low:g} to {high:g} {unit} ({why})")
 
 
-def _parts(vehicle: Vehicle) -> None:
+def require_parts(vehicle: Vehicle) -> None:
+    """Refuse parts that no car has; errors as of `require_plausible`."""
     for placed in vehicle.composition.parts:
         part, path = placed.numbers, placed.path
         _within(f"{path}.mass", part.mass, "kg", ENGINE_MASS if placed.shape == "engine" else PART_MASS)
@@ -95,7 +96,8 @@ def _point_path(vehicle: Vehicle, name: str) -> str:
     return max(found, key=len, default=f"hardpoints.{name}")
 
 
-def _body(vehicle: Vehicle) -> None:
+def require_body(vehicle: Vehicle) -> None:
+    """Refuse a body that no car has; errors as of `require_plausible`."""
     body, every = vehicle.body, list[Point](vehicle.points.values())
     for index, axis in enumerate(AXES):
         low, high = min(point[index] for point in every), max(point[index] for point in every)

@@ -101,6 +101,8 @@ def check(path: str, value: Any, metadata: Any) -> None:
         if value not in metadata["choices"]:
             raise ConfigurationError(f"{path}: found {value!r}, allowed are {', '.join(metadata['choices'])}")
         return
+    if type(value) is float and metadata["length"] is None:
+        return _check_number(path, value, metadata)
     names = (value,) if isinstance(value, str) else value
     texts = isinstance(names, tuple) and names and all(isinstance(name, str) for name in names)
     if texts and metadata["unit"] == "-":
@@ -124,15 +126,17 @@ def _check_number(path: str, number: Any, metadata: Any) -> None:
     unit = metadata["unit"]
     if isinstance(number, bool) or not isinstance(number, int | float):
         raise ConfigurationError(f"{path}: found {number!r}, needed is a number [{unit}]")
-    why = f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""  # a negative mass needs no reason
     if not math.isfinite(number):
         raise ConfigurationError(f"{path}: found {number!r} {unit}, needed is a finite number ({metadata['meaning']})")
     if metadata["above"] is not None and not number > metadata["above"]:
         raise ConfigurationError(f"{path}: found {number!r} {unit}, must be greater than {metadata['above']!r}")
-    if metadata["at_least"] is not None and number < metadata["at_least"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {metadata['at_least']!r}{why}")
-    if metadata["at_most"] is not None and number > metadata["at_most"]:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {metadata['at_most']!r}{why}")
+    least, most = metadata["at_least"], metadata["at_most"]
+    if (least is None or number >= least) and (most is None or number <= most):
+        return
+    why = f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""  # a negative mass needs no reason
+    if least is not None and number < least:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {least!r}{why}")
+    raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {most!r}{why}")
 
 
 def field_quantity(kind: type[Any], path: str) -> Mapping[str, Any]:

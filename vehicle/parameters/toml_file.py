@@ -182,6 +182,8 @@ def convert(hint: Any, value: Any, path: str) -> Any:
     Raises:
         ConfigurationError: it is of another type.
     """
+    if hint is float:
+        return _number(value, path)
     origin = typing.get_origin(hint)
     if origin in (types.UnionType, typing.Union):
         inner = [option for option in typing.get_args(hint) if option is not type(None)]
@@ -203,8 +205,6 @@ def convert(hint: Any, value: Any, path: str) -> Any:
         if not isinstance(value, list | tuple):
             raise ConfigurationError(f"{path}: found {value!r}, needed is a list")
         return tuple(convert(typing.get_args(hint)[0], item, path) for item in value)
-    if hint is float:
-        return _number(value, path)
     if hint is str and not isinstance(value, str):
         raise ConfigurationError(f"{path}: found {value!r}, needed is a text in quotes")
     if hint is bool and not isinstance(value, bool):

@@ -13,7 +13,7 @@ from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
 from vehicle.parameters.paths import meant, parsed_value, value_at
-from vehicle.parameters.plausible import require_plausible
+from vehicle.parameters.plausible import require_body, require_parts
 from vehicle.parameters.toml_file import build, type_hints
 from vehicle.parameters.vehicle import Solver, Vehicle
 
@@ -109,8 +109,10 @@ class Family:
         if left:
             return None
         vehicle = replace(self.vehicle, table=table, composition=replace(car, **changed), **found)
-        if "parts" in changed or "body" in found:
-            require_plausible(vehicle)
+        if "parts" in changed:
+            require_parts(vehicle)
+        if "body" in found:
+            require_body(vehicle)
         return vehicle
 
 

@@ -72,20 +72,24 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
                 "and the masses of the parts too)"
             )
     preload, springs, bushings = static.preload, rows.layout.springs, rows.layout.bushings
+    ground = ground_contacts(rows)
+    looked = bushings.stiffness > 0.0
+    # On the ground the car is set down without horizontal force.
+    looked[ground, :2] = False
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sag = np.where(looked, np.abs(preload[bushings.rows]) / bushings.stiffness, 0.0)
+        spring_sag = np.abs(preload[springs.rows]) / springs.stiffness
+    if not max(np.max(sag, initial=0.0), np.max(spring_sag, initial=0.0)) > LARGEST_SAG:
+        return
     placed = vehicle.composition.springs
     sags: dict[str, float] = {}
-    for spring, force, k in zip(placed, np.abs(preload[springs.rows]), springs.stiffness, strict=True):
-        sags[f"{spring.path}.stiffness"] = max(sags.get(f"{spring.path}.stiffness", 0.0), float(force / k))
-    ground = ground_contacts(rows)
-    for index, (name, own, stiffness) in enumerate(zip(rows.names, bushings.rows, bushings.stiffness, strict=True)):
-        for axis, row, k in zip(AXES, own, stiffness, strict=True):
-            # On the ground the car is set down without horizontal force.
-            if k > 0.0 and (axis == "z" or index not in ground):
-                sags[element_parameter(vehicle, name, "stiffness", axis)] = float(abs(preload[row]) / k)
+    for spring, own in zip(placed, spring_sag.tolist(), strict=True):
+        sags[f"{spring.path}.stiffness"] = max(sags.get(f"{spring.path}.stiffness", 0.0), own)
+    for index, axis in np.argwhere(looked).tolist():
+        sags[element_parameter(vehicle, rows.names[index], "stiffness", AXES[axis])] = float(sag[index, axis])
     worst = max(sags, key=lambda name: sags[name])
-    if sags[worst] > LARGEST_SAG:
-        raise ConfigurationError(
-            f"{worst}: too soft for the weight it carries (body.mass {vehicle.body.mass:g} kg, gravity "
-            f"{vehicle.gravity:g} m/s2): it would sag by {sags[worst]:.3g} m, allowed are {LARGEST_SAG:g} m (a soft "
-            "car spring sags by 0.2 m)"
-        )
+    raise ConfigurationError(
+        f"{worst}: too soft for the weight it carries (body.mass {vehicle.body.mass:g} kg, gravity "
+        f"{vehicle.gravity:g} m/s2): it would sag by {sags[worst]:.3g} m, allowed are {LARGEST_SAG:g} m (a soft "
+        "car spring sags by 0.2 m)"
+    )

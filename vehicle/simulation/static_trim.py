@@ -182,7 +182,8 @@ def _settled(rows: Rows, rest: AtRest, joint_stiffness: Vector) -> Settled:
     e, twist, jacobian, turned = rows.layout, rows.layout.rotations.stiffness, rest.jacobian, rest.turned
     row_stiffness = _row_stiffness(rows)
     stiffness = jacobian.T @ (row_stiffness @ jacobian)
-    stiffness += np.einsum("n,nij,nik->jk", twist, turned, turned)
+    flat = turned.reshape(-1, turned.shape[2])
+    stiffness += flat.T @ (np.repeat(twist, 3)[:, None] * flat)
     stiffness[np.diag_indices(len(stiffness))] += joint_stiffness
     give = _factored(stiffness, jacobian[e.joints.ravel()])
     displacement, reaction = give(unsolved(e, rest.weight))
@@ -237,8 +238,8 @@ def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vecto
     scale = np.ones(size + count)
     scale[:size] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
     scaled = system * scale[:, None] * scale[None, :]
-    factors, _ = scipy.linalg.lu_factor(scaled, check_finite=False)
-    near, _ = scipy.linalg.lapack.dgecon(factors, np.abs(scaled).sum(axis=0).max())
+    factors = scipy.linalg.lu_factor(scaled, check_finite=False)
+    near, _ = scipy.linalg.lapack.dgecon(factors[0], np.abs(scaled).sum(axis=0).max())
     # The estimate is off by a factor; near the limit the condition itself is worth its singular values.
     if not near > CONDITION_SURE and not np.linalg.cond(scaled) <= 1.0 / LEAST_CONDITION:
         raise SimulationError(
@@ -247,7 +248,9 @@ def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vecto
         )
 
     def give(force: Vector) -> tuple[Vector, Vector]:
-        solution = scale * np.linalg.solve(scaled, scale * np.concatenate([force, np.zeros(count)]))
+        solution = scale * scipy.linalg.lu_solve(
+            factors, scale * np.concatenate([force, np.zeros(count)]), check_finite=False
+        )
         return solution[:size], solution[size:]
 
     return give
