@@ -238,19 +238,18 @@ def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vecto
     scale = np.ones(size + count)
     scale[:size] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
     scaled = system * scale[:, None] * scale[None, :]
-    factors = scipy.linalg.lu_factor(scaled, check_finite=False)
-    near, _ = scipy.linalg.lapack.dgecon(factors[0], np.abs(scaled).sum(axis=0).max())
+    factors, pivots, singular = scipy.linalg.lapack.dgetrf(scaled)
+    near, _ = scipy.linalg.lapack.dgecon(factors, np.abs(scaled).sum(axis=0).max())
     # The estimate is off by a factor; near the limit the condition itself is worth its singular values.
-    if not near > CONDITION_SURE and not np.linalg.cond(scaled) <= 1.0 / LEAST_CONDITION:
+    if (singular or not near > CONDITION_SURE) and not np.linalg.cond(scaled) <= 1.0 / LEAST_CONDITION:
         raise SimulationError(
             "static trim: the car can move without resistance; check that every bushing has a stiffness in each "
             "direction that nothing else holds"
         )
 
     def give(force: Vector) -> tuple[Vector, Vector]:
-        solution = scale * scipy.linalg.lu_solve(
-            factors, scale * np.concatenate([force, np.zeros(count)]), check_finite=False
-        )
+        found, _ = scipy.linalg.lapack.dgetrs(factors, pivots, scale * np.concatenate([force, np.zeros(count)]))
+        solution = scale * found
         return solution[:size], solution[size:]
 
     return give
