@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy
 
-from vehicle.analysis.thinned_wireframe import MOST_LINES, MOST_NODES, thinned
+from vehicle.analysis.thinned_wireframe import MOST_LINES, MOST_NODES, neighbours, thinned
 from vehicle.rendering.stage import MOST_GEOMS
 
 
@@ -53,3 +53,20 @@ def test_a_small_mesh_stays_and_loose_nodes_are_left_out():
     # Middle nodes of elements have no lines; they are no nodes of a picture, however many they are.
     middle = np.concatenate([positions, np.random.default_rng(1).random((3000, 3))])
     assert thinned(middle, edges) == pytest.approx(edges)
+
+
+def test_points_of_a_modal_test_are_joined_to_their_neighbours():
+    random = np.random.default_rng(4)
+    points = np.concatenate([random.random((12, 3)), random.random((8, 3)) + np.array([5.0, 0.0, 0.0])])
+    lines = neighbours(points)
+    assert np.all(lines[:, 0] < lines[:, 1]) and len(np.unique(lines, axis=0)) == len(lines)
+    assert 19 <= len(lines) <= 19 + 2 * 20
+    count, _ = scipy.sparse.csgraph.connected_components(
+        scipy.sparse.coo_matrix((np.ones(len(lines)), lines.T), shape=(20, 20))
+    )
+    assert count == 1
+    # Two heaps apart are joined once.
+    assert np.sum((lines[:, 0] < 12) & (lines[:, 1] >= 12)) == 1
+    twice = np.concatenate([points[:3], points[:3]])  # places given twice
+    assert len(neighbours(twice)) >= 5
+    assert neighbours(points[:1]).shape == (0, 2)

@@ -49,6 +49,26 @@ def thinned(positions: Vector, edges: Indices, nodes: int = MOST_NODES, lines: i
         count = count * 3 // 4
 
 
+def neighbours(positions: Vector, nearest: int = 2) -> Indices:
+    """Lines between points that have none: of each to the nearest others, and the shortest that join all of them.
+
+    Args:
+        positions: of the points [m], (n, 3).
+        nearest: to how many others each point has a line.
+
+    Returns:
+        Pairs of points, (lines, 2); none of a single point.
+    """
+    count = len(positions)
+    apart = np.maximum(scipy.spatial.distance.squareform(scipy.spatial.distance.pdist(positions)), 1e-9)
+    np.fill_diagonal(apart, 0.0)
+    tree = scipy.sparse.csgraph.minimum_spanning_tree(apart).tocoo()
+    order = np.argsort(apart, axis=1)[:, 1 : nearest + 1]
+    near = np.stack([np.repeat(np.arange(count), order.shape[1]), order.ravel()], axis=1)
+    pairs = np.sort(np.concatenate([np.stack([tree.row, tree.col], axis=1), near]), axis=1)
+    return np.asarray(np.unique(pairs, axis=0), dtype=np.intp).reshape(-1, 2)
+
+
 def _spread(positions: Vector, among: Indices, count: int) -> Indices:
     """Nodes spread evenly over the mesh: each next one is the farthest from those before."""
     places, chosen = positions[among], [0]

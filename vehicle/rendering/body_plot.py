@@ -73,8 +73,8 @@ def plot_body(
                 axis.add_collection(swung)
             else:
                 axis.scatter(*flat.T, s=4, color="#b8b8b8")
-                axis.scatter(*moved.T, s=8, c=colours(size, largest))
-            axis.scatter(*moved[places].T, s=7, color=COLOURS[4], zorder=3)
+                axis.scatter(*moved.T, s=16, c=colours(size, largest))
+            axis.scatter(*moved[places].T, s=6, color=COLOURS[4], zorder=3)
             axis.set_title(words, fontsize=8.5)
             axis.set_aspect("equal")
             axis.margins(0.04)

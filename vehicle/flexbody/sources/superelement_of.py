@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vehicle.analysis.thinned_wireframe import thinned
+from vehicle.analysis.thinned_wireframe import neighbours, thinned
 from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.modes import fix_signs
@@ -149,9 +149,10 @@ def superelement_of(
 
 
 def _picture(body: BodyNodes, most: int) -> tuple[IntArray, IntArray]:
-    """Nodes and lines of the picture; without lines, some of the nodes."""
+    """Nodes and lines of the picture; of a source without lines each node is joined to its neighbours."""
     if not len(body.edges):
-        return np.unique(np.linspace(0, len(body.nodes) - 1, most).astype(int)), np.zeros((0, 2), dtype=int)
+        shown = np.unique(np.linspace(0, len(body.nodes) - 1, most).astype(int))
+        return shown, neighbours(body.positions[shown])
     lines = thinned(body.positions, body.edges, most)
     shown, index = np.unique(lines, return_inverse=True)
     return shown, index.reshape(-1, 2)
