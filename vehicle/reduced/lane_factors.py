@@ -36,8 +36,8 @@ STEPS_A_PERIOD = 20
 LINES = np.array([0.2, 0.4, 0.7, 1.0])
 """Frequencies of that band whose mean square is the size of a response."""
 
-LOOSEST = 0.1
-"""Largest effect of the other dampers on one, over its own, with which a few turns solve a step in single precision."""
+LOOSEST = 0.01
+"""Largest effect of the other dampers on one, over its own, with which two turns solve a step in single precision."""
 
 SLOWEST = 1e-2
 """Slowest pole [rad/s] that can be marched as a difference from rest."""
@@ -189,7 +189,7 @@ def _marched(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArray[
     size = np.sqrt(np.mean(np.abs(response) ** 2, axis=2, keepdims=True)) + np.finfo(float).tiny
     quick = np.flatnonzero(np.abs(s) > abs(band))
     s = s[quick]
-    products = (rows[:, None, quick] * (inputs[quick].T / size)).reshape(-1, len(s))
+    products = (rows[:, quick][:, None] * (inputs[quick].T / size)).reshape(-1, len(s))
     late = products * (band / (s * (band - s))) + (products * (band / (s * (band + s)))).conj()
     sequence = np.argsort(np.max(np.abs(late), axis=0), kind="stable")
     together = np.max(np.abs(np.cumsum(late[:, sequence], axis=1)), axis=0)

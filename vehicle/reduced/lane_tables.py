@@ -63,7 +63,8 @@ class LaneTable:
         self.cars = [*cars, *[cars[-1]] * (LANES - len(cars))]
         laws = [*dampers, *[dampers[-1]] * (LANES - len(cars))]
         d, m = len(dampers[0]), start.shape[1]
-        self.pairs, self.reals = max(car.pairs for car in cars), max(car.reals for car in cars)
+        # An even number of real poles, as `read` takes them.
+        self.pairs, self.reals = max(car.pairs for car in cars), 2 * max((car.reals + 1) // 2 for car in cars)
         self.plates, inputs = m, 2 * (d + m)
         self.states = 2 * self.pairs + self.reals + 2 * (d + m)
         made = [[damper_lane(damper) for damper in own] for own in laws]
