@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import Executor, Future
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from tests.optimisation.wishes import box
 from vehicle.errors import ConfigurationError
 from vehicle.optimisation.problem import Tolerance, Wish, parsed_range, parsed_tolerance, parsed_wishes
-from vehicle.optimisation.trials import Spread, Trials, bands
+from vehicle.optimisation.trials import Spread, Trials, bands, on_executor
 from vehicle.sweeps.case import SignalFile
 from vehicle.sweeps.measure import ComfortMeasure
 from vehicle.sweeps.result import Result
@@ -108,6 +109,25 @@ def test_a_car_counts_with_its_tolerances(quantile, expected):
     assert values[0, 0] == pytest.approx(expected, abs=0.01) and reasons == ["", ""]
     # A car that keeps the parameter as it is has the tolerance about that value.
     assert trials(np.array([[np.nan]]))[0][0, 0] > 36.0
+
+
+class Here(Executor):
+    """Carries out at once what it is given; the results of a task stand in its own order."""
+
+    def submit(self, function, /, *arguments, **_):
+        future: Future[object] = Future()
+        cases, _, _ = arguments
+        future.set_result([Result(values={"g0": float(case.overrides[0].removeprefix("p0="))}) for case in cases])
+        return future
+
+
+def test_an_executor_answers_in_the_order_of_the_cars():
+    trials = Trials(
+        problem=box((0.0, 1.0), goals=1), inputs=[ROAD], measure=MEASURE, evaluate=on_executor(Here(), MEASURE)
+    )
+    points = np.linspace(1.0, 0.0, 101)[:, None]
+    for _ in range(2):
+        assert np.array_equal(trials(points)[0], points)
 
 
 def test_a_failed_run_fails_its_car():

@@ -75,7 +75,7 @@ def test_two_seeds_find_the_same_front_beyond_a_limit():
     fronts = []
     for seed in (1, 2):
         found = outcome(
-            problem, bowl(np.zeros((1, 4))), search(problem, bowl, population=40, generations=60, seed=seed)
+            problem, bowl(np.zeros((1, 4))), search(problem, bowl, population=40, generations=40, seed=seed)
         )
         fronts.append(found.costs)
         assert found.costs[0, 0] == pytest.approx(0.25, abs=0.01) and np.all(found.costs[:, 0] >= 0.25)

@@ -6,7 +6,6 @@ import argparse
 import math
 import shlex
 import sys
-from concurrent.futures import Executor
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +29,7 @@ from vehicle.errors import ConfigurationError
 if TYPE_CHECKING:
     from vehicle.optimisation.closer_look import Differences
     from vehicle.optimisation.outcome import Outcome
-    from vehicle.optimisation.trials import Evaluate, Trials
+    from vehicle.optimisation.trials import Trials
     from vehicle.parameters.vehicle import Vehicle
 
 STILL = 0.005
@@ -121,6 +120,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.optimisation.outcome import outcome
     from vehicle.optimisation.search import pymoo
     from vehicle.optimisation.search_files import read_beside, write_search
+    from vehicle.optimisation.trials import on_executor
     from vehicle.output.folder import prepare_folder
     from vehicle.sweeps.executors import executor_factory
 
@@ -134,7 +134,7 @@ def _job(options: argparse.Namespace) -> None:
     folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=CARS)
     with ExitStack() as held:
         if options.executor or options.jobs > 1:
-            trials = replace(trials, evaluate=_pooled(held.enter_context(make())))
+            trials = replace(trials, evaluate=on_executor(held.enter_context(make()), trials.measure))
         try:
             progress = ProgressLine("optimise  ", enabled=not options.quiet)
             base, generations = kept_search(
@@ -219,13 +219,6 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
         spread=spread,
     )
     return trials, vehicle
-
-
-def _pooled(executor: Executor) -> Evaluate:
-    """Evaluation on an executor that stays open."""
-    from vehicle.sweeps.sweep import sweep
-
-    return lambda cases, measure: sweep(cases, measure, executor=executor).results
 
 
 def _caption(options: argparse.Namespace, trials: Trials, vehicle: Vehicle, cars: int) -> str:

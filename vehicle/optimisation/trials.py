@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,11 +14,30 @@ from scipy.stats import qmc
 from vehicle.errors import ConfigurationError
 from vehicle.optimisation.problem import Problem, Tolerance, Vector
 from vehicle.sweeps.case import Case, Input
+from vehicle.sweeps.crew import Crew
 from vehicle.sweeps.measure import Measure
 from vehicle.sweeps.result import Result
 
 Evaluate = Callable[[Sequence[Case], Measure], Sequence[Result]]
 """As of `vehicle.sweeps.evaluation.evaluate`."""
+
+
+def on_executor(executor: Executor, measure: Measure) -> Evaluate:
+    """Evaluation by the workers of an executor, which stays open from one generation to the next.
+
+    Args:
+        executor: as of `vehicle.sweeps.executors`.
+        measure: of all cases.
+    """
+    crew = Crew(executor, measure)
+
+    def evaluate(cases: Sequence[Case], _: Measure) -> list[Result]:
+        found: dict[str, Result] = {}
+        todo = {str(number): case for number, case in enumerate(cases)}
+        crew.work(todo, lambda keys, results: found.update(zip(keys, results, strict=True)))
+        return [found[key] for key in todo]
+
+    return evaluate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
