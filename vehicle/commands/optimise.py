@@ -199,7 +199,7 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
     spread = ALONE
     if options.tolerance:
         quantile = math.nan if options.quantile is None else options.quantile
-        if not (math.isnan(quantile) or 0.5 <= quantile <= 1.0):
+        if options.quantile is not None and not 0.5 <= quantile <= 1.0:
             raise ConfigurationError(f"--quantile {quantile:g}: allowed are 0.5 to 1, which is the worst")
         tolerances = toleranced(vehicle, [parsed_tolerance(text) for text in options.tolerance])
         places = bands(len(tolerances), 8 if options.samples is None else options.samples, options.search_seed)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from scipy.stats import qmc
 
 from vehicle.errors import ConfigurationError
 from vehicle.optimisation.problem import Problem, Tolerance, Vector
-from vehicle.sweeps.case import Case, Input
+from vehicle.sweeps.case import Case, Input, table_cases
 from vehicle.sweeps.crew import Crew
 from vehicle.sweeps.measure import Measure
 from vehicle.sweeps.result import Result
@@ -115,9 +116,8 @@ class Trials:
     def cases(self, points: Vector) -> list[Case]:
         """Runs of points, the inputs varying fastest, then the cars of the spread."""
         cars = [car for point in points for car in self.spread.cars(self.problem.changes(point.tolist()))]
-        texts = [(*self.fixed, *(f"{path}={value!r}" for path, value in car.items())) for car in cars]
-        engine, vehicle = self.engine, self.vehicle
-        return [Case(source=i, overrides=text, engine=engine, vehicle=vehicle) for text in texts for i in self.inputs]
+        make = partial(table_cases, inputs=self.inputs, engine=self.engine, vehicle=self.vehicle, fixed=self.fixed)
+        return [case for car in cars for case in make([*car], [[*car.values()]])]
 
     def __call__(self, points: Vector) -> tuple[Vector, list[str]]:
         """Try cars.
