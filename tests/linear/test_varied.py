@@ -137,6 +137,26 @@ def test_a_spring_on_a_corner_of_its_table_has_its_car_built():
 @pytest.mark.parametrize(
     "changes",
     [
+        TABLES[:2],
+        TABLES[4:],
+        ["front.bushings.tyre.rotational_stiffness=0.0"],
+        [
+            "front.damper.viscous_law=degressive",
+            "front.damper.degressive_viscous=4e3",
+            "front.damper.degressive_velocity=0.1",
+        ],
+        ["front.hardpoints.stab_end.x=0.88"],
+        ["gravity=9.0"],
+        ["body.flexible=false"],
+    ],
+)
+def test_another_kind_of_element_or_another_place_is_built(car, changes):
+    assert car.varied(changes)._short is None
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
         ["damper.viscos=1.0"],
         ["damper.viscous=much"],
         ["damper.viscous=-1.0"],
