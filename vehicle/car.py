@@ -76,7 +76,7 @@ class Car:
         self._stepped: Car | None = None
         self._like: Car | None = None
         own = self.vehicle
-        self._family = Family(own, lambda more: vehicle_of(override(own.table, more), folder))
+        self._family = Family(own, folder or Path(), lambda more: vehicle_of(override(own.table, more), folder))
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
@@ -97,7 +97,7 @@ class Car:
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
-        car._family = Family(car.vehicle, lambda more: load_vehicle(file, [*changes, *more]))
+        car._family = Family(car.vehicle, car.folder or Path(), lambda more: load_vehicle(file, [*changes, *more]))
         return car
 
     def varied(self, overrides: Iterable[str]) -> Car:

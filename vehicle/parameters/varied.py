@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
@@ -12,6 +13,7 @@ from vehicle.names import AXES, SIDE_SIGN
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
+from vehicle.parameters.optional_keys import optional_paths
 from vehicle.parameters.paths import meant, parsed_value, value_at
 from vehicle.parameters.plausible import require_body, require_parts
 from vehicle.parameters.toml_file import build, type_hints
@@ -26,11 +28,12 @@ class Family:
 
     Args:
         vehicle: the one.
+        folder: where its file lies.
         whole: reads and composes it anew with overrides.
     """
 
-    def __init__(self, vehicle: Vehicle, whole: Callable[[Iterable[str]], Vehicle]) -> None:
-        self.vehicle, self._whole = vehicle, whole
+    def __init__(self, vehicle: Vehicle, folder: Path, whole: Callable[[Iterable[str]], Vehicle]) -> None:
+        self.vehicle, self.folder, self._whole = vehicle, folder, whole
         self._places: dict[str, list[tuple[str, str]] | None] = {}
 
     def vehicle_of(self, overrides: Iterable[str]) -> Vehicle:
@@ -69,8 +72,9 @@ class Family:
 
     def _numbers(self, given: str) -> list[tuple[str, str]] | None:
         """Whole paths that a text means, each with the table that it is of; None where one is not a single number."""
+        table = self.vehicle.table
         try:
-            places = meant(self.vehicle.table, given)
+            places = meant(table, given, lambda: optional_paths(table, self.folder))
         except ConfigurationError:
             return None
         owners = [self._owner(path) for path in places]
