@@ -150,7 +150,10 @@ class Car:
     @cached_property
     def matrices(self) -> CarMatrices:
         """Mass, damping and stiffness matrices of the same model in its design position."""
-        return self._short.matrices if self._short else car_matrices(self.model.model, self.model.static)
+        if self._short:
+            return self._short.matrices
+        # By what the car is, not by what this process has compiled: the same car has the same matrices to the bit.
+        return car_matrices(self.model.model, self.model.static, compiled=self._like is not None)
 
     @property
     def static(self) -> StaticTrim:

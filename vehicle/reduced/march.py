@@ -24,6 +24,7 @@ from vehicle.errors import MissingPartError
 from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import clamp, slope_at_rest
 from vehicle.reduced.control import Control, control, keep
+from vehicle.simulation.sampling import copy_row
 
 MISSING = "the reduced engine needs numba, which is missing (pip install numba)"
 
@@ -168,7 +169,8 @@ def march(
     c10, c11, c12, c13 = c[2 * at + 4], c[2 * at + 5], c[2 * at + 6], c[2 * at + 7]
     r0, r1, r2, r3, r4, r5, r6 = r[0], r[1], r[2], r[at], r[at + 1], r[at + 2], r[at + 3]
     sample, phase = first, 0  # phase: steps since the last sample
-    velocity, arriving, u = velocities[first - 1].copy(), np.empty(count), np.empty(inputs)
+    velocity, arriving, u = np.empty(count), np.empty(count), np.empty(inputs)
+    copy_row(velocity, velocities[first - 1])
     room, pieces = np.empty((3, count)), np.zeros(count, dtype=np.int64)
     for i in range(count):
         # An idle damper has no smoothing, and no friction.
@@ -224,16 +226,16 @@ def march(
         solve_dampers(count, arriving, gain, laws, curves, velocity, force, room, pieces)
         phase += 1
         if phase == 1:
-            after[sample - 1] = force
+            copy_row(after[sample - 1], force)
             keep(sample - 1, 1, velocity, curves, controls)
         if phase == every:
             phase = 0
-            row = sample - first
-            samples[row, :pairs] = x
-            samples[row, pairs : 2 * pairs] = y
-            samples[row, 2 * pairs :] = real
-            velocities[sample] = velocity
-            before[sample] = force
+            row = samples[sample - first]
+            copy_row(row, x)
+            copy_row(row[pairs:], y)
+            copy_row(row[2 * pairs :], real)
+            copy_row(velocities[sample], velocity)
+            copy_row(before[sample], force)
             keep(sample, 0, velocity, curves, controls)
             sample += 1
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import functools
 from collections.abc import Callable
-from typing import Any, get_type_hints
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -17,13 +17,12 @@ import numpy.typing as npt
 from llvmlite import ir
 
 from vehicle.compiler import OPTIONS, numba_module, stamp
-from vehicle.laws.damper import RECORD
-from vehicle.laws.semi_active import SETTING
 from vehicle.simulation.kernel import damper_force, rewrite
+from vehicle.simulation.record_pointers import at, packed
 from vehicle.simulation.recorder import Recorder
 from vehicle.simulation.records import Efc, Simulation, Ticket
 from vehicle.simulation.rows import Rows
-from vehicle.simulation.sampling import Order, Plates, Samples, Sources, keep_sample, move_plates
+from vehicle.simulation.sampling import Loop, Plates, copy_row, keep_sample, move_plates
 from vehicle.simulation.structures import pointer_offsets, scalar_offsets, step_address, user_size_offset
 
 numba = numba_module()
@@ -31,73 +30,6 @@ types, intrinsic = numba.types, numba.extending.intrinsic
 
 USER_SIZE = 2
 """Numbers of userdata that the callbacks need: address of the records, stamp."""
-
-ARRAYS = {
-    "Vector": numba.float64[::1],
-    "Table": numba.float64[:, ::1],
-    "Index": numba.int64[::1],
-    "Indices": numba.int64[:, ::1],
-    "Records": types.Array(numba.from_dtype(RECORD), 1, "C"),
-    "Settings": types.Array(numba.from_dtype(SETTING), 1, "C"),
-    "int": numba.int64,
-    "float": numba.float64,
-}
-
-
-def record_type(record: Any) -> Any:
-    """The compiler's type of a record of `vehicle.simulation.records`, from the words of its fields."""
-    inner = {name: kind for name, kind in get_type_hints(record).items() if hasattr(kind, "_fields")}
-    members = [
-        record_type(inner[name]) if name in inner else ARRAYS[record.__annotations__[name].__forward_arg__]
-        for name in record._fields
-    ]
-    return types.NamedTuple(members, record)
-
-
-SIMULATION = record_type(Simulation)
-
-OWNERS = 2
-"""Pointers at the head of an array that say who owns it: read as none, for nobody counts references here."""
-
-
-def _leaves(builder: Any, address: Any, kind: Any, value: Any, place: list[int]) -> Any:
-    """Read (value None) or write a value of a kind at an address, 8 bytes a leaf; returns the value read."""
-    if not isinstance(kind, ir.LiteralStructType | ir.ArrayType):
-        where = builder.add(address, ir.Constant(ir.IntType(64), 8 * place[0]))
-        place[0] += 1
-        pointer = builder.inttoptr(where, kind.as_pointer())
-        return builder.load(pointer) if value is None else builder.store(value, pointer)
-    members = kind.elements if isinstance(kind, ir.LiteralStructType) else [kind.element] * kind.count
-    found = ir.Constant(kind, ir.Undefined)
-    for index, member in enumerate(members):
-        part = None if value is None else builder.extract_value(value, index)
-        inner = _leaves(builder, address, member, part, place)
-        if index < OWNERS and isinstance(member, ir.PointerType):
-            inner = ir.Constant(member, None)
-        found = builder.insert_value(found, inner, index) if value is None else found
-    return found
-
-
-def _load_simulation(typing_context: Any, address: Any) -> Any:
-    """The records at an address; somebody else keeps their arrays alive."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _leaves(builder, arguments[0], context.get_value_type(SIMULATION), None, [0])
-
-    return SIMULATION(types.int64), generate
-
-
-def _store_simulation(typing_context: Any, address: Any, simulation: Any) -> Any:
-    """Write records to an address and return their size [bytes]; at address 0 nothing is written."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        place = [0]
-        kind = context.get_value_type(SIMULATION)
-        with builder.if_then(builder.icmp_unsigned("!=", arguments[0], ir.Constant(ir.IntType(64), 0))):
-            _leaves(builder, arguments[0], kind, arguments[1], place)
-        return ir.Constant(ir.IntType(64), 8 * place[0])
-
-    return types.int64(types.int64, SIMULATION), generate
 
 
 def _address_as_void_pointer(typing_context: Any, address: Any) -> Any:
@@ -122,7 +54,7 @@ def _call_step(typing_context: Any, function: Any, model: Any, data: Any) -> Any
     return types.void(types.int64, types.int64, types.int64), generate
 
 
-load_simulation, store_simulation = intrinsic(_load_simulation), intrinsic(_store_simulation)
+simulation_at, loop_at = at(Simulation), at(Loop)
 as_pointer, call_step = intrinsic(_address_as_void_pointer), intrinsic(_call_step)
 
 
@@ -167,8 +99,8 @@ def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
 
 
 @functools.cache
-def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any, Any]:
-    """`mjcb_control`, `mjcb_act_gain`, `mjcb_act_bias` as C functions, and what writes records to an address.
+def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any]:
+    """`mjcb_control`, `mjcb_act_gain`, `mjcb_act_bias` as C functions.
 
     They close over the offsets of `nuserdata` in mjModel and `userdata` in mjData and over the stamp, for these are the
     key of the compiler's cache.
@@ -178,7 +110,7 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
         address = record_address(model, data, user_size, user_data, mark)
         if address == 0:
             return
-        one = load_simulation(address)
+        one = simulation_at(address)
         if numba.carray(as_pointer(data + one.ticket.row_count), 1, numba.int32)[0] != one.ticket.rows:
             # Other rows than those the records were made for: the guard of the run finds a state that is not finite.
             one.fields.qfrc_applied[:] = np.nan
@@ -193,12 +125,8 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
         address = record_address(model, data, user_size, user_data, mark)
         if address == 0:
             return 0.0
-        one = load_simulation(address)
+        one = simulation_at(address)
         return damper_force(index, one.fields, one.layout, one.state)
-
-    def store(address: int, simulation: Simulation) -> int:
-        size: int = store_simulation(address, simulation) if mark else 0
-        return size
 
     word = types.intp
     law = types.float64(word, word, types.int32)
@@ -206,7 +134,6 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
         numba.cfunc(types.void(word, word), cache=True, **OPTIONS)(control),
         numba.cfunc(law, cache=True, **OPTIONS)(gain),
         numba.cfunc(law, cache=True, **OPTIONS)(bias),
-        numba.njit(types.int64(types.int64, SIMULATION), cache=True, **OPTIONS)(store),
     )
 
 
@@ -214,14 +141,16 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
 def _loop(mark: int) -> Any:
     """The compiled loop; `mark` makes the compiler's cache notice a change of the sources."""
 
-    def advance(order: Order, first: int, last: int, row: int, plates: Plates, s: Sources, b: Samples) -> int:
+    def advance(address: int, first: int, last: int, row: int) -> int:
         """Take the steps first..last and return the number of poses that were kept."""
+        loop = loop_at(address)
+        order, s, b = loop.order, loop.sources, loop.samples
         posed = 0 if mark else -1
         for index in range(first, last + 1):
-            move_plates(index, plates)
+            move_plates(index, loop.plates)
             recorded = index % order.every == 0
             if recorded and (index // order.every) % order.pose_every == 0:
-                b.poses[posed] = s.position
+                copy_row(b.poses[posed], s.position)
                 posed += 1
             call_step(order.step, order.model, order.data)
             if recorded:
@@ -231,7 +160,8 @@ def _loop(mark: int) -> Any:
                 row += 1
         return posed
 
-    return numba.njit(cache=True, nogil=True, boundscheck=False, error_model="numpy")(advance)
+    word = types.int64
+    return numba.njit(word(word, word, word, word), cache=True, nogil=True, **OPTIONS)(advance)
 
 
 class CompiledRows:
@@ -257,15 +187,14 @@ class CompiledRows:
         self.ticket = Ticket(model._address, rows.layout.row_count, count, time, efc)
         self.attached: list[tuple[mujoco.MjData, Simulation, npt.NDArray[np.int64]]] = []
         self.step_address = step_address()
-        *functions, self._store = _callbacks(user_size_offset(model), self.offsets["userdata"], stamp())
+        functions = _callbacks(user_size_offset(model), self.offsets["userdata"], stamp())
         self.control, self.gain, self.bias = (function.ctypes for function in functions)
 
     def attach(self, data: mujoco.MjData) -> None:
         """Let the callbacks act on a state of the model, with the present state of the rows."""
         rows = self.rows
         simulation = Simulation(self.ticket, rows.fields(data), rows.layout, rows.weights, rows.state)
-        memory = np.zeros(self._store(0, simulation) // 8, dtype=np.int64)
-        self._store(memory.ctypes.data, simulation)
+        memory = packed(simulation)
         data.userdata[:USER_SIZE] = memory.ctypes.data, stamp()
         # The memory holds addresses of these arrays.
         self.attached.append((data, simulation, memory))
@@ -287,10 +216,12 @@ class CompiledRows:
     def loop(self, recorder: Recorder, plates: Plates) -> Callable[[int, int], int]:
         """What takes steps first..last of an attached state into a recorder and returns how many poses it kept."""
         order = recorder.order._replace(step=self.step_address, force_offset=self.offsets["efc_force"])
-        compiled = _loop(stamp())
+        compiled, loop = _loop(stamp()), Loop(order, plates, recorder.sources, recorder.buffers)
+        memory = packed(loop)
 
         def advance(first: int, last: int) -> int:
-            return int(compiled(order, first, last, recorder.filled, plates, recorder.sources, recorder.buffers))
+            # The closure keeps the arrays whose addresses the memory holds.
+            return int(compiled(memory.ctypes.data, first, last, recorder.filled)) if loop else 0
 
         # No step at all: compiling is no part of the time of the run.
         advance(1, 0)

@@ -1,7 +1,7 @@
 """The records that the row laws work on: elements in their rows, weights of a step, state, fields of mjData.
 
 They are taken by compiled code as they are: contiguous arrays of 64 bits with the number of dimensions that their types
-say, `Vector` and `Index` one, `Table` and `Indices` two.
+say, `Vector` and `Index` one, `Table` and `Indices` two, `Tables3` three.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 Vector = npt.NDArray[np.float64]
 Table = npt.NDArray[np.float64]
+Tables3 = npt.NDArray[np.float64]
 Index = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.int64]
 Records = npt.NDArray[Any]

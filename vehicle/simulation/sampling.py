@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vehicle.compiler import jitable
+from vehicle.compiler import called, jitable
 from vehicle.simulation.modal_space import modal_acceleration
-from vehicle.simulation.records import Index, Indices, ModalSpace, Table, Vector
+from vehicle.simulation.records import Index, Indices, ModalSpace, Table, Tables3, Vector
 
 
 class Plates(NamedTuple):
@@ -62,8 +62,8 @@ class Samples(NamedTuple):
     actuator: Table
     solved: Table
     explicit: Table
-    rate: Table
-    branch: Table
+    rate: Tables3
+    branch: Tables3
     poses: Table
     frames: Table
     springs: Table
@@ -85,7 +85,23 @@ class Order(NamedTuple):
     half: float
 
 
+class Loop(NamedTuple):
+    """Everything that the compiled loop works on."""
+
+    order: Order
+    plates: Plates
+    sources: Sources
+    samples: Samples
+
+
 @jitable
+def copy_row(row: Vector, values: Vector) -> None:
+    """Copy numbers one by one: an assignment of arrays compiles its error messages, which takes as long as all else."""
+    for entry in range(values.shape[0]):
+        row[entry] = values[entry]
+
+
+@called
 def move_plates(index: int, p: Plates) -> None:
     """Put the plates where they are at a step, and tell the tyre rows."""
     for plate in range(p.mocap.shape[0]):
@@ -94,7 +110,7 @@ def move_plates(index: int, p: Plates) -> None:
         p.row_acceleration[plate, 2] = p.acceleration[index, plate]
 
 
-@jitable
+@called
 def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
     """Copy the modal coordinates of the last evaluation, and their velocities half a step later."""
     q, v, pull, first = s.modal[0], s.modal[1], b.modal_pull, order.first_velocity
@@ -109,7 +125,7 @@ def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
         b.modal_velocity[row, mode] = v[mode] - order.half * faster
 
 
-@jitable
+@called
 def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector, b: Samples) -> None:
     """Copy the present time's forces, rates and positions.
 
@@ -118,18 +134,19 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
     for place in range(s.sites.shape[0]):
         for axis in range(3):
             b.places[row, 3 * place + axis] = s.site_positions[s.sites[place], axis]
-    b.turn[row] = s.orientation[order.body]
+    copy_row(b.turn[row], s.orientation[order.body])
     keep_modes(row, order, s, b)
     for damper in range(s.dampers.shape[0]):
         dof = s.dampers[damper]
         b.damper_velocity[row, damper] = s.velocity[dof] + half * s.acceleration[dof]
-    b.coefficient[row] = s.coefficient
-    b.actuator[row] = s.actuator
-    b.solved[row] = solved
-    b.explicit[row] = s.explicit
-    b.rate[row] = s.rate
-    b.branch[row] = s.branch
-    b.contact[row] = s.contact[0]
+    copy_row(b.coefficient[row], s.coefficient)
+    copy_row(b.actuator[row], s.actuator)
+    copy_row(b.solved[row], solved)
+    copy_row(b.explicit[row], s.explicit)
+    for element in range(s.rate.shape[0]):
+        copy_row(b.rate[row, element], s.rate[element])
+        copy_row(b.branch[row, element], s.branch[element])
+    copy_row(b.contact[row], s.contact[0])
     for body in range(s.bodies.shape[0]):
         for axis in range(3):
             b.frames[row, 12 * body + axis] = s.origins[s.bodies[body], axis]
