@@ -178,11 +178,11 @@ def test_what_is_wrong_is_said_as_of_a_built_car(car, changes):
 
 
 def test_a_star_means_what_it_means_to_a_built_car():
-    fixed, stars = ["front.damper.stribeck_velocity=0.01"], ["*.stribeck_velocity=0.02", "*.damper.viscous=2000.0"]
+    fixed, stars = ["front.damper.gas_force=50.0"], ["*.damper.gas_force=100.0", "*.damper.viscous=2000.0"]
     varied = Car.load("focus_road", fixed).varied(stars).vehicle
     assert varied == Car.load("focus_road", [*fixed, *stars]).vehicle
     # The rear one has it too now, which had none.
-    assert [one.law.stribeck_velocity for one in varied.composition.dampers] == [0.02] * 4
+    assert [one.law.gas_force for one in varied.composition.dampers] == [100.0] * 4
 
 
 def test_a_varied_car_can_be_varied_and_has_a_model_where_one_is_asked_for(car):
