@@ -15,6 +15,7 @@ Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import compress
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +26,7 @@ from vehicle.analysis.input_floor import CAUSES, sentences, silent_lines
 from vehicle.analysis.output_error import StretchFit, fit_stretches
 from vehicle.analysis.samples import (
     checked_names,
+    checked_rows,
     checked_same_length,
     checked_signals,
     checked_time_step,
@@ -84,7 +86,7 @@ def local_rational_response(
 def local_rational_responses(
     time_step: float,
     excitations: ArrayLike,
-    responses: ArrayLike,
+    responses: ArrayLike | Sequence[NDArray[np.float64]],
     *,
     band: tuple[float, float] = (1.0, 50.0),
     resolution: float = 0.1,
@@ -97,7 +99,7 @@ def local_rational_responses(
     Args:
         time_step: sampling interval [s].
         excitations: inputs, shape (p, n); they begin and end at rest or not, both are allowed.
-        responses: outputs, shape (n,) or (k, n).
+        responses: outputs, shape (n,) or (k, n), or k of them one by one.
         band: lowest and highest frequency [Hz].
         resolution: distance of the frequencies of the result [Hz]; half of it below `BODY_MODES`.
         names: names of the responses for the reasons.
@@ -114,8 +116,9 @@ def local_rational_responses(
     """
     step = checked_time_step(time_step)
     inputs = checked_signals("excitations", excitations)
-    outputs = checked_signals("responses", responses)
-    checked_same_length("responses", outputs, "the excitations", inputs.shape[1])
+    outputs = checked_rows("responses", responses)
+    for row in outputs:
+        checked_same_length("responses", row, "the excitations", inputs.shape[1])
     labels = checked_names("input", input_names, len(inputs))
     answering = checked_names("response", names, len(outputs))
     samples = inputs.shape[1]
@@ -144,13 +147,15 @@ def local_rational_responses(
     halves = np.clip(np.round(RELATIVE_WIDTH * centres), least, MOST_HALF_WIDTH).astype(int)
     halves = np.minimum(halves, np.minimum(centres - 1, last - centres))
     silent = silent_lines(inputs, spectra, centres, halves, rounding or (0.0,) * len(inputs))
-    moving = ~is_constant(outputs)
+    moving = np.array([not is_constant(row) for row in outputs])
     shape = (len(inputs), len(outputs), centres.size)
     response, coherence = np.full(shape, complex(np.nan, np.nan)), np.full(shape[1:], np.nan)
     deviation, averages = np.full((2, *shape), np.nan)
     # One response after the other, and of each the lines that are asked for: a long record is large enough once.
     needed = int(np.max(centres + halves, initial=0)) + 1
-    answers = np.array([np.fft.rfft(row - row.mean())[:needed] for row in outputs[moving]]).reshape(-1, needed)
+    answers = np.array([np.fft.rfft(row - row.mean())[:needed] for row in compress(outputs, moving)]).reshape(
+        -1, needed
+    )
     driven = np.flatnonzero(silent == 0)
     for some, lines in stretches_of_one_length(centres[driven], halves[driven]):
         which = driven[some]

@@ -37,7 +37,7 @@ class MotionResponse:
 def motion_responses(
     time_step: float,
     inputs: Mapping[str, Real],
-    responses: Real,
+    responses: Sequence[Real] | Real,
     *,
     labels: Mapping[str, str],
     names: Sequence[str],
@@ -50,7 +50,7 @@ def motion_responses(
     Args:
         time_step: [s].
         inputs: that move, name to samples (n,).
-        responses: (k, n).
+        responses: k of shape (n,), or (k, n).
         labels: of the inputs, for messages.
         names: of the responses, for messages.
         band: lowest and highest frequency [Hz].
@@ -72,7 +72,7 @@ def motion_responses(
     driven, called = np.array([inputs[key] for key in first]), [labels[key] for key in first]
     if window is not None:
         found = frequency_responses(
-            time_step, driven, responses, window_s=window, band=band, input_names=called, names=names
+            time_step, driven, np.array(responses), window_s=window, band=band, input_names=called, names=names
         )
     else:
         steps = [rounding[key] for key in first]

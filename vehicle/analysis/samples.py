@@ -45,6 +45,15 @@ def checked_signals(what: str, signals: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
+def checked_rows(what: str, signals: ArrayLike | Sequence[NDArray[np.float64]]) -> Sequence[NDArray[np.float64]]:
+    """The rows of `checked_signals`; of a sequence of signals (n,) as they stand, without a copy of them all."""
+    if isinstance(signals, list | tuple) and all(isinstance(row, np.ndarray) and row.ndim == 1 for row in signals):
+        rows = [checked_signals(f"{what} {number}", row)[0] for number, row in enumerate(signals)]
+        if rows:
+            return rows
+    return list(checked_signals(what, signals))
+
+
 def checked_same_length(what: str, signals: NDArray[np.float64], other: str, length: int) -> None:
     """Refuse signals (k, n) whose n differs from the length of the other record; nothing is cut silently."""
     if signals.shape[-1] != length:

@@ -117,7 +117,7 @@ def responses(
     return motion_responses(
         recording.timestep,
         {one: recording[plate] for one, plate in plates.items()},
-        np.array([recording[name] for name in names]),
+        [recording[name] for name in names],
         labels=plates,
         names=names,
         band=band,

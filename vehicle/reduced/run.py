@@ -88,10 +88,10 @@ def simulate_reduced(
     run.fill(march, plates, every, readout, table, watch)
     channel = dict(zip(linear, table, strict=True)) | run.wheel_channels(model, plates[: samples * every : every])
     for name in linear:
+        # In place: a long record stands in memory once.
+        positions, channel[name] = channel[name], channel[name][:samples]
         if "_acc_" in name:
-            channel[name] = acceleration(channel[name], interval)
-        else:
-            channel[name] = channel[name][:samples]
+            channel[name][:] = acceleration(positions, interval)
     for wheel in run.corners:
         if f"tyre_{wheel}_force_z" in channel:
             channel[f"tyre_{wheel}_force_z"] = channel[f"tyre_{wheel}_force_z"] + tyre_load[wheel]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.names import side_of, wheel_words
@@ -32,6 +33,9 @@ NO_LEVELS = (1.0, 1e5)
 
 DETAIL = 2.0
 """Length of the magnified stretch [s]."""
+
+MOST_POINTS = 250_000
+"""Points of a line: a record of four minutes is drawn as it is, of a longer one the outline."""
 
 LEGEND_ROOM = 0.22
 """Share of the height of a panel kept free for its legend."""
@@ -144,7 +148,7 @@ def plot_time(path: Path, run: RecordedRun) -> None:
             for number, (name, label) in enumerate(lines.items()):
                 style = {"color": COLOURS[number], "linestyle": LINES[number], "zorder": 2.5 - 0.1 * number}
                 values = scale * recording[name]
-                whole.plot(time, values, linewidth=0.5, label=label, **style)
+                whole.plot(*outline(time, values), linewidth=0.5, label=label, **style)
                 detail.plot(time[inside], values[inside], **style)
             lowest, highest = whole.get_ylim()
             whole.set(ylim=(lowest, highest + LEGEND_ROOM * (highest - lowest)), ylabel=unit)
@@ -165,13 +169,32 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         axes[0, 0].set_title("whole record")
         axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
         for axis, name in zip(characteristics, dampers, strict=True):
-            speed, force = 1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"]
+            thin = slice(None, None, -(-time.size // MOST_POINTS))
+            speed, force = 1e3 * recording[f"damper_{name}_velocity"][thin], recording[f"damper_{name}_force"][thin]
             axis.plot(speed, force, ".", markersize=1.5, color=COLOURS[0], zorder=3, rasterized=True)
             for limit in (-1e3 * slip, 1e3 * slip):
                 axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
             axis.set(
                 xlabel="damper velocity [mm/s]", ylabel="damper force [N]", title=f"{side_of(name, wheels)} damper"
             )
+
+
+def outline(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
+    """A long history by the least and the largest value of short pieces, which looks the same at any width of a page.
+
+    Args:
+        time: [s], (n,).
+        values: (n,).
+
+    Returns:
+        Both as they are up to `MOST_POINTS`; else (m,), m < `MOST_POINTS`.
+    """
+    size = -(-2 * time.size // MOST_POINTS)
+    if time.size <= MOST_POINTS:
+        return time, values
+    pieces = values[: values.size // size * size].reshape(-1, size)
+    ends = np.stack([pieces.min(axis=1), pieces.max(axis=1)], axis=1)
+    return np.repeat(time[: values.size // size * size : size], 2), ends.ravel()
 
 
 def _each(channel: str, label: str, these: Sequence[str], wheels: Sequence[str]) -> dict[str, str]:
