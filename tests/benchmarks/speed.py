@@ -25,6 +25,7 @@ from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
 from vehicle.names import AXES
+from vehicle.reduced.many import simulate_many
 from vehicle.simulation.callbacks import compiled_rows, installed
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.rows import Rows, prepare_model
@@ -42,6 +43,7 @@ SHOWN = {
     "slip_error": "largest difference of a slip share against an eighth of the step",
     "reduced_realtime_factor": "the same for the reduced engine, all channels",
     "reduced_few_realtime_factor": "the same with the channels of seat rail and dampers only",
+    "batch_realtime_factor": "simulated over computing time of many cars at once, seat rail and damper velocities",
     "four_wheel_rows": "constraint rows of focus_road, on four plates",
     "four_wheel_dof": "degrees of freedom of focus_road",
     "four_wheel_step_us": "its step with the callbacks that a run uses, all plates in motion [us]",
@@ -56,6 +58,9 @@ FEW = [
     *(f"damper_{wheel}_{quantity}" for wheel in ("fr", "fl") for quantity in ("velocity", "force")),
 ]
 """Channels of a study of comfort and friction."""
+
+BATCH = 16
+"""Cars that are run at once."""
 
 PARTS = {
     "position": "mjTIMER_POSITION",
@@ -160,6 +165,20 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     return spent
 
 
+def batch_factor(car: Car, signal: Signal) -> float:
+    """Simulated time of all cars of a batch over its computing time, tables and all, channels of comfort and slip."""
+    started = time.perf_counter()
+    simulate_many(
+        [car.poles] * BATCH,
+        signal,
+        dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,
+        record_rate=car.vehicle.solver.record_rate,
+        tyre_load=[car.model.static.tyre_load] * BATCH,
+        channels=[name for name in FEW if not name.endswith("_force")],
+    )
+    return BATCH * signal.duration / (time.perf_counter() - started)
+
+
 def accuracy(car: Car, seconds: float) -> Figures:
     """RMS of every acceleration and slip shares against an eighth of the step, and the reduced engine against both."""
     fine_car = Car.load(None, [f"solver.timestep={car.vehicle.solver.step / 8}"])
@@ -193,6 +212,7 @@ def measure(effort: Effort) -> Figures:
     few: list[float] = []
     four_wheel: list[float] = []
     four_wheel_reduced: list[float] = []
+    batch: list[float] = []
     road_car = Car.load("focus_road")
     on_four, long_on_four = on_four_plates(signal), on_four_plates(piece(effort.accuracy_seconds))
     road_car.run(long_on_four, engine="reduced")
@@ -200,6 +220,7 @@ def measure(effort: Effort) -> Figures:
     # Long enough that what a run does once is as small a part as in a study.
     long = piece(effort.accuracy_seconds)
     car.run(long, engine="reduced")
+    batch_factor(car, signal)
     for _ in range(effort.repeats):
         native.append(stepping_time(car, signal, steps, "native"))
         four_wheel.append(stepping_time(road_car, on_four, steps, "native"))
@@ -209,6 +230,7 @@ def measure(effort: Effort) -> Figures:
         for found_factors, channels in ((reduced, None), (few, FEW)):
             run = car.run(long, engine="reduced", channels=channels)
             found_factors.append(run.recording.statistics.realtime_factor)
+        batch.append(batch_factor(car, long))
         run = road_car.run(long_on_four, engine="reduced")
         four_wheel_reduced.append(run.recording.statistics.realtime_factor)
     road_model = road_car.model.model
@@ -227,6 +249,7 @@ def measure(effort: Effort) -> Figures:
         "realtime_factor": median(factors),
         "reduced_realtime_factor": median(reduced),
         "reduced_few_realtime_factor": median(few),
+        "batch_realtime_factor": median(batch),
         "four_wheel_rows": int(road_data.nefc),
         "four_wheel_dof": int(road_model.nv),
         "four_wheel_step_us": median(four_wheel),

@@ -13,7 +13,7 @@ from tests.benchmarks import speed
 SMALL = speed.Effort(repeats=1, steps=50, seconds=0.5, accuracy_seconds=0.5, cases=1)
 TIMES = {"step_us", "python_step_us", "plain_step_us", "realtime_factor", "reduced_realtime_factor"}
 TIMES |= {"reduced_few_realtime_factor", "four_wheel_step_us", "four_wheel_step_ratio"}
-TIMES |= {"four_wheel_reduced_realtime_factor", "case_ms"}
+TIMES |= {"four_wheel_reduced_realtime_factor", "batch_realtime_factor", "case_ms"}
 COUNTS = {"rows", "dof", "four_wheel_rows", "four_wheel_dof"}
 KEYS = {*COUNTS, "timestep", *TIMES, "rms_error", "rms_error_channel", "slip_error", "reduced_rms_error"}
 PARTS = {"parts_us", "plain_parts_us"}

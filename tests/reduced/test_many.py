@@ -8,8 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.linear.plain_matrices import plain_matrices
+from tests.lumped.stick_slip import ExactStickSlip
+from tests.reduced.test_quarter_car import damper, matrices
+from vehicle.car import Car
 from vehicle.excitation.random_road import random_road
+from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.parameters.vehicle import load_vehicle
 from vehicle.reduced.many import COARSE_STEP, simulate_many
+from vehicle.reduced.pole_model import pole_model
 from vehicle.reduced.run import LONGEST_STEP, simulate_reduced
 
 pytest.importorskip("numba", reason="the reduced engine needs it")
@@ -93,3 +100,87 @@ def test_a_car_moves_as_it_does_alone(company, together, name, monkeypatch):
             # A force jumps, and the others only where it does.
             assert difference <= largest * np.std(alone[channel]), (channel, step)
         assert found.recording(0).statistics.warnings == alone.statistics.warnings
+
+
+def test_set_valued_friction_under_a_sine():
+    """A mass on a tyre over a plate, its damper to the ground: Den Hartog's oscillator, with stops, in closed form."""
+    stiffness, limit, omega = 100.0, 18.0, 4.0
+    system = plain_matrices(
+        mass=np.eye(2),
+        damping=np.zeros((2, 2)),
+        stiffness=stiffness * np.eye(2),
+        dampers=np.array([0, 1]),
+        viscous=np.zeros(2),
+        plate_stiffness=stiffness * np.eye(2),
+        plate_damping=np.zeros((2, 2)),
+        tyre_stiffness=np.full(2, stiffness),
+        tyre_damping=np.zeros(2),
+        outputs={"knuckle_fr_acc_z": np.array([1.0, 0.0])},
+        body_rows={"body": np.zeros((6, 2))},
+        body_masses={"body": np.eye(6)},
+    )
+    law = dataclasses.replace(load_vehicle().damper, viscous=0.0, coulomb_friction=limit)
+    time = uniform_time(samples=4001, timestep=1e-3)
+    plate = 0.3 * np.sin(omega * time)
+    found = run_many(
+        [pole_model(system)],
+        [[law, law]],
+        Signal(time=time, displacement={"fr": plate}),
+        [{"fr": 0.0, "fl": 0.0}],
+        channels=["tyre_fr_force_z", "damper_fr_velocity"],
+    )
+    exact = ExactStickSlip(1.0, stiffness, limit, 0.3 * stiffness, omega)
+    pieces = exact.motion(4.0, 0.0, 0.0)
+    assert 0.1 < sum(end - start for start, end, kind, _ in pieces if kind == 0) / 4.0 < 0.9
+    position = plate - found.channels["tyre_fr_force_z"][0] / stiffness
+    # In stick the clamped law creeps with at most 16 um/s.
+    assert np.max(np.abs(position - exact.sample(pieces, time))) < 2e-5
+
+
+def test_a_stuck_damper_is_of_third_order():
+    time = uniform_time(samples=1001, timestep=1e-3)
+    plate = 5e-4 * np.sin(np.pi * time) ** 4 * np.sin(2.0 * np.pi * 25.0 * time)
+    law, channel = damper(coulomb_friction=5e3), "suspension_mount_fr_acc_z"
+    run = {
+        "signal": Signal(time=time, displacement={"fr": plate}),
+        "tyre_load": [{"fr": 1e6, "fl": 1e6}],
+        "channels": [channel, "damper_fr_velocity"],
+    }
+    coarse, middle, fine = (
+        run_many([pole_model(matrices())], [[law, law]], step=step, **run).channels[channel][0]
+        for step in (1e-3, 5e-4, 1.25e-4)
+    )
+    errors = [float(np.std(one - fine)) for one in (coarse, middle)]
+    # Eight times; four times with a force that is constant over a step.
+    assert errors[0] / errors[1] > 6.0
+
+
+def test_four_dampers_and_four_plates():
+    car = Car.load("focus_road")
+    late = {wheel: np.roll(ROAD.displacement["fr"], 40 * k) for k, wheel in enumerate(car.vehicle.wheels)}
+    signal = Signal(time=ROAD.time[:801], displacement={wheel: z[:801] for wheel, z in late.items()})
+    laws, loads = [one.law for one in car.vehicle.composition.dampers], car.model.static.tyre_load
+    channels = ["seat_rail_acc_z", *(f"damper_{wheel}_velocity" for wheel in car.vehicle.wheels), "tyre_rl_force_z"]
+    alone = simulate_reduced(car.poles, signal, dampers=laws, record_rate=1000.0, tyre_load=loads, channels=channels)
+    found = run_many([car.poles], [laws], signal, [loads], channels=channels)
+    assert found.statistics[0].timestep == COARSE_STEP, "not run alone"
+    for channel in channels:
+        assert np.std(found.channels[channel][0] - alone[channel]) < 5e-3 * np.std(alone[channel]), channel
+    assert found.statistics[0].within_validity == alone.statistics.within_validity
+
+
+def test_motion_beyond_the_matrices_is_said_of_that_car_alone(car):
+    violent = Signal(time=ROAD.time, displacement={"fr": 40.0 * ROAD.displacement["fr"]})
+    loads = [car.model.static.tyre_load, dict.fromkeys(("fr", "fl"), 1000000000.0)]
+    found = run_many([car.poles] * 2, [dampers(car, "coulomb")] * 2, violent, loads, channels=["seat_rail_acc_z"])
+    alone = simulate_reduced(
+        car.poles,
+        violent,
+        dampers=dampers(car, "coulomb"),
+        record_rate=1000.0,
+        tyre_load=loads[0],
+        channels=["seat_rail_acc_z"],
+    )
+    assert len(alone.statistics.warnings) > len(found.statistics[1].warnings)
+    assert [text[:20] for text in found.statistics[0].warnings] == [text[:20] for text in alone.statistics.warnings]
+    assert not found.statistics[0].within_validity

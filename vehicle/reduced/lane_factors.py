@@ -187,13 +187,14 @@ def _marched(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArray[
     shares = shares.reshape(len(rows), -1, 2, len(LINES))
     response = (shares[:, :, 0] + shares[:, :, 1].conj()) * LINES**order
     size = np.sqrt(np.mean(np.abs(response) ** 2, axis=2, keepdims=True)) + np.finfo(float).tiny
-    quick = np.flatnonzero(np.abs(s) > abs(band))
+    quick, found = np.flatnonzero(np.abs(s) > abs(band)), np.ones(n, dtype=bool)
+    if not quick.size:
+        return found
     s = s[quick]
     products = (rows[:, quick][:, None] * (inputs[quick].T / size)).reshape(-1, len(s))
     late = products * (band / (s * (band - s))) + (products * (band / (s * (band + s)))).conj()
     sequence = np.argsort(np.max(np.abs(late), axis=0), kind="stable")
     together = np.max(np.abs(np.cumsum(late[:, sequence], axis=1)), axis=0)
     fast = np.flatnonzero(together <= DELAY)
-    found = np.ones(n, dtype=bool)
     found[quick[sequence[: fast[-1] + 1 if fast.size else 0]]] = False
     return found
