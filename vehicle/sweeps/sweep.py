@@ -40,10 +40,11 @@ def sweep(
 ) -> SweepTable:
     """Carry out runs and tabulate what is measured of them.
 
-    A run that fails is a row with its reason. A worker that dies takes no finished row with it: the executor is made
-    again, the runs it held are repeated one at a time, and the one that kills its worker again is a failed row. With a
-    folder, rows are on the disk as they finish, and rows found there are not computed again while car, input, measure
-    and program are the same. The table does not depend on the number of workers.
+    A run that fails is a row with its reason. Workers take tasks of many runs, about a second of work; one that dies
+    takes no finished row with it: the executor is made again, the tasks in hand are repeated one at a time, the runs of
+    the task that kills its worker again one by one, and the run that does is a failed row. With a folder, rows are on
+    the disk as their tasks finish, and rows found there are not computed again while car, input, measure and program
+    are the same. The table depends neither on the number of workers nor on the sizes of the tasks, to the last digit.
 
     Args:
         cases: the runs.
