@@ -114,6 +114,7 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
     given = [*TRADE, *more, "--quantile", "1", "--cars", "8", "--beside", str(searched)]
     assert main(arguments(road, folder, *given)) == 0
     said = capsys.readouterr().out
+    assert f"front of {searched}: hypervolume +" in said
     assert "8 cars, " in said and "knee: --set damper.coulomb_friction=10 --set front.damper.viscous=" in said
     for row in rows_of(folder / "front.csv"):
         assert float(row[COMFORT]) > 0.0 and row["comfort without tolerances [m/s2]"]

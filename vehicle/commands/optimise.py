@@ -119,7 +119,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.optimisation.kept_search import kept_search
     from vehicle.optimisation.outcome import outcome
     from vehicle.optimisation.search import pymoo
-    from vehicle.optimisation.search_files import read_beside, write_search
+    from vehicle.optimisation.search_files import agreement, read_beside, write_search
     from vehicle.optimisation.trials import on_executor
     from vehicle.output.folder import prepare_folder
     from vehicle.sweeps.executors import executor_factory
@@ -171,6 +171,12 @@ def _job(options: argparse.Namespace) -> None:
     )
     if not options.quiet:
         _tell(folder, found, trials, checked)
+        if beside is not None:
+            far = agreement(found, beside)
+            print(
+                f"front of {beside.folder}: hypervolume {100 * far['hypervolume_change']:+.2f} % against this one, "
+                f"mean distance {100 * far['mean_distance']:.2f} % of the extents"
+            )
         if notices:
             print(
                 f"{len(notices)} notices in summary.json: the reduced engine left its validity; --check tells the cost"
