@@ -48,7 +48,7 @@ def test_the_front_of_a_quarter_car_lies_between_its_two_best_dampers():
         return tried(points, *np.array([mean_squares(c) for c in points[:, 0]]).T)
 
     found = outcome(
-        problem, attempt(np.array([[2000.0]])), search(problem, attempt, population=24, generations=12, seed=3)
+        problem, attempt(np.array([[2000.0]])), search(problem, attempt, population=24, generations=20, seed=3)
     )
     dampers = found.tried.points[found.front, 0]
     assert (comfortable, holding) == pytest.approx((1194.0, 3372.2), abs=0.1)

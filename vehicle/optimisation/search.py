@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 from vehicle.errors import DataError, MissingPartError
 from vehicle.optimisation.problem import Problem, Vector
@@ -107,7 +106,9 @@ def search(
 
 def _first(problem: Problem, population: int, seed: int) -> Vector:
     """Shares of the ranges of the first generation; (population, p)."""
-    shares = qmc.LatinHypercube(len(problem.ranges), rng=seed).random(population)
+    draw, size = np.random.default_rng(seed), (population, len(problem.ranges))
+    strata = draw.permuted(np.tile(np.arange(population), (size[1], 1)), axis=1).T  # each range in as many slices
+    shares = (strata + draw.random(size)) / population
     base = problem.share(np.array(problem.base))
     if np.all((base >= 0.0) & (base <= 1.0)):
         shares[0] = base

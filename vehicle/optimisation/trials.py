@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from scipy.stats import qmc
+import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.optimisation.problem import Problem, Tolerance, Vector
@@ -86,7 +86,7 @@ def bands(tolerances: int, samples: int, seed: int) -> Vector:
         raise ConfigurationError(
             f"--samples {samples}: must be a power of two, from 2 on (Sobol's sequence is balanced there)"
         )
-    return np.asarray(2.0 * qmc.Sobol(tolerances, scramble=True, rng=seed).random(samples) - 1.0)
+    return np.asarray(2.0 * scipy.stats.qmc.Sobol(tolerances, scramble=True, rng=seed).random(samples) - 1.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
