@@ -1,7 +1,7 @@
 """Functions for compiled code, and where numba keeps it: beside the sources, in the user's cache, or temporarily.
 
-`jitable` marks a function of plain numbers and arrays that compiled code calls by its name, and `called` one of whole
-records; both stay what they are in Python. numba itself is loaded by `numba_module`, at the first need. Its own search
+`jitable` marks a function of plain numbers, arrays and records that compiled code calls by its name; it stays what it
+is in Python. numba itself is loaded by `numba_module`, at the first need. Its own search
 for a folder ends with an error where the package is read-only and there is no home folder. What is kept there is loaded
 and run by the next process, so a folder that others could have written is not used.
 """
@@ -30,22 +30,13 @@ OPTIONS: dict[str, Any] = {"boundscheck": False, "error_model": "numpy", "fastma
 """Division as numpy has it; sums in any order, with fused products, so that they fill the vector units: round-off."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-_marked: list[tuple[Callable[..., Any], bool]] = []
+_marked: list[Callable[..., Any]] = []
 _loaded: list[Any] = []
 
 
 def jitable(function: Function) -> Function:
     """Mark a function that is put into the compiled code which calls it, and return it as it is."""
-    return _mark(function, inline=True)
-
-
-def called(function: Function) -> Function:
-    """Mark a longer function of records, which is compiled once and called, and return it as it is."""
-    return _mark(function, inline=False)
-
-
-def _mark(function: Function, *, inline: bool) -> Function:
-    _marked.append((function, inline))
+    _marked.append(function)
     if _loaded:
         _register()
     return function
@@ -68,9 +59,9 @@ def numba_module() -> Any:
 def _register() -> None:
     """Make the marked functions known to the compiler."""
     while _marked:
-        function, inline = _marked.pop(0)
-        # Put into their callers by LLVM, for arrays are slow arguments. Not by numba: its loops err.
-        _loaded[0](forceinline=inline, **OPTIONS)(function)
+        # Put into their callers by LLVM. Not by numba: its loops err. Not left to be called: a process that compiles
+        # takes each from its own module, and one that loads the callers from theirs, whose sums are rounded otherwise.
+        _loaded[0](forceinline=True, **OPTIONS)(_marked.pop(0))
 
 
 @cache

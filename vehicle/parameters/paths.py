@@ -168,7 +168,7 @@ def value_of(vehicle: Any, path: str) -> float:
     table = as_table(vehicle)
     declared: Mapping[str, Any] = vehicle.quantity_of(path)
     if value_at(table, path) is None and "unit" in declared:
-        if _is_number(declared["default"]):
+        if _is_number(declared.get("default")):
             return float(declared["default"])
         raise ConfigurationError(f"parameter {path}: not given in this vehicle, and without a default; give its value")
     try:

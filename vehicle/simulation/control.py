@@ -8,12 +8,12 @@ that is held from one instant to another is then exactly that.
 
 from __future__ import annotations
 
-from vehicle.compiler import called
+from vehicle.compiler import jitable
 from vehicle.laws.semi_active import PRESENT, act
 from vehicle.simulation.records import Fields, Layout, State
 
 
-@called
+@jitable
 def control(time: float, d: Fields, e: Layout, s: State) -> None:
     """Read the sensors and set the coefficients of the present step; once for each time."""
     own, m = e.controls, e.modes

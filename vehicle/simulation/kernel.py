@@ -30,7 +30,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle.compiler import called, jitable
+from vehicle.compiler import jitable
 from vehicle.laws.curve import curve_force
 from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import slope_at_rest
@@ -53,7 +53,7 @@ def bent(k: int, displacement: float, stiffness: float, t: Tables, s: State) -> 
     return force - stiffness * displacement
 
 
-@called
+@jitable
 def stops(d: Fields, e: Layout, s: State) -> None:
     """Forces of the stops of dampers on their joints, known with the positions; after the forces of the rows."""
     t = e.tables
@@ -64,7 +64,7 @@ def stops(d: Fields, e: Layout, s: State) -> None:
             d.qfrc_applied[dof] -= curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
 
 
-@called
+@jitable
 def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """Main springs: the line through the displaced seat, its derivatives, and the elastic force."""
     own, m = e.springs, e.modes
@@ -107,7 +107,7 @@ def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         efc.J[own.rows[spring], dof] += (2 * end - 1) * velocity
 
 
-@called
+@jitable
 def oblique_rows(d: Fields, efc: Efc, e: Layout) -> None:
     """Rows along directions of their own, P R' (J, r, r'), instead of the axes of the world."""
     b = e.bushings
@@ -134,7 +134,7 @@ def oblique_rows(d: Fields, efc: Efc, e: Layout) -> None:
                     efc.vel[row + i] = along
 
 
-@called
+@jitable
 def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
     """Residual and rate of every element in its own axes, with the velocity of the plates taken off."""
     b = e.bushings
@@ -157,7 +157,7 @@ def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
             s.residual[n, i], s.rate[n, i] = efc.pos[b.rows[n, i]], efc.vel[b.rows[n, i]]
 
 
-@called
+@jitable
 def advance_branches(time: float, c: Weights, s: State) -> None:
     """Carry the Maxwell branches over the step that has just been completed."""
     last = s.last_time[0]
@@ -174,7 +174,7 @@ def advance_branches(time: float, c: Weights, s: State) -> None:
     s.last_time[0] = time
 
 
-@called
+@jitable
 def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """f0 = preload - K r - B r' - f2, turned into world axes; impedance and reference of the rows.
 
@@ -214,7 +214,7 @@ def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     lift_off(efc, e, c, s)
 
 
-@called
+@jitable
 def lift_off(efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """One-sided contacts give max(0, f0 - D J a) along z: a row that would pull at the last J a is empty now.
 
@@ -231,7 +231,7 @@ def lift_off(efc: Efc, e: Layout, c: Weights, s: State) -> None:
         s.contact[1, k] = rate
 
 
-@called
+@jitable
 def ideal_joints(efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """Ball joints without a law: MuJoCo's own reference, which it made before it knew of the modal coordinates."""
     for n in range(e.joints.shape[0]):
@@ -241,7 +241,7 @@ def ideal_joints(efc: Efc, e: Layout, c: Weights, s: State) -> None:
             efc.aref[row] = -efc.KBIP[row, 1] * efc.vel[row] - efc.KBIP[row, 0] * efc.KBIP[row, 2] * efc.pos[row]
 
 
-@called
+@jitable
 def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """Viscous, friction and valve rows of the dampers."""
     own = e.dampers
@@ -262,7 +262,7 @@ def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         efc.frictionloss[row] = own.pieces[n, 2]
 
 
-@called
+@jitable
 def generalised_forces(d: Fields, efc: Efc, e: Layout, s: State) -> None:
     """R = 1 / D, and the explicit forces of the rows on the coordinates that they reach, J' f0."""
     total = d.qfrc_applied
@@ -284,7 +284,7 @@ def generalised_forces(d: Fields, efc: Efc, e: Layout, s: State) -> None:
                 part[j] += force * along[j]
 
 
-@called
+@jitable
 def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """Rewrite the rows of one state."""
     advance_modes(time, d, e, c, s)

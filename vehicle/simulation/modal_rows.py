@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from vehicle.compiler import called
+from vehicle.compiler import jitable
 from vehicle.simulation.records import Efc, Fields, Layout, State
 
 
-@called
+@jitable
 def modal_rows(d: Fields, efc: Efc, e: Layout, s: State) -> None:
     """J -> J +- (R Phi_n, -[d]x), r -> r +- d, r' -> r' +- (R Phi_n q' + w x d) for the rows at flexible nodes."""
     m = e.modes

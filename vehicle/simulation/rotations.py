@@ -13,7 +13,7 @@ moment r x f is to the torque, which is left out too (`vehicle.simulation.kernel
 
 from __future__ import annotations
 
-from vehicle.compiler import called, jitable
+from vehicle.compiler import jitable
 from vehicle.simulation.records import Fields, Layout, State, Vector, Weights
 
 
@@ -65,7 +65,7 @@ def node_torque(k: int, d: Fields, e: Layout, c: Weights, s: State) -> None:
         d.qfrc_applied[m.first_velocity + mode] += force
 
 
-@called
+@jitable
 def rotations(d: Fields, e: Layout, c: Weights, s: State) -> None:
     """Torques of all elements on the coordinates."""
     own = e.rotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vehicle.compiler import called, jitable
+from vehicle.compiler import jitable
 from vehicle.simulation.modal_space import modal_acceleration
 from vehicle.simulation.records import Index, Indices, ModalSpace, Table, Tables3, Vector
 
@@ -101,7 +101,7 @@ def copy_row(row: Vector, values: Vector) -> None:
         row[entry] = values[entry]
 
 
-@called
+@jitable
 def move_plates(index: int, p: Plates) -> None:
     """Put the plates where they are at a step, and tell the tyre rows."""
     for plate in range(p.mocap.shape[0]):
@@ -110,7 +110,7 @@ def move_plates(index: int, p: Plates) -> None:
         p.row_acceleration[plate, 2] = p.acceleration[index, plate]
 
 
-@called
+@jitable
 def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
     """Copy the modal coordinates of the last evaluation, and their velocities half a step later."""
     q, v, pull, first = s.modal[0], s.modal[1], b.modal_pull, order.first_velocity
@@ -125,7 +125,7 @@ def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
         b.modal_velocity[row, mode] = v[mode] - order.half * faster
 
 
-@called
+@jitable
 def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector, b: Samples) -> None:
     """Copy the present time's forces, rates and positions.
 
