@@ -11,7 +11,6 @@ Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 
 import numpy as np
 import scipy
@@ -79,26 +78,13 @@ def tapered_power(samples: Real, rounding: float) -> tuple[Real, float]:
     count = samples.size
     fine, coarse = np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, TAPER_SAMPLES)
     power = np.zeros(count // 2 + 1)
-    for taper in _slepian_tapers():
+    for taper in scipy.signal.windows.dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS):
         window = scipy.interpolate.CubicSpline(coarse, taper)(fine)
         power += np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 * count / np.sum(window**2) / TAPERS
     power = np.convolve(power, np.full(3, 1.0 / 3.0), mode="same")
     exact = count * (ROUNDING * float(np.max(np.abs(samples)))) ** 2
     floor = max(count * rounding**2 / 12.0, LEAKAGE * float(np.max(power[TAPERS:])), exact)
     return power, floor
-
-
-@cache
-def _slepian_tapers() -> Real:
-    """The tapers, (TAPERS, TAPER_SAMPLES): eigenvectors of the largest eigenvalues of a tridiagonal matrix.
-
-    Source: Percival and Walden, Spectral Analysis for Physical Applications, 1993, section 8.3.
-    """
-    index = np.arange(TAPER_SAMPLES)
-    diagonal = (0.5 * (TAPER_SAMPLES - 1) - index) ** 2 * np.cos(2.0 * np.pi * BANDWIDTH / TAPER_SAMPLES)
-    beside = 0.5 * index[1:] * (TAPER_SAMPLES - index[1:])
-    last = (TAPER_SAMPLES - TAPERS, TAPER_SAMPLES - 1)
-    return np.asarray(scipy.linalg.eigh_tridiagonal(diagonal, beside, select="i", select_range=last)[1].T)
 
 
 def silent_lines(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.analysis.frf import FrequencyResponse
@@ -98,11 +99,11 @@ def resonance_peaks(
             continue
         decibel = 20.0 * np.log10(values[stretch])
         height, ripple = values[stretch], np.zeros(stretch.size) if error is None else error[stretch]
-        for top in _tops(decibel):
-            foot = _higher_foot(decibel, top)
-            rise = decibel[top] - decibel[foot]
-            if rise < prominence_db:
-                continue
+        tops, found_at = scipy.signal.find_peaks(decibel, prominence=prominence_db)
+        for top, rise, *bases in zip(
+            tops, found_at["prominences"], found_at["left_bases"], found_at["right_bases"], strict=True
+        ):
+            foot = max(bases, key=lambda base: float(decibel[base]))
             noisy = quality is not None and quality[stretch[top]] < LEAST_COHERENCE
             if noisy or height[top] - height[foot] < STANDARD_ERRORS * np.hypot(ripple[top], ripple[foot]):
                 continue
@@ -118,27 +119,6 @@ def resonance_peaks(
                 )
             )
     return tuple(found)
-
-
-def _tops(values: NDArray[np.float64]) -> list[int]:
-    """Places above both neighbours, of a flat top its middle; (m,) to indices."""
-    ends = np.flatnonzero(np.diff(values)) + 1  # where a run of equal values ends and the next begins
-    if ends.size < 2:
-        return []
-    rises = np.diff(values[np.concatenate([[0], ends])]) > 0.0
-    tops = np.flatnonzero(rises[:-1] & ~rises[1:])
-    return [int(top) for top in (ends[tops] + ends[tops + 1] - 1) // 2]
-
-
-def _higher_foot(values: NDArray[np.float64], top: int) -> int:
-    """The higher of the lowest places on both sides of a top, each before something is higher than the top."""
-    left, right = values[:top][::-1], values[top + 1 :]
-    feet = []
-    for side, way in ((left, -1), (right, 1)):
-        higher = side > values[top]
-        own = side[: int(np.argmax(higher))] if higher.any() else side
-        feet.append(top + way * (1 + int(np.argmin(own))))
-    return max(feet, key=lambda foot: float(values[foot]))
 
 
 def resonances(response: FrequencyResponse, row: int) -> tuple[Peak, ...]:

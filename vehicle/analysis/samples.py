@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,12 +86,6 @@ def lines_in_band(frequency: NDArray[np.float64], band: tuple[float, float]) -> 
     """Tell which lines [Hz], shape (m,), lie in the closed band; a line on an edge counts in spite of rounding."""
     slack = 1e-9 * (frequency[-1] if frequency.size else 0.0)
     return (frequency >= band[0] - slack) & (frequency <= band[1] + slack)
-
-
-def fast_length(samples: int) -> int:
-    """The least number from `samples` on without a prime factor above 5, whose Fourier transform is fast."""
-    odd: Iterator[int] = (3**j * 5**k for j in range(40) for k in range(28))
-    return min(one << (-(-samples // one) - 1).bit_length() for one in odd if one < 2 * samples)
 
 
 def is_constant(signals: NDArray[np.float64]) -> NDArray[np.bool_]:

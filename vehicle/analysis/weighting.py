@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from vehicle.analysis.samples import checked_signals, checked_time_step, fast_length
+from vehicle.analysis.samples import checked_signals, checked_time_step
 from vehicle.errors import ConfigurationError, DataError
 
 LEAST_SAMPLING_RATE = 250.0
@@ -166,13 +166,7 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
         )
     samples = array.shape[1]
     # the slowest pole has the real part -w1/sqrt(2): after 4/f1 it has fallen by exp(-17.8) = 2e-8
-    length = fast_length(samples + int(np.ceil(4.0 / (curve.f1 * step))))
-    factor = _factor(curve, length, step)
-    weighted = np.fft.irfft(np.fft.rfft(array, length, axis=1) * factor, length, axis=1)[:, :samples]
+    length = scipy.fft.next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
+    factor = curve.transfer_function(scipy.fft.rfftfreq(length, step))
+    weighted = scipy.fft.irfft(scipy.fft.rfft(array, length, axis=1) * factor, length, axis=1)[:, :samples]
     return np.asarray(weighted.reshape(np.shape(signals)), dtype=np.float64)
-
-
-@lru_cache(maxsize=8)
-def _factor(curve: Weighting, length: int, step: float) -> NDArray[np.complex128]:
-    """H over the lines of a record; the axes of a place have several weightings in common."""
-    return curve.transfer_function(np.fft.rfftfreq(length, step))
