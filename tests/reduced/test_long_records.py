@@ -8,7 +8,8 @@ import pytest
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.random_road import random_road
-from vehicle.reduced import plate_samples
+from vehicle.reduced import plate_samples, run
+from vehicle.simulation import acceleration
 from vehicle.simulation.judgement import require_memory
 
 pytest.importorskip("numba", reason="the reduced engine needs it")
@@ -23,6 +24,19 @@ def test_pieces_give_the_same_run(car, monkeypatch):
     assert isinstance(plate_samples.plate_samples(road, 1e-3, 10, 2), plate_samples.LongPlates)
     for name in channels:
         np.testing.assert_array_equal(whole[name], pieces[name])
+
+
+def test_blocks_of_any_length_give_the_same_run(car, monkeypatch):
+    """What the blocks hand on: the dampers on both sides of a sample, the past of an acceleration, the plates."""
+    road = random_road(rms=4e-3, seed=3, duration=2.0)
+    names = [*car.vehicle.channels, *car.vehicle.requested_channels]
+    whole = car.run(road, engine="reduced", channels=names)
+    monkeypatch.setattr(run, "BLOCK", 333)
+    monkeypatch.setattr(acceleration, "BLOCK", 77)
+    blocks = car.run(road, engine="reduced", channels=names)
+    for name in names:
+        size = np.max(np.abs(whole[name]))
+        np.testing.assert_allclose(blocks[name], whole[name], rtol=0.0, atol=1e-9 * size, err_msg=name)
 
 
 def test_a_recording_that_does_not_fit_is_refused(monkeypatch):

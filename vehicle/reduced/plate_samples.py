@@ -19,24 +19,28 @@ LARGEST_TABLE = 64_000_000
 memory does not grow with the steps of a long record."""
 
 
+MARGIN = 64
+"""Samples of the signal on each side of what is asked for: a sample moves its spline by 2 - sqrt(3) = 0.27 of it from
+one to the next, so by 1e-36 behind them."""
+
+
 class LongPlates:
     """The rows of `plate_samples`, made when they are asked for; arguments as there."""
 
     def __init__(self, signal: Signal, step: float, steps: int, beyond: int) -> None:
-        self.step, self.steps, self.rows = step, steps, steps + 1 + beyond
-        self.splines = [
-            scipy.interpolate.CubicSpline(signal.time, signal.displacement[wheel]) for wheel in signal.wheels
-        ]
-        self.latest = signal.duration
+        self.signal, self.step, self.steps, self.rows = signal, step, steps, steps + 1 + beyond
 
     def __getitem__(self, part: slice) -> Vector:
         """Rows (z, z') of each driven plate."""
-        index = np.arange(*part.indices(self.rows))
-        inside = index <= self.steps
-        at, last = np.clip(self.step * index[inside], 0.0, self.latest), min(self.step * self.steps, self.latest)
+        index, signal = np.arange(*part.indices(self.rows)), self.signal
+        inside, last = index <= self.steps, min(self.step * self.steps, signal.duration)
+        at = np.clip(self.step * index[inside], 0.0, signal.duration)
         after = np.asarray(self.step * (index[~inside] - self.steps), dtype=np.float64)
+        first, end = (int(t / signal.timestep) for t in (at[0] if at.size else last, last if after.size else at[-1]))
+        near = slice(max(first - MARGIN, 0), end + 2 + MARGIN)
         columns = []
-        for spline in self.splines:
+        for wheel in signal.wheels:
+            spline = scipy.interpolate.CubicSpline(signal.time[near], signal.displacement[wheel][near])
             z, velocity, acceleration = (float(spline(last, order)) for order in range(3))
             columns.append(np.append(spline(at), continued(z, velocity, acceleration, after)))
             columns.append(np.append(spline(at, 1), velocity + acceleration * after))

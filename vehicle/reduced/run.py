@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -85,20 +85,24 @@ def simulate_reduced(
     watch = ValidityWatch(model, run.factors, run.columns, tyre_load)
     table = np.empty((len(linear), samples + AHEAD))
     table[:, 0] = readout.at(run.state()[None], plates[:1], run.before[:1, : run.count])[:, 0] if linear else 0.0
-    run.fill(march, plates, every, readout, table, watch)
-    channel = dict(zip(linear, table, strict=True)) | run.wheel_channels(model, plates[: samples * every : every])
-    for name in linear:
-        # In place: a long record stands in memory once.
-        positions, channel[name] = channel[name], channel[name][:samples]
+    channel = {name: row[:samples] for name, row in zip(linear, table, strict=True)}
+    statics = (
+        [] if chosen is None else list(zip(chosen.names, chosen.static, direct_forces(model, chosen), strict=True))
+    )
+    for here, heights, friction in run.fill(march, plates, every, readout, table, watch):
+        for name, values in run.wheel_channels(model, heights[: max(samples - here.start, 0)]).items():
+            if name in names:
+                channel.setdefault(name, np.empty(samples))[here] = values
+        for name, static, row in statics:
+            part = channel[name][here]
+            part[:] = part + static + friction[: len(part)] @ row
+    # In place: a long record stands in memory once.
+    for name, positions in zip(linear, table, strict=True):
         if "_acc_" in name:
-            channel[name][:] = acceleration(positions, interval)
+            acceleration(positions, interval)
     for wheel in run.corners:
         if f"tyre_{wheel}_force_z" in channel:
-            channel[f"tyre_{wheel}_force_z"] = channel[f"tyre_{wheel}_force_z"] + tyre_load[wheel]
-    if chosen is not None:
-        friction = run.friction(samples)
-        for name, static, row in zip(chosen.names, chosen.static, direct_forces(model, chosen), strict=True):
-            channel[name] = channel[name] + static + friction @ row
+            channel[f"tyre_{wheel}_force_z"] += tyre_load[wheel]
     wall, validity = clock.perf_counter() - started, watch.found()
     return Recording(
         time=uniform_time(samples=samples, timestep=interval),
@@ -193,44 +197,49 @@ class _Run:
         readout: Readout,
         table: Vector,
         watch: ValidityWatch,
-    ) -> None:
-        """Fill the table of outputs, (outputs, samples), and the arrays of the dampers."""
+    ) -> Iterator[tuple[slice, Vector, Vector]]:
+        """Fill the table of outputs, (outputs, samples), and block by block the arrays of the dampers.
+
+        Yields:
+            Samples for which these arrays hold both steps that they lie between, from the last one of the block before
+            on; (z, z') of the plates there; nonlinear damper forces there [N], (block, d).
+        """
         samples = table.shape[1]
-        self.velocities, self.before, self.after = np.zeros((3, samples, len(self.laws)))
-        kept = np.zeros((samples, len(self.control.dampers), 4))
+        self.velocities, self.before, self.after = np.zeros((3, BLOCK + 1, len(self.laws)))
+        kept = np.zeros((BLOCK + 1, len(self.control.dampers), 4))
         self.control = self.control._replace(kept=kept)
         states = np.zeros((BLOCK, len(self.state())))
-        done = 1
-        while done < samples:
+        for done in range(1, samples, BLOCK):
             size = min(BLOCK, samples - done)
-            first, here = (done - 1) * every, slice(done, done + size)
+            first, here = (done - 1) * every, slice(1, size + 1)
             piece = plates[first : first + size * every + 1]
-            self.advance(march, piece, every, done, states)
-            ends = piece[every::every]
-            table[:, here] = readout.at(states[:size], ends, self.before[here, : self.count])
-            watch.look(states[:size], ends, self.before[here, : self.count])
-            done += size
-        self.after[-1] = self.before[-1]
-        kept[0, :, COEFFICIENT] = kept[0, :, COEFFICIENT + 1]
-        kept[-1, :, [COEFFICIENT + 1, FORCE + 1]] = kept[-1, :, [COEFFICIENT, FORCE]]
+            self.advance(march, piece, every, 1, states)
+            ends, force = piece[every::every], self.before[here, : self.count]
+            table[:, done : done + size] = readout.at(states[:size], ends, force)
+            watch.look(states[:size], ends, force)
+            if done == 1:
+                kept[0, :, COEFFICIENT] = kept[0, :, COEFFICIENT + 1]
+            yield slice(done - 1, done - 1 + size), piece[:-1:every], self.friction(size)
+            for array in (self.velocities, self.before, self.after, kept):
+                array[0] = array[size]
 
     def friction(self, samples: int) -> Vector:
-        """Nonlinear damper forces at the samples [N]; (samples, d).
+        """Nonlinear damper forces at the first samples of a block [N]; (samples, d).
 
         The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
         """
         return 0.5 * (self.before + self.after)[:samples, : self.count]
 
     def wheel_channels(self, model: PoleModel, plates: Vector) -> dict[str, Vector]:
-        """Plate displacements, damper velocities and damper forces at the samples."""
+        """Plate displacements, damper velocities and damper forces at the first samples of a block."""
         found = {}
         for column, wheel in enumerate(self.corners):
             driven = wheel in self.wheels
             height = plates[:, 2 * self.wheels.index(wheel)] if driven else np.zeros(len(plates))
             velocity = self.velocities[: len(plates), column]
             friction = self.friction(len(plates))[:, column]
-            found[f"plate_{wheel}_displacement"] = height.copy()
-            found[f"damper_{wheel}_velocity"] = velocity.copy()
+            found[f"plate_{wheel}_displacement"] = height
+            found[f"damper_{wheel}_velocity"] = velocity
             viscous: Vector | float = model.matrices.viscous[column]
             if column in self.control.dampers:
                 kept = self.control.kept[: len(plates), list(self.control.dampers).index(column)]

@@ -28,6 +28,9 @@ SERIES = (1.0, 1.0 / 12.0, 1.0 / 90.0, 1.0 / 560.0)
 AHEAD = len(SERIES) + 1
 """Samples beyond the end of a record that its last acceleration needs."""
 
+BLOCK = 65_536
+"""Samples that are worked on at once."""
+
 
 def _weights() -> Vector:
     """Weights of the 2 AHEAD + 1 samples around one, for T = 1."""
@@ -46,17 +49,22 @@ WEIGHTS = _weights()
 
 
 def acceleration(position: Vector, interval: float) -> Vector:
-    """Second time derivative of a record.
+    """Second time derivative of a record, in its place: a long record stands in memory once.
 
     Args:
-        position: at the n samples of the record and AHEAD more, in any unit; (n + AHEAD,).
+        position: at the n samples of the record and AHEAD more, in any unit, overwritten; (n + AHEAD,).
         interval: sampling interval T [s].
 
     Returns:
-        (n,), per s2.
+        Its first n values, per s2; (n,).
     """
-    moved = position - position[0]
-    return np.convolve(np.concatenate([np.zeros(AHEAD), moved]), WEIGHTS / interval**2, "valid")
+    count, rest, past = position.size - AHEAD, position[0], np.zeros(AHEAD)
+    for first in range(0, count, BLOCK):
+        size = min(BLOCK, count - first)
+        moved = np.concatenate([past, position[first : first + size + AHEAD] - rest])
+        past = moved[size : size + AHEAD]
+        position[first : first + size] = np.convolve(moved, WEIGHTS / interval**2, "valid")
+    return position[:count]
 
 
 def continued(displacement: float, velocity: float, acceleration: float, t: Vector) -> Vector:
