@@ -183,10 +183,21 @@ def test_6_rows_with_another_delimiter(tmp_path):
             "time,displacement [m]",
             ":1:1: column 'time' has no unit; write it in brackets behind the name, allowed: [s]",
         ),
-        ("time [s],displacement [cm]", ":1:2: column 'displacement [cm]' has the unit [cm]; allowed: [m] or [mm]"),
+        (
+            "time [s],displacement [furlong]",
+            ":1:2: column 'displacement [furlong]' has the unit [furlong]; allowed: [m] or [mm]",
+        ),
+        (
+            "time [s],displacement [cm]",
+            ":1:2: column 'displacement [cm]' has the unit [cm]; allowed: [m] or [mm]; with --channel, as --channel "
+            "fr=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command takes the "
+            "time.npz of its run",
+        ),
         (
             "time [ms],displacement [m]",
-            ":1:1: column 'time [ms]' has the unit [ms]; allowed: [s]; divide the column by 1000 and write [s]",
+            ":1:1: column 'time [ms]' has the unit [ms]; allowed: [s]; with --channel, as --channel "
+            "fr=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command takes the "
+            "time.npz of its run",
         ),
     ],
 )

@@ -154,6 +154,22 @@ def test_units_and_rates_of_the_request_are_said(tmp_path):
     assert found.timestep == 1.0 / 1024.0
 
 
+def test_a_chosen_channel_is_judged_by_its_own_unit_and_time(tmp_path):
+    path, time = tmp_path / "log.csv", np.arange(400) / 512.0
+    rows = (f"{t:.7f},{50.0 * np.sin(8.0 * np.pi * t):.6f}\n" for t in time)
+    path.write_text("t,plate\n" + "".join(rows))
+    assert [one.remark for one in read_record(path).channels] == [
+        "the time, without a known unit: give --rate HZ, or --channel time=t --unit time=s",
+        "",
+    ]
+    told = ("--channel", "time=t", "--unit", "time=s", "--channel", "plate", "--unit")
+    with pytest.raises(DataError, match=r"is the unit of the channel right\?; give another: --unit fr=UNIT"):
+        read_signal(path, choice=choice(*told, "m"))
+    found = read_signal(path, choice=choice(*told, "mil"))
+    assert found.notices[0] == "fr: channel 2 'plate' [mil]" and "known unit" not in "".join(found.notices)
+    assert found.displacement["fr"].max() == pytest.approx(50.0 * 25.4e-6, rel=1e-3)
+
+
 @pytest.mark.parametrize("head", ["|CF,2,1,1;", '<?xml version="1.0"?><usi:tdm version="1.0">', "DEWESOFT 7"])
 def test_formats_that_are_not_read_are_named(tmp_path, head):
     path = tmp_path / "foreign.raw"

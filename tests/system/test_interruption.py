@@ -26,3 +26,13 @@ def test_a_swallowed_interruption_still_ends_the_job(capsys):
     # The next job begins anew, and the handlers are those of before.
     assert run_command(lambda: ProgressLine("work", enabled=False)(0.5)) == 0
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_the_time_left_is_that_of_the_work_that_goes_on(monkeypatch, capsys):
+    # A minute of compiling before the first sign, then 10 % in 31 s each.
+    clock = iter([0.0, 60.0, 91.0, 122.0])
+    monkeypatch.setattr("time.monotonic", lambda: next(clock))
+    line = ProgressLine("work")
+    for fraction in (0.01, 0.11, 0.21):
+        line(fraction)
+    assert capsys.readouterr().err.splitlines() == ["work: 1 %", "work: 11 %, 276 s left", "work: 21 %, 245 s left"]

@@ -176,23 +176,27 @@ class ProgressLine:
         self.moving = sys.stderr.isatty()
         self.started = time.monotonic()
         self.last = self.started - (MOVING_EVERY if self.moving else 0.0)
+        self.first: tuple[float, float] | None = None
 
     def __call__(self, fraction: float) -> None:
         """Show a fraction [-]. The place where a lost interruption is noticed."""
         if _asked_to_end.is_set():
             raise KeyboardInterrupt
         now = time.monotonic()
+        if self.first is None:
+            self.first = (now, fraction)  # what was compiled and read before is no measure of what follows
         due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
         if not (self.enabled and due):
             return
         self.last = now
-        left = (now - self.started) * (1.0 / max(fraction, 1e-6) - 1.0)
+        begun, done = self.first
+        left = f"{(now - begun) * (1.0 - fraction) / (fraction - done):.0f} s left" if fraction > done else ""
         if self.moving:
             bar = "#" * round(30 * fraction)
             end = "\n" if fraction >= 1.0 else ""
-            sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * fraction:3.0f} %  {left:4.0f} s left {end}")
+            sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * fraction:3.0f} %  {left:>11} {end}")
         else:
-            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %, {left:.0f} s left\n")
+            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %{', ' * bool(left)}{left}\n")
         sys.stderr.flush()
 
 

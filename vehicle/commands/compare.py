@@ -55,7 +55,10 @@ def parser() -> Parser:
         help="edges of the bands of the table [Hz]; %(default)s",
     )
     found.add_argument(
-        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers, for modes"
+        "--damper",
+        choices=("stuck", "sliding"),
+        default="stuck",
+        help="state of the dampers, for modes; stuck by default",
     )
     record_options(found, "", channel=False)
     vehicle_options(found)

@@ -18,7 +18,9 @@ def parser() -> Parser:
     """The options of the command."""
     found = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
     vehicle_options(found)
-    found.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers")
+    found.add_argument(
+        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
+    )
     found.add_argument("--json", action="store_true", help="print JSON")
     found.add_argument(
         "--uff",

@@ -82,15 +82,17 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
         "(columns distance, left, right [m]); beside --input, alone: accept levels beyond a shaker"
         + ("; may be repeated" if several else ""),
     )
-    road_options(parser, several=several)
+    rate = "" if several else "; beside --input: in place of the times of the file"
+    road_options(parser, several=several, rate_note=rate)
 
 
-def road_options(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
+def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate_note: str = "") -> None:
     """Add the numbers of a drive over a road; each is None where it is not given.
 
     Args:
         parser: of the command.
         several: --speed may be repeated, once for each road; then its value is a list.
+        rate_note: what the help of --rate says beside.
     """
     group = parser.add_argument_group("a road")
     group.add_argument(
@@ -101,12 +103,7 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False) -> N
         help="speed of the car [km/h]" + ("; once for all roads, or once for each" if several else ""),
     )
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
-    group.add_argument(
-        "--rate",
-        type=float,
-        metavar="HZ",
-        help="samples a second; 1000 by default; beside --input of one run: in place of the times of the file",
-    )
+    group.add_argument("--rate", type=float, metavar="HZ", help=f"samples a second; 1000 by default{rate_note}")
     group.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
     group.add_argument(
         "--coherence",

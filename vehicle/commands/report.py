@@ -16,7 +16,11 @@ def parser() -> Parser:
     """The options of the command."""
     found = command_parser("report", "Findings, figures, moving modes and tables of runs as one HTML file.")
     found.add_argument(
-        "runs", nargs="+", type=Path, metavar="RUN", help="folder of a run, as runs/low; the first is compared with"
+        "runs",
+        nargs="+",
+        type=Path,
+        metavar="RUN",
+        help="folder of a run, as runs/low; the others are compared with the first",
     )
     found.add_argument(
         "--output",

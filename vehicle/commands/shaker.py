@@ -40,8 +40,15 @@ def parser() -> Parser:
     output_options(found, None, default="runs/<input stem>, or runs/road_C_80, by default")
     vehicle_options(found)
     engine_option(found, "mujoco")
-    found.add_argument("--timestep", type=float, metavar="S", help="step of the integration [s]")
-    found.add_argument("--time-format", choices=("npz", "csv"), default="npz", help="format of the time histories")
+    found.add_argument(
+        "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
+    )
+    found.add_argument(
+        "--time-format",
+        choices=("npz", "csv"),
+        default="npz",
+        help="format of the time histories; %(default)s by default",
+    )
     found.add_argument(
         "--channels",
         dest="recorded",
@@ -66,9 +73,9 @@ def parser() -> Parser:
         type=float,
         default=10.0,
         metavar="S",
-        help="length of the film [s]; slow motion shows less of the record in it",
+        help="length of the film [s], 10 by default; slow motion shows less of the record in it",
     )
-    found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower")
+    found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower; 1 by default")
     found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     measured_options(found)
     found.add_argument(
@@ -275,9 +282,10 @@ def report(summary: dict[str, Any], output: Path) -> str:
     share, first = summary["slip_share"], summary["first_slip_s"]
     load = summary["static"]["tyre_load_n"]
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
+    plates = summary["input"]["plate_rms_m"]
+    moved = [f"{1e3 * rms:.4g} mm ({side_of(wheel, plates)})" for wheel, rms in plates.items() if rms > 0.0]
     lines = [
-        f"input       {summary['input']['file']}, RMS {1e3 * summary['input']['rms_m']:.4g} mm, "
-        f"{summary['input']['duration_s']:g} s, wheel {summary['input']['wheel']}",
+        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s, plate RMS {', '.join(moved)}",
         f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
         f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
         f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
@@ -290,7 +298,7 @@ def report(summary: dict[str, Any], output: Path) -> str:
             continue
         strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
         text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
-        lines.append(f"resonances  {channel}: {text or 'none'} Hz")
+        lines.append(f"resonances  {channel}: {text + ' Hz' if text else 'none found'}")
     lines += _comfort(summary)
     lines += [
         f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",

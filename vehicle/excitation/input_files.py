@@ -15,7 +15,7 @@ def find_input(name: str | Path) -> Path:
     """Return the file at the path as given, else the shipped one of that name.
 
     Args:
-        name: path of a CSV file, or the plain name of a shipped one such as 'low.csv'.
+        name: path of a measurement file, or the plain name of a shipped one such as 'low.csv'.
 
     Raises:
         ConfigurationError: there is no such file; the message lists the names that exist.
@@ -24,7 +24,7 @@ def find_input(name: str | Path) -> Path:
     if given.is_file():
         return given
     if given.exists():
-        raise ConfigurationError(f"input {str(name)!r} is not a file; give the path of a CSV file")
+        raise ConfigurationError(f"input {str(name)!r} is not a file; give the path of a measurement file")
     names = shipped_inputs()
     if given.name == str(name) and given.name in names:
         return INPUT_FOLDER / given.name
@@ -32,7 +32,7 @@ def find_input(name: str | Path) -> Path:
     hint = f" Did you mean {close[0]}?" if close else ""
     raise ConfigurationError(
         f"input {str(name)!r} not found: no such file, and none of that name is shipped.{hint} "
-        f"Give the path of a CSV file or one of: {', '.join(names)}"
+        f"Give the path of a measurement file or one of: {', '.join(names)}"
     )
 
 

@@ -41,7 +41,8 @@ def check_level(
         path: file, for messages.
         displacement: wheel -> plate displacement [m], shape (n,).
         timestep: distance of the samples [s].
-        units: wheel -> unit that its column is declared in, "m" (by default) or "mm": messages speak in it.
+        units: wheel -> unit that its column is declared in, "m" (by default) or "mm": messages speak in it; "" for a
+            channel of a measurement file, whose unit the file or --unit tells.
 
     Raises:
         DataError: |z| > 0.15 m, |z''| > 50 m/s2, or RMS < 1e-7 m (a plate at rest beside a moving one is accepted).
@@ -49,14 +50,19 @@ def check_level(
     moving = any(np.std(z) >= SMALLEST_RMS for z in displacement.values())
     for wheel, z in displacement.items():
         unit = (units or {}).get(wheel, "m")
-        per_metre, other = (1.0, "mm") if unit == "m" else (1e3, "um")
-        doubt = f"looks like {other}? The column is declared in [{unit}]"
+        per_metre, other = (1e3, "um") if unit == "mm" else (1.0, "mm")
+        doubt, mend = (
+            f"looks like {other}? The column is declared in [{unit}]",
+            "write its unit into the header ([m] or [mm])",
+        )
+        if not unit:
+            unit, doubt, mend = "m", "is the unit of the channel right?", f"give another: --unit {wheel}=UNIT"
         at = int(np.argmax(np.abs(z)))
         if abs(z[at]) > LARGEST_DISPLACEMENT:
             raise DataError(
                 f"{path}: plate {wheel} is displaced by {per_metre * z[at]:.6g} {unit} at sample {at} "
-                f"(t = {at * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}; {doubt}; write its "
-                "unit into the header ([m] or [mm]), or remove a constant offset (--remove-mean)"
+                f"(t = {at * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}; {doubt}; {mend}, "
+                "or remove a constant offset (--remove-mean)"
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
@@ -72,8 +78,8 @@ def check_level(
         if abs(acceleration[at]) > LARGEST_ACCELERATION:
             raise DataError(
                 f"{path}: plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s "
-                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {doubt}. Otherwise look "
-                "there for a jump or a spike in the record, or give --road if it is a road and no shaker signal"
+                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {doubt}; {mend}. Otherwise "
+                "look there for a jump or a spike in the record, or give --road if it is a road and no shaker signal"
             )
 
 

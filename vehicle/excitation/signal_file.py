@@ -20,6 +20,7 @@ from vehicle.records.clock import check_increasing, check_uniform, is_uniform, w
 from vehicle.records.formats import is_table, read_table
 from vehicle.records.table import TIME, Header, Table, Vector, Wanted, name_and_unit
 from vehicle.records.text_format import write_table
+from vehicle.records.units import find_unit
 
 NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
 
@@ -71,7 +72,8 @@ def read_signal(
         missing="fill" if interpolate else "refuse",
         remedy="repair the cell, or ask for interpolation (--interpolate)",
     )
-    table = read_table(path, wanted) if choice is None and is_table(path) else chosen_plates(path, choice, wheel)
+    plain = choice is None and is_table(path)
+    table = read_table(path, wanted) if plain else chosen_plates(path, choice, wheel)
     plates = plate_columns(table.header, wheel)
     del plates["time"]
     units = {driven: unit for driven, (_, unit) in plates.items()}
@@ -102,7 +104,7 @@ def read_signal(
         raise DataError(f"{path}: no plate moves: every column holds one value only; give a record with motion")
     notices.extend(drifts(columns))
     try:
-        check_level(path, columns, timestep, units)
+        check_level(path, columns, timestep, units if plain else dict.fromkeys(units, ""))
     except DataError as error:
         if not accept_implausible:
             raise
@@ -178,7 +180,12 @@ def _checked_unit(place: str, key: str, unit: str | None) -> str:
     if not unit:
         raise DataError(f"{place} has no unit; write it in brackets behind the name, allowed: {shown}")
     if unit not in allowed:
-        hint = "; divide the column by 1000 and write [s]" if key == "time" and unit == "ms" else ""
+        known, hint = find_unit(unit), ""
+        if known is not None and known.si == ("s" if key == "time" else "m"):
+            hint = (
+                "; with --channel, as --channel fr=displacement, the shaker reads any unit of `python -m vehicle "
+                "inspect`, and every command takes the time.npz of its run"
+            )
         raise DataError(f"{place} has the unit [{unit}]; allowed: {shown}{hint}")
     return unit
 

@@ -19,9 +19,11 @@ def vehicle_file(path: Path | str) -> Path:
     """The file of a car: the path as given, or that of the shipped car of this name.
 
     Raises:
-        ConfigurationError: a name that is neither.
+        ConfigurationError: a name that is neither, or the folder of a car.
     """
     path = Path(path)
+    if path.is_dir() and (path / "vehicle.toml").is_file():
+        raise ConfigurationError(f"{path}: is a folder; give the file in it: {path / 'vehicle.toml'}")
     if path.suffix or path.exists() or path.name != str(path):
         return path
     if path.name not in CARS:

@@ -88,15 +88,13 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
     if values is None:
         values = careful(numbers, rows, header, key, Wanted(needed="", key=lambda _: key, missing="mark"))
     axis: Vector | None = None
+    remark = ""
     if key >= 0:
         unit = find_unit(units[key])
         if unit is not None:
             axis = values[:, key] * unit.factor
         else:
-            notices.append(
-                f"the {kind} in column {names[key]!r} has no known unit: give --rate HZ, or --channel time=NAME "
-                "--unit time=s"
-            )
+            remark = f"the {kind}, without a known unit: give --rate HZ, or --channel time={names[key]} --unit time=s"
     channels = tuple(
         Channel(
             name=name,
@@ -105,6 +103,7 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
             axis=axis,
             kind="frequency" if kind == "frequency" else "time",
             function="time history" if kind == "time" else "spectrum",
+            remark=remark if index == key else "",
         )
         for index, name in enumerate(names)
         if index != key or axis is None

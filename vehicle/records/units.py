@@ -21,7 +21,16 @@ class Unit(NamedTuple):
 _TABLE = {
     ("time", "s"): {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
     ("frequency", "Hz"): {"Hz": 1.0, "kHz": 1e3},
-    ("displacement", "m"): {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254, "ft": 0.3048},
+    ("displacement", "m"): {
+        "m": 1.0,
+        "cm": 1e-2,
+        "mm": 1e-3,
+        "um": 1e-6,
+        "nm": 1e-9,
+        "in": 0.0254,
+        "mil": 2.54e-5,
+        "ft": 0.3048,
+    },
     ("velocity", "m/s"): {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6, "in/s": 0.0254},
     ("acceleration", "m/s2"): {
         "m/s2": 1.0,

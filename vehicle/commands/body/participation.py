@@ -43,7 +43,9 @@ def add(tasks: Any) -> None:
         help="frequency of the tables [Hz]; by default that of the largest response between 1 and 50 Hz",
     )
     asked.add_argument("--wheel", metavar="NAME", help="whose plate moves, as fr; the first of the car by default")
-    asked.add_argument("--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck")
+    asked.add_argument(
+        "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
+    )
     asked.add_argument(
         "--mode", type=int, metavar="N", help="mode whose driving attachments are shown; the loudest by default"
     )
