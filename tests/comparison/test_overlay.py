@@ -12,11 +12,14 @@ from scenarios.tuning.__main__ import main as tuning
 from vehicle.car import Car
 from vehicle.commands.compare import main as compare
 from vehicle.commands.shaker import main as shaker
+from vehicle.comparison.comparison import comparison_of
+from vehicle.comparison.simulated import of_folder
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal_file import read_signal
 from vehicle.parameters.paths import overrides_of
 from vehicle.records import uff_writer
 from vehicle.records.channel import Channel
+from vehicle.records.measured import read_measured
 from vehicle.records.text_format import write_table
 
 MOUNT, ENGINE = "bushings.suspension_mount.stiffness.z", "bushings.linear_mount.stiffness.z"
@@ -145,6 +148,26 @@ def test_a_run_beside_itself_agrees(run, tmp_path, capsys):
     assert response["frac"] == pytest.approx(1.0, abs=1e-6) and any(
         "local rational" in text for text in content["notices"]
     )
+
+
+def test_a_record_that_began_later_names_its_delay(run, tmp_path):
+    """The run itself without its first 50 ms, at times from 0 on, and without its plate."""
+    truth = of_folder(run).record
+    path = tmp_path / "late.csv"
+    write_table(
+        path,
+        ["time [s]", "knuckle_fr_acc_z [m/s2]", "seat_rail_acc_z [m/s2]"],
+        [
+            truth.time[50:] - truth.time[50],
+            *(truth.channels[f"{place}_acc_z"][50:] for place in ("knuckle_fr", "seat_rail")),
+        ],
+    )
+    measured = read_measured(path, tuple(truth.channels))
+    notices = comparison_of(measured, of_folder(run)).notices
+    assert notices[0] == "no responses: no moving plate is among the channels; --map plate_fr_displacement=NAME"
+    assert notices[1].endswith("0.05 s late, all alike: if the records began at different times, give --delay 0.05")
+    again = comparison_of(measured, of_folder(run), delay=0.05)
+    assert again.notices == notices[:1] and again.records[0].correlation == pytest.approx(1.0)
 
 
 def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):

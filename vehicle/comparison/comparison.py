@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vehicle.comparison.frf_comparison import BANDS, FrfComparison, compare_responses
-from vehicle.comparison.record_comparison import RecordComparison, compare_records
+from vehicle.comparison.record_comparison import RecordComparison, compare_records, shifted
 from vehicle.comparison.report import Comparison
 from vehicle.comparison.simulated import Simulated
 from vehicle.errors import DataError
@@ -42,6 +42,7 @@ def comparison_of(
     records: tuple[RecordComparison, ...] = ()
     if measured.record is not None:
         records = compare_records(measured.record, simulated.record, delay - measured.start)
+        notices += shifted(records, delay)
     if not responses and not records:
         raise DataError(f"{measured.file.path}: nothing of it has a counterpart in the run {simulated.name}")
     return Comparison(

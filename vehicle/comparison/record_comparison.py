@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +50,23 @@ class RecordComparison:
     def lag(self) -> float:
         """Time by which the simulated record is late where both agree best [s]."""
         return self.rating.shift / self.rated_rate
+
+
+def shifted(records: Sequence[RecordComparison], delay: float) -> list[str]:
+    """A sentence where all time histories agree best at one and the same shift, by more than a sample.
+
+    Args:
+        records: as of `compare_records`.
+        delay: which they were compared with [s].
+    """
+    lags = {round(one.lag * one.rated_rate) for one in records}
+    if len(lags) != 1 or max(map(abs, lags)) < 2:
+        return []
+    lag = records[0].lag
+    return [
+        f"the simulated time histories are {lag:.6g} s late, all alike: if the records began at different times, give "
+        f"--delay {delay + lag:.6g}"
+    ]
 
 
 def compare_records(measured: Record, simulated: Record, delay: float = 0.0) -> tuple[RecordComparison, ...]:

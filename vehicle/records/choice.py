@@ -159,9 +159,10 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
             raise DataError(f"{where} has {found}; give --unit {role}=UNIT with one of {allowed_units()}")
         if one.kind != "time" or np.iscomplexobj(one.values):
             raise DataError(f"{where} is no time history but a {one.function}; choose another")
-        notices.append(
-            f"{role}: channel {index + 1} {one.name!r} [{one.unit}]" + (f"; {one.remark}" if one.remark else "")
-        )
+        if one.name != role or one.unit != one.si_unit or one.remark:
+            notices.append(
+                f"{role}: channel {index + 1} {one.name!r} [{one.unit}]" + (f"; {one.remark}" if one.remark else "")
+            )
     if len({one.values.size for one in channels.values()}) > 1:
         sizes = ", ".join(f"{role} {one.values.size}" for role, one in channels.items())
         raise DataError(f"{path}: channels of different length ({sizes}); choose those of one rate, or one of them")

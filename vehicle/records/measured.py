@@ -117,6 +117,8 @@ def read_measured(
             if found is not None:
                 frf, estimator = found
                 notices.append(f"responses estimated from the time histories: {estimator}")
+            elif "m/s2" in record.units.values():
+                notices.append("no responses: no moving plate is among the channels; --map plate_fr_displacement=NAME")
     return Measured(
         file=file,
         frf=frf,
