@@ -373,8 +373,7 @@ class Run:
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
         """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""
-        xyz = np.array([self.recording[f"{place}_acc_{axis}"] for axis in AXES])
-        return comfort_value(self.recording.timestep, xyz)
+        return comfort_value(self.recording.timestep, [self.recording[f"{place}_acc_{axis}"] for axis in AXES])
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
         """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vehicle.analysis.samples import checked_signals
+from vehicle.analysis.samples import checked_rows
 from vehicle.analysis.spectra import PowerSpectralDensity, band_periodogram, band_rms, rms_of
 from vehicle.errors import DataError
 
@@ -80,12 +81,14 @@ def comfort_values(
     return ComfortValues(axes=axes, overall=np.sqrt(x * x + y * y + z * z), error=error)
 
 
-def comfort_value(time_step: float, acceleration: ArrayLike, band: tuple[float, float] = COMFORT_BAND) -> ComfortValue:
+def comfort_value(
+    time_step: float, acceleration: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
+) -> ComfortValue:
     """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unfiltered acceleration in a band.
 
     Args:
         time_step: [s].
-        acceleration: of one point in x, y, z [m/s2], shape (3, n).
+        acceleration: of one point in x, y, z [m/s2], shape (3, n), or one by one.
         band: (low, high) [Hz], both edges included.
 
     Raises:
@@ -93,12 +96,11 @@ def comfort_value(time_step: float, acceleration: ArrayLike, band: tuple[float, 
 
     Source: source 1 (Bommer 2006), chapter 4.
     """
-    array = checked_signals("acceleration", acceleration)
-    if array.shape[0] != 3:
-        raise DataError(f"acceleration: found {array.shape[0]} signals, needed are the three axes x, y, z")
-    found = comfort_values(time_step, array[None], band)
-    x, y, z = found.axes[0].tolist()
-    return ComfortValue(x=x, y=y, z=z, overall=float(found.overall[0]), band=band)
+    rows = checked_rows("acceleration", acceleration)
+    if len(rows) != 3:
+        raise DataError(f"acceleration: found {len(rows)} signals, needed are the three axes x, y, z")
+    x, y, z = (float(band_rms(time_step, row, band)[0]) for row in rows)
+    return ComfortValue(x=x, y=y, z=z, overall=float(np.sqrt(x * x + y * y + z * z)), band=band)
 
 
 def rms_standard_error(
@@ -133,7 +135,9 @@ def _standard_error(spectrum: PowerSpectralDensity) -> NDArray[np.float64]:
     return np.asarray(error)
 
 
-def settling(time_step: float, signals: ArrayLike, band: tuple[float, float] = COMFORT_BAND) -> tuple[Settling, ...]:
+def settling(
+    time_step: float, signals: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
+) -> tuple[Settling, ...]:
     """Compare the band RMS of the two halves of each signal: a transient still decaying shows as a drift.
 
     drift = (second - first) / mean. The halves of a stationary random record differ by chance as well: each half has
@@ -142,20 +146,19 @@ def settling(time_step: float, signals: ArrayLike, band: tuple[float, float] = C
 
     Args:
         time_step: [s].
-        signals: shape (n,) or (k, n).
+        signals: shape (n,) or (k, n), or one by one.
         band: (low, high) [Hz].
 
     Source: bad-inputs item 43.
     """
-    array = checked_signals("signals", signals)
-    middle = array.shape[1] // 2
+    rows = checked_rows("signals", signals)
+    middle = rows[0].size // 2
     if middle < 2:
-        raise DataError(f"signals: found {array.shape[1]} samples, two halves of at least 2 are needed")
-    first = band_rms(time_step, array[:, :middle], band)
-    second = band_rms(time_step, array[:, -middle:], band)
-    error = 2.0 * rms_standard_error(time_step, array, band)
+        raise DataError(f"signals: found {rows[0].size} samples, two halves of at least 2 are needed")
     found = []
-    for a, b, e in zip(first, second, error, strict=True):
+    for row in rows:
+        a, b = (band_rms(time_step, half, band)[0] for half in (row[:middle], row[-middle:]))
+        e = 2.0 * rms_standard_error(time_step, row, band)[0]
         drift = float(2.0 * (b - a) / (a + b)) if a + b > 0.0 else 0.0
         found.append(
             Settling(

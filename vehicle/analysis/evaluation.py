@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -19,7 +20,7 @@ from vehicle.analysis.exposure import (
     vibration_dose_value,
     weighted_rms,
 )
-from vehicle.analysis.samples import checked_signals, checked_time_step, is_constant
+from vehicle.analysis.samples import checked_rows, checked_signals, checked_time_step, is_constant
 from vehicle.analysis.weighting import weighted_record, weighting
 from vehicle.errors import ConfigurationError, DataError
 
@@ -175,7 +176,7 @@ def _about_motion_sickness(duration: float) -> list[str]:
 
 def evaluate(
     time_step: float,
-    xyz: ArrayLike,
+    xyz: ArrayLike | Sequence[NDArray[np.float64]],
     *,
     place: str = "seat",
     average: RunningAverage = "linear",
@@ -191,7 +192,7 @@ def evaluate(
 
     Args:
         time_step: [s].
-        xyz: acceleration of the point in x, y, z [m/s2], shape (3, n).
+        xyz: acceleration of the point in x, y, z [m/s2], shape (3, n), or one by one.
         place: name in `APPLICATIONS`: "seat" (z Wk, x and y Wd), "backrest", "feet", "standing", "seat_bs6841", ...
         average: of the running RMS in MTVV, "linear" or "exponential".
         skip: seconds of the weighted records left out at the beginning; the filters run through them.
@@ -214,21 +215,21 @@ def evaluate(
     """
     step = checked_time_step(time_step)
     use = application(place)
-    array = checked_signals("acceleration", xyz)
-    if array.shape[0] != 3:
-        raise DataError(f"acceleration: found {array.shape[0]} signals, needed are the three axes x, y, z")
-    if not array.any():
+    rows = checked_rows("acceleration", xyz)
+    if len(rows) != 3:
+        raise DataError(f"acceleration: found {len(rows)} signals, needed are the three axes x, y, z")
+    if not any(row.any() for row in rows):
         raise DataError("acceleration: all three axes are zero throughout, so there is nothing to evaluate")
-    if not 0.0 <= skip < (array.shape[1] - 1) * step:
+    if not 0.0 <= skip < (rows[0].size - 1) * step:
         raise ConfigurationError(
-            f"skip: found {skip:g} s, allowed is 0 s to less than the record, {array.shape[1] * step:g} s"
+            f"skip: found {skip:g} s, allowed is 0 s to less than the record, {rows[0].size * step:g} s"
         )
     span = _Span(time_step=step, skip=skip, from_rest=from_rest)
     axes, said = {}, []
-    for axis, record, name, factor in zip(AXES, array, use.weightings, use.comfort_factors, strict=True):
+    for axis, record, name, factor in zip(AXES, rows, use.weightings, use.comfort_factors, strict=True):
         axes[axis], remarks = _axis(span, record, name, factor, average)
         said += [f"{axis}: {remark}" for remark in remarks]
-    duration = span.whole(array[0]).size * step
+    duration = span.whole(rows[0]).size * step
     rms = [axes[axis]["weighted_rms"] for axis in AXES]
     sums: dict[str, float | None] = {
         "weighted_rms": vector_sum(rms, use.comfort_factors),

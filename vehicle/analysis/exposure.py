@@ -52,14 +52,15 @@ def mtvv(
     if length < 1:
         raise ConfigurationError(f"integration_s: found {integration_s:g} s, allowed is at least one time step")
     if average == "linear":
-        total = np.concatenate((np.zeros(min(length, square.size)), np.cumsum(square)))
-        running = (np.cumsum(square) - total[: square.size]) / length
+        total = np.cumsum(square, out=square)
+        late = total[length:] - total[: max(square.size - length, 0)]
+        running = np.max(late, initial=total[:length].max()) / length
     elif average == "exponential":
         decay = float(np.exp(-step / integration_s))
-        running = scipy.signal.lfilter([1.0 - decay], [1.0, -decay], square)
+        running = scipy.signal.lfilter([1.0 - decay], [1.0, -decay], square).max()
     else:
         raise ConfigurationError(f"running average: found {average!r}, allowed are 'linear' and 'exponential'")
-    return float(np.sqrt(max(float(running.max()), 0.0)))
+    return float(np.sqrt(max(float(running), 0.0)))
 
 
 def crest_factor(weighted: ArrayLike) -> float | None:
@@ -76,7 +77,8 @@ def vibration_dose_value(time_step: float, weighted: ArrayLike) -> float:
     peak = float(np.abs(record).max())
     if peak == 0.0:
         return 0.0
-    return float(peak * (np.sum((record / peak) ** 4) * checked_time_step(time_step)) ** 0.25)
+    scaled = record / peak
+    return float(peak * (np.sum(np.power(scaled, 4, out=scaled)) * checked_time_step(time_step)) ** 0.25)
 
 
 def estimated_vibration_dose_value(rms: float, duration_s: float) -> float:

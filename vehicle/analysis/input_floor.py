@@ -10,12 +10,15 @@ Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from vehicle.analysis.record_lines import RecordLines, is_long
 from vehicle.analysis.segments import stretches_of_one_length
 
 Real = NDArray[np.float64]
@@ -62,29 +65,58 @@ CAUSES = (
 
 def rounding_step(samples: Real) -> float:
     """Step to which samples were rounded, 0 where there is none: all small differences are multiples of the least."""
-    steps = np.abs(np.diff(np.unique(samples)))
+    steps = np.diff(np.sort(samples))
     steps = steps[steps > 1e-9 * np.ptp(samples)]
     if not steps.size:
         return 0.0
     ratio = steps / np.percentile(steps, 1)
-    small = ratio[ratio < 50.0]
-    if np.any(np.abs(small - np.round(small)) > 0.02):
+    low = steps[ratio < 1.5]
+    del steps  # of a long record each of these is as long
+    ratio = ratio[ratio < 50.0]
+    ratio -= np.round(ratio)
+    if max(ratio.max(), -ratio.min()) > 0.02:
         return 0.0
-    return float(np.median(steps[ratio < 1.5]))
+    return float(np.median(low))
 
 
-def tapered_power(samples: Real, rounding: float) -> tuple[Real, float]:
-    """Power of every line under five tapers, averaged over three lines, scaled like |rfft|^2; and its floor."""
-    count = samples.size
-    fine, coarse = np.linspace(0.0, 1.0, count), np.linspace(0.0, 1.0, TAPER_SAMPLES)
-    power = np.zeros(count // 2 + 1)
+def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> tuple[Real, float]:
+    """Power of every line under five tapers, averaged over three lines, scaled like |rfft|^2; and its floor.
+
+    Args:
+        samples: shape (n,).
+        rounding: their step, 0 where there is none.
+        lines: how many are asked for; all by default. Of a long record no others are looked at where all of them
+            together, by Parseval's theorem, are weaker than the strongest of these.
+    """
+    count, mean = samples.size, samples.mean()
+    every = count // 2 + 1
+    known = min(lines + 1, every) if lines is not None and is_long(count) else every
+    transform, coarse = RecordLines(count, 0, known), np.linspace(0.0, 1.0, TAPER_SAMPLES)
+    power, total = np.zeros(known), 0.0
     for taper in scipy.signal.windows.dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS):
-        window = scipy.interpolate.CubicSpline(coarse, taper)(fine)
-        power += np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2 * count / np.sum(window**2) / TAPERS
+        window = partial(_window, scipy.interpolate.CubicSpline(coarse, taper), count)
+        tapered = partial(_tapered, samples, mean, window)
+        energy = sum(float(np.sum(window(part) ** 2)) for part in transform.parts)
+        power += np.abs(transform.of(tapered)) ** 2 * count / energy / TAPERS
+        if known < every:
+            total += sum(float(np.sum(tapered(part) ** 2)) for part in transform.parts) * count**2 / energy / TAPERS
+    if known < every and 0.5 * (total + float(power[0])) - float(np.sum(power)) > float(np.max(power)):
+        return tapered_power(samples, rounding)
     power = np.convolve(power, np.full(3, 1.0 / 3.0), mode="same")
-    exact = count * (ROUNDING * float(np.max(np.abs(samples)))) ** 2
+    exact = count * (ROUNDING * max(float(samples.max()), -float(samples.min()))) ** 2
     floor = max(count * rounding**2 / 12.0, LEAKAGE * float(np.max(power[TAPERS:])), exact)
-    return power, floor
+    return power[:lines], floor
+
+
+def _window(spline: Any, count: int, part: slice) -> Real:
+    """A part of a taper over a record of `count` samples; the spline goes from 0 to 1."""
+    values: Real = spline(np.minimum(np.arange(part.start, part.stop) * (1.0 / (count - 1)), 1.0))
+    return values
+
+
+def _tapered(samples: Real, mean: float, window: Callable[[slice], Real], part: slice) -> Real:
+    """A part of a record about its mean, under a taper."""
+    return (samples[part] - mean) * window(part)
 
 
 def silent_lines(
@@ -106,9 +138,11 @@ def silent_lines(
     Returns:
         0 where every input drives the line, else 1 + the number of the cause, shape (m,).
     """
+    # Those of the stretches, and of the octaves around their middles.
+    farthest = int(np.max([centres + halves + 1, 2 * centres], initial=0))
     found, chance = np.zeros(centres.size, dtype=np.int_), np.ones(centres.size, dtype=np.bool_)
     for samples, spectrum, step in zip(inputs, spectra, rounding, strict=True):
-        power, floor = tapered_power(samples, step or rounding_step(samples))
+        power, floor = tapered_power(samples, step or rounding_step(samples), farthest)
         for which, lines in stretches_of_one_length(centres, halves):
             half = lines.shape[1] // 2
             smooth = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]

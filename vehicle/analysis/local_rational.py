@@ -15,7 +15,6 @@ Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import compress
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +23,7 @@ from vehicle.analysis.dependence import refuse_copies
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.input_floor import CAUSES, sentences, silent_lines
 from vehicle.analysis.output_error import StretchFit, fit_stretches
+from vehicle.analysis.record_lines import RecordLines, is_long
 from vehicle.analysis.samples import (
     checked_names,
     checked_rows,
@@ -55,6 +55,9 @@ COARSE_HZ = 0.06
 
 INDEPENDENT = 1e-2
 """Least eigenvalue of the matrix of the inputs, scaled to unit diagonal, over a stretch."""
+
+OUTPUTS_OF_A_LONG_RECORD = 12
+"""Responses of a long record whose lines are in memory at once."""
 
 SAME = "the inputs are fully correlated there, so that their responses cannot be separated"
 
@@ -136,9 +139,7 @@ def local_rational_responses(
         )
     if len(inputs) > 1:
         refuse_copies(step, inputs, labels, band)
-    spectra = np.fft.rfft(inputs - inputs.mean(axis=1, keepdims=True))
-    last = spectra.shape[1] - 1
-
+    last = samples // 2
     wanted = np.arange(band[0], band[1] + resolution / 2, max(resolution, line))
     low = np.arange(band[0], min(band[1], BODY_MODES), max(resolution / 2, line))
     wanted = np.union1d(wanted, low)
@@ -146,35 +147,36 @@ def local_rational_responses(
     centres = centres[(centres > least) & (centres < last - least)]
     halves = np.clip(np.round(RELATIVE_WIDTH * centres), least, MOST_HALF_WIDTH).astype(int)
     halves = np.minimum(halves, np.minimum(centres - 1, last - centres))
+    lines_of = RecordLines(samples, 0, int(np.max(centres + halves, initial=0)) + 1)
+    spectra = np.array([_without_mean(row, lines_of) for row in inputs])
     silent = silent_lines(inputs, spectra, centres, halves, rounding or (0.0,) * len(inputs))
     moving = np.array([not is_constant(row) for row in outputs])
     shape = (len(inputs), len(outputs), centres.size)
     response, coherence = np.full(shape, complex(np.nan, np.nan)), np.full(shape[1:], np.nan)
     deviation, averages = np.full((2, *shape), np.nan)
-    # One response after the other, and of each the lines that are asked for: a long record is large enough once.
-    needed = int(np.max(centres + halves, initial=0)) + 1
-    answers = np.array([np.fft.rfft(row - row.mean())[:needed] for row in compress(outputs, moving)]).reshape(
-        -1, needed
-    )
-    driven = np.flatnonzero(silent == 0)
-    for some, lines in stretches_of_one_length(centres[driven], halves[driven]):
-        which = driven[some]
-        drives, drive_level = _scaled(spectra[:, lines])  # (s, p, N), (s, p)
-        gram = drives @ drives.conj().swapaxes(1, 2) / lines.shape[1]
-        apart = np.linalg.eigvalsh(gram)[:, 0] >= INDEPENDENT
-        silent[which[~apart]] = len(CAUSES) + 1
-        if not apart.any():
-            continue
-        which, gram = which[apart], gram[apart]
-        scaled, level = _scaled(answers[:, lines[apart]])
-        fit = fit_stretches(drives[apart], scaled, wide=lines.shape[1] // 2 > least)
-        variance = np.real(np.einsum("skii->isk", fit.covariance))
-        ratio = level / drive_level[apart].T[:, :, None]  # (p, s, k)
-        rows = np.ix_(np.arange(len(inputs)), np.flatnonzero(moving), which)
-        response[rows] = (fit.response.transpose(2, 0, 1) * ratio).swapaxes(1, 2)
-        deviation[rows] = (np.sqrt(variance / 2.0) * ratio).swapaxes(1, 2)
-        averages[rows] = (fit.noise / variance).swapaxes(1, 2)
-        coherence[rows[1][0], which] = _coherence(fit, gram).T
+    driven, answering_rows = np.flatnonzero(silent == 0), np.flatnonzero(moving)
+    at_once = max(OUTPUTS_OF_A_LONG_RECORD if is_long(samples) else len(outputs), 1)
+    for begin in range(0, max(answering_rows.size, 1), at_once):
+        group = answering_rows[begin : begin + at_once]
+        answers = np.array([_without_mean(outputs[row], lines_of) for row in group]).reshape(-1, spectra.shape[1])
+        for some, lines in stretches_of_one_length(centres[driven], halves[driven]):
+            which = driven[some]
+            drives, drive_level = _scaled(spectra[:, lines])  # (s, p, N), (s, p)
+            gram = drives @ drives.conj().swapaxes(1, 2) / lines.shape[1]
+            apart = np.linalg.eigvalsh(gram)[:, 0] >= INDEPENDENT
+            silent[which[~apart]] = len(CAUSES) + 1
+            if not apart.any():
+                continue
+            which, gram = which[apart], gram[apart]
+            scaled, level = _scaled(answers[:, lines[apart]])
+            fit = fit_stretches(drives[apart], scaled, wide=lines.shape[1] // 2 > least)
+            variance = np.real(np.einsum("skii->isk", fit.covariance))
+            ratio = level / drive_level[apart].T[:, :, None]  # (p, s, k)
+            rows = np.ix_(np.arange(len(inputs)), group, which)
+            response[rows] = (fit.response.transpose(2, 0, 1) * ratio).swapaxes(1, 2)
+            deviation[rows] = (np.sqrt(variance / 2.0) * ratio).swapaxes(1, 2)
+            averages[rows] = (fit.noise / variance).swapaxes(1, 2)
+            coherence[rows[1][0], which] = _coherence(fit, gram).T
     frequency = centres * line
     reasons = (
         *_coarse(line),
@@ -196,6 +198,12 @@ def local_rational_responses(
         )
         for number in range(len(inputs))
     )
+
+
+def _without_mean(record: NDArray[np.float64], lines: RecordLines) -> NDArray[np.complex128]:
+    """Lines of the spectrum of a record about its mean."""
+    mean = record.mean()
+    return lines.of(lambda part: record[part] - mean)
 
 
 def _scaled(spectra: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:

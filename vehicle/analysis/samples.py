@@ -50,6 +50,8 @@ def checked_rows(what: str, signals: ArrayLike | Sequence[NDArray[np.float64]]) 
     if isinstance(signals, list | tuple) and all(isinstance(row, np.ndarray) and row.ndim == 1 for row in signals):
         rows = [checked_signals(f"{what} {number}", row)[0] for number, row in enumerate(signals)]
         if rows:
+            for number, row in enumerate(rows):
+                checked_same_length(f"{what} {number}", row, f"{what} 0", rows[0].size)
             return rows
     return list(checked_signals(what, signals))
 

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.analysis.record_lines import RecordLines
 from vehicle.analysis.samples import checked_band, checked_signals, checked_time_step, lines_in_band
 from vehicle.analysis.segments import cut_into_segments
 from vehicle.errors import DataError
+
+SEGMENTS_AT_ONCE = 256
+"""Segments of a long record that are transformed at once."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,9 +57,14 @@ def power_spectral_density(
     step = checked_time_step(time_step)
     array = checked_signals("signals", signals)
     cut = cut_into_segments(array.shape[1], step, window_s=window_s, overlap=overlap, minimum_averages=minimum_averages)
-    frequency, density = scipy.signal.welch(
-        array, 1.0 / step, window=cut.window, nperseg=cut.length, noverlap=cut.overlap, detrend="constant"
-    )
+    density: Any = 0.0
+    for first in range(0, cut.count, SEGMENTS_AT_ONCE):
+        count = min(SEGMENTS_AT_ONCE, cut.count - first)
+        piece = array[:, first * cut.step : (first + count - 1) * cut.step + cut.length]
+        frequency, found = scipy.signal.welch(
+            piece, 1.0 / step, window=cut.window, nperseg=cut.length, noverlap=cut.overlap, detrend="constant"
+        )
+        density = density + count / cut.count * found
     return PowerSpectralDensity(
         frequency=frequency, density=density, resolution_hz=float(frequency[1]), averages=cut.averages
     )
@@ -80,7 +90,9 @@ def _periodogram(step: float, array: NDArray[np.float64], lines: slice) -> Power
     sides[0] = 1.0
     if samples % 2 == 0:
         sides[-1] = 1.0
-    density = sides[lines] * np.abs(np.fft.rfft(array, axis=1)[:, lines]) ** 2 * step / samples
+    transform = RecordLines(samples, *lines.indices(sides.size)[:2])
+    spectra = np.array([transform.of(row.__getitem__) for row in array])
+    density = sides[lines] * np.abs(spectra) ** 2 * step / samples
     return PowerSpectralDensity(
         frequency=np.fft.rfftfreq(samples, step).astype(np.float64)[lines],
         density=density,

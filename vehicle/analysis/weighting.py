@@ -14,6 +14,8 @@ from vehicle.errors import ConfigurationError, DataError
 
 LEAST_SAMPLING_RATE = 250.0
 """The weightings limit the band at 100 Hz; 2.5 times that must be the sampling rate [Hz] (bad-inputs item 11)."""
+LINES_AT_ONCE = 2**18
+"""Lines of a long record that are weighted at once."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -167,6 +169,9 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
     samples = array.shape[1]
     # the slowest pole has the real part -w1/sqrt(2): after 4/f1 it has fallen by exp(-17.8) = 2e-8
     length = scipy.fft.next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
-    factor = curve.transfer_function(scipy.fft.rfftfreq(length, step))
-    weighted = scipy.fft.irfft(scipy.fft.rfft(array, length, axis=1) * factor, length, axis=1)[:, :samples]
+    spectrum, frequency = scipy.fft.rfft(array, length, axis=1), scipy.fft.rfftfreq(length, step)
+    for first in range(0, frequency.size, LINES_AT_ONCE):
+        some = slice(first, first + LINES_AT_ONCE)
+        spectrum[:, some] *= curve.transfer_function(frequency[some])
+    weighted = scipy.fft.irfft(spectrum, length, axis=1)[:, :samples]
     return np.asarray(weighted.reshape(np.shape(signals)), dtype=np.float64)

@@ -39,7 +39,7 @@ def comfort_notices(run: Run) -> list[str]:
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if not _recorded(run, RAIL):
         return bare
-    xyz = np.array([run[f"{RAIL}_acc_{axis}"] for axis in AXES])
+    xyz = [run[f"{RAIL}_acc_{axis}"] for axis in AXES]
     found = [
         f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
         f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
@@ -55,7 +55,7 @@ def _recorded(run: Run, place: str) -> bool:
 
 def _at(run: Run, place: str) -> dict[str, Any]:
     value = run.comfort(place)
-    xyz = np.array([run[f"{place}_acc_{axis}"] for axis in AXES])
+    xyz = [run[f"{place}_acc_{axis}"] for axis in AXES]
     return {
         "rms_2_50_hz": {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall},
         "iso2631": evaluate(run.recording.timestep, xyz, from_rest=True),

@@ -147,11 +147,14 @@ def write_run(
 def _write_psd(path: Path, run: Run) -> None:
     """One-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
     window, recording = min(PSD_WINDOW, run.signal.duration), run.recording
-    found = power_spectral_density(recording.timestep, np.array(list(recording.channels.values())), window_s=window)
+    each = [power_spectral_density(recording.timestep, one, window_s=window) for one in recording.channels.values()]
+    found = each[0]
     inside = found.frequency <= PSD_HIGHEST
     cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]
     method = f"one-sided power spectral density: Hann windows of {window:g} s, {found.averages:.3g} averages"
-    write_table(path, cells, [found.frequency[inside], *found.density[:, inside]], [method, f"frame: {FRAME}"])
+    write_table(
+        path, cells, [found.frequency[inside], *(one.density[0, inside] for one in each)], [method, f"frame: {FRAME}"]
+    )
 
 
 def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse], list[str]]:
