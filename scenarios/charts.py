@@ -92,7 +92,9 @@ def draw_frf(
 
 
 @contextmanager
-def figure_file(path: Path, size: tuple[float, float], title: str, caption: str) -> Iterator[Any]:
+def figure_file(
+    path: Path, size: tuple[float, float], title: str, caption: str, *, placed: bool = False
+) -> Iterator[Any]:
     """Give an empty figure; write it with title and caption under a temporary name and rename it when complete.
 
     Args:
@@ -100,10 +102,11 @@ def figure_file(path: Path, size: tuple[float, float], title: str, caption: str)
         size: width and height [inch].
         title: above the figure; none if empty.
         caption: what is seen, under which conditions.
+        placed: as of `saved_figure`.
     """
     draft = path.with_name(f".{path.name}.draft.png")
     try:
-        with saved_figure(draft, size, title, textwrap.fill(caption, width=int(14.5 * size[0]))) as figure:
+        with saved_figure(draft, size, title, textwrap.fill(caption, int(14.5 * size[0])), placed=placed) as figure:
             yield figure
         write_whole(path, lambda temporary: draft.replace(temporary))
     finally:

@@ -13,15 +13,19 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
-from vehicle.car import Run
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.parameters.paths import value_of
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.reduced.march import has_compiler
 from vehicle.sweeps.case import Case
+from vehicle.sweeps.evaluation import recordings_of, run_of
 from vehicle.sweeps.road import RoadInput, RoadMeasure
 from vehicle.sweeps.sweep import sweep
+
+Vector = npt.NDArray[np.float64]
+
+SEAT_RAIL_Z = ("seat_rail_acc_z",)
 
 Changes = tuple[str, ...]
 """Overrides of one car, as "damper.coulomb_friction=62.5"."""
@@ -155,7 +159,7 @@ class ComfortRuns:
         self.runs, self.records, self.folder = runs, records, folder
         self.engine = chosen_engine(runs.engine)
         self._done: dict[Case, Numbers] = {}
-        self._histories: dict[Case, Run] = {}
+        self._histories: dict[Case, Vector] = {}
 
     @property
     def computed(self) -> int:
@@ -221,13 +225,21 @@ class ComfortRuns:
             (self.folder / "rows.jsonl").unlink()
         return [self._done[case] for case in cases]
 
-    def history(self, car: Changes, road: str, *, record: int = 0, engine: str | None = None) -> Run:
-        """Seat rail in z over one record of a road; kept, since the nominal car is in many figures."""
-        case = self.cases(car, road, engine=engine)[record]
-        if case not in self._histories:
-            signal = case.source.signal()
-            self._histories[case] = self.runs.car(car).run(signal, engine=case.engine, channels=["seat_rail_acc_z"])
-        return self._histories[case]
+    def histories(
+        self, cars: Sequence[Changes], road: str, *, record: int = 0, engine: str | None = None
+    ) -> list[Vector]:
+        """Seat rail in z of cars over one record of a road [m/s2], (n,) each.
+
+        The reduced engine takes them side by side, as in the sweep; kept, since the nominal car is in many figures.
+        """
+        cases = [self.cases(car, road, engine=engine)[record] for car in cars]
+        missing = [case for case in dict.fromkeys(cases) if case not in self._histories]
+        if missing and missing[0].engine == "mujoco":
+            recordings = [run_of(case, SEAT_RAIL_Z).recording for case in missing]
+        else:
+            recordings = recordings_of(missing, SEAT_RAIL_Z) if missing else []
+        self._histories |= {case: one[SEAT_RAIL_Z[0]] for case, one in zip(missing, recordings, strict=True)}
+        return [self._histories[case] for case in cases]
 
     def all_cases(self, variation: Variation, base: Changes = ()) -> list[Case]:
         """All runs that the curves of a variation need, those about one car side by side."""

@@ -13,6 +13,7 @@ from scenarios.claims import FITTED, PREDICTED, Claim, Interval, interval_claim,
 from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation
 from vehicle.analysis.segments import window_extremes
 from vehicle.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.sweeps.case import signal_of
 
 Ends = Mapping[float, Interval]
 """Value of the parameter to the interval of the relative comfort value [%]."""
@@ -184,9 +185,9 @@ def road_levels(comfort: ComfortRuns) -> dict[str, RoadLevels]:
     for road in ROAD_RMS:
         extremes, swings = [], []
         for number in range(comfort.records.count):
-            run = comfort.history((), road, record=number)
-            extremes.append(window_extremes(run.recording.timestep, run["seat_rail_acc_z"][record], WINDOW_S))
-            plate = run.signal.displacement["fr"][record]
+            (rail,) = comfort.histories([()], road, record=number)
+            extremes.append(window_extremes(1.0 / RATE_HZ, rail[record], WINDOW_S))
+            plate = signal_of(comfort.cases((), road)[number].source).displacement["fr"][record]
             samples = min(round(SWING_S * RATE_HZ), plate.size)
             swings.append(np.ptp(plate[: plate.size // samples * samples].reshape(-1, samples), axis=1))
         found[road] = RoadLevels(seat_rail=np.concatenate(extremes), swing=np.concatenate(swings))

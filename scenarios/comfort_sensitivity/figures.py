@@ -11,22 +11,25 @@ import numpy as np
 
 from scenarios.charts import figure_file
 from scenarios.claims import markdown
-from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, chosen_engine
+from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, Vector, chosen_engine
 from scenarios.comfort_sensitivity.claims import PUBLISHED, PUBLISHED_SLIP
 from scenarios.study import car_text
 from vehicle.analysis.comfort import COMFORT_BAND
 from vehicle.analysis.spectra import power_spectral_density
-from vehicle.car import Run
 from vehicle.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
 from vehicle.excitation.slip_set import sets_text
 from vehicle.parameters.paths import value_of
 from vehicle.rendering.figure import COLOURS
+from vehicle.rendering.placed_axes import Margins, placed_axes
 
 EXCERPT_S = (27.0, 27.5)
 """Time shown by source 1 [s]."""
 
 WINDOW_S = 4.0
 """Length of the windows of the spectra [s]."""
+
+MARGINS = Margins(left=1.0, right=0.12, bottom=1.22, top=0.62, across=0.55, down=0.52)
+"""Around the axes of a variation: room for a caption of five lines."""
 
 ROAD_COLOURS = {"smooth": COLOURS[0], "rough": COLOURS[3]}
 
@@ -69,18 +72,18 @@ def draw_variation(
         f"relative to the reference on the same records; mean of {comfort.records.text()}, engine {comfort.engine}; "
         f"bars: two standard errors over the records"
     )
-    with figure_file(path, (10.4, 10.4), heading, caption) as figure:
-        axes = figure.subplots(3, 2)
+    with figure_file(path, (10.4, 10.4), heading, caption, placed=True) as figure:
+        axes = placed_axes(figure, MARGINS, widths=(1.0, 1.0), heights=(1.0, 1.0, 1.0))
         for (history, spectrum, relative), road in zip(axes.T, ROAD_RMS, strict=True):
-            for (value, car), colour in zip(shown.items(), COLOURS, strict=False):
-                run = comfort.history(car, road, engine=engine)
+            rails = comfort.histories(list(shown.values()), road, engine=engine)
+            for value, rail, colour in zip(shown, rails, COLOURS, strict=False):
                 look = {
                     "color": colour,
                     "label": f"{value:g}{' (reference)' if value == nominal else ''}",
                     "linewidth": 1.0,
                 }
-                _history(history, run, look)
-                _spectrum(spectrum, run, comfort.records.lead, look)
+                _history(history, rail, look)
+                _spectrum(spectrum, rail, comfort.records.lead, look)
             history.set_title(f"{road} road")
             _legend_above(history)
             _comfort(relative, curves[road], ROAD_COLOURS[road], "this car" if beside else None)
@@ -99,7 +102,6 @@ def draw_variation(
         axes[0, 0].set_ylabel("seat rail, z [m/s²]")
         axes[1, 0].set_ylabel("PSD of the seat rail, z [(m/s²)²/Hz]")
         axes[2, 0].set_ylabel("relative comfort value [%],\nlower is better")
-        figure.align_ylabels(axes[:, 0])
 
 
 def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequence[Point]]) -> None:
@@ -133,10 +135,10 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
         axis.legend(loc="lower right")
 
 
-def _history(axis: Any, run: Run, look: Mapping[str, Any]) -> None:
-    end = min(EXCERPT_S[1], float(run.time[-1]))
-    first, last = round((end - EXCERPT_S[1] + EXCERPT_S[0]) * RATE_HZ), round(end * RATE_HZ)
-    axis.plot(run.time[first : last + 1], run["seat_rail_acc_z"][first : last + 1], **look)
+def _history(axis: Any, rail: Vector, look: Mapping[str, Any]) -> None:
+    last = min(round(EXCERPT_S[1] * RATE_HZ), rail.size - 1)
+    shown = np.arange(last - round((EXCERPT_S[1] - EXCERPT_S[0]) * RATE_HZ), last + 1)
+    axis.plot(shown / RATE_HZ, rail[shown], **look)
     axis.set_xlabel("time [s]")
 
 
@@ -147,12 +149,13 @@ def _legend_above(axis: Any) -> None:
     axis.legend(loc="upper center", ncols=3, fontsize=7)
 
 
-def _spectrum(axis: Any, run: Run, lead: float, look: Mapping[str, Any]) -> None:
-    record = run["seat_rail_acc_z"][round(lead * RATE_HZ) + 1 :]
-    found = power_spectral_density(run.recording.timestep, record, window_s=min(WINDOW_S, record.size / RATE_HZ))
+def _spectrum(axis: Any, rail: Vector, lead: float, look: Mapping[str, Any]) -> None:
+    record = rail[round(lead * RATE_HZ) + 1 :]
+    found = power_spectral_density(1.0 / RATE_HZ, record, window_s=min(WINDOW_S, record.size / RATE_HZ))
     inside = (found.frequency >= COMFORT_BAND[0]) & (found.frequency <= COMFORT_BAND[1])
     axis.plot(found.frequency[inside], found.density[0, inside], **look)
     axis.set(yscale="log", xlim=COMFORT_BAND, xlabel="frequency [Hz]")
+    axis.tick_params(which="minor", labelleft=False)
 
 
 def _comfort(axis: Any, points: Sequence[Point], colour: str, label: str | None, style: str = "-") -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
@@ -20,7 +21,7 @@ UNTOLD = 64
 """The same in all, where an executor does not tell how many workers it has."""
 
 FILL = 8
-"""Cases that fill a vector unit: tasks hold multiples of it."""
+"""Cars that fill a vector unit: tasks hold multiples of it, each car with all its inputs."""
 TASK_S = 1.0
 """Computing time of a task [s]: handing it out costs a thousandth of it, and rows are kept every second."""
 LARGEST = 32 * FILL
@@ -138,7 +139,8 @@ class Crew:
             even = len(waiting) / at_once  # so that all workers end together
             size = max(int(min(paced, even, LARGEST)), 1)
             if first.engine != "mujoco" and paced > 2.0:
-                size = min(FILL * -(-size // FILL), -(-PER_WORKER * len(waiting) // at_once))
+                fill = FILL * _of_one_car(waiting, todo)
+                size = min(fill * -(-size // fill), LARGEST, -(-PER_WORKER * len(waiting) // at_once))
         task: list[str] = []
         while waiting and len(task) < size:
             case = todo[waiting[0]]
@@ -149,6 +151,12 @@ class Crew:
 
     def _submit(self, task: list[str], todo: dict[str, Case]) -> Future[list[Result]]:
         return self.executor.submit(carry_out, [todo[key] for key in task], self.measure, self.program)
+
+
+def _of_one_car(waiting: deque[str], todo: dict[str, Case]) -> int:
+    """How many of the next cases are about one car."""
+    first = todo[waiting[0]].overrides
+    return sum(1 for _ in itertools.takewhile(lambda key: todo[key].overrides == first, waiting))
 
 
 def _close(executor: Executor) -> None:

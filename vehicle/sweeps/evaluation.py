@@ -18,9 +18,10 @@ from vehicle.errors import SimulationError, VehicleError
 from vehicle.excitation.signal import Signal
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.reduced.lane_rows import LANES
-from vehicle.reduced.many import ManyRuns, simulate_many
+from vehicle.reduced.many import COARSE_STEP, ManyRuns, simulate_many
 from vehicle.reduced.march import has_compiler
 from vehicle.simulation.judgement import require_finite, require_memory
+from vehicle.simulation.recording import Recording
 from vehicle.sweeps.case import Case, signal_of
 from vehicle.sweeps.measure import BatchMeasure, Measure
 from vehicle.sweeps.result import Result
@@ -163,15 +164,7 @@ def marched(cars: Sequence[Car], signal: Signal, measure: BatchMeasure, *, beyon
         beyond: whether a run beyond the validity of the reduced engine counts; else its result is None.
     """
     try:
-        many = simulate_many(
-            [car.poles for car in cars],
-            signal,
-            dampers=[[damper.law for damper in car.vehicle.composition.dampers] for car in cars],
-            record_rate=cars[0].vehicle.solver.record_rate,
-            tyre_load=[car.static.tyre_load for car in cars],
-            channels=measure.channels,
-            step=measure.timestep,
-        )
+        many = _marched(cars, signal, measure.channels, measure.timestep)
     except OF_A_RUN as error:
         return _each(cars, error, lambda car: marched([car], signal, measure, beyond=beyond)[0])
     found: list[Result | None] = [None] * len(cars)
@@ -217,6 +210,36 @@ def _measured(cars: Sequence[Car], many: ManyRuns, rows: list[int], measure: Bat
 def _each(items: Sequence[T], error: Exception, one: Callable[[T], R]) -> list[R | Result]:
     """Each of several by itself after an error of all together, so that only what has it fails."""
     return [one(item) for item in items] if len(items) > 1 else [_failed(error)]
+
+
+def recordings_of(cases: Sequence[Case], channels: Sequence[str]) -> list[Recording]:
+    """Time histories of cars of one kind on one input with the reduced engine, marched side by side as in a sweep.
+
+    Args:
+        cases: the runs; their engine is not looked at.
+        channels: names of the recorded channels.
+
+    Raises:
+        VehicleError: as of `Car.run`.
+    """
+    cars, signal = [_car_of(case) for case in cases], signal_of(cases[0].source)
+    many = _marched(cars, signal, channels, COARSE_STEP)
+    for row in range(len(many)):
+        require_finite(many.recording(row))
+    return [many.recording(row) for row in range(len(many))]
+
+
+def _marched(cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float) -> ManyRuns:
+    """Cars of one kind on a signal."""
+    return simulate_many(
+        [car.poles for car in cars],
+        signal,
+        dampers=[[damper.law for damper in car.vehicle.composition.dampers] for car in cars],
+        record_rate=cars[0].vehicle.solver.record_rate,
+        tyre_load=[car.static.tyre_load for car in cars],
+        channels=channels,
+        step=step,
+    )
 
 
 def _checked(values: dict[str, float]) -> dict[str, float]:
