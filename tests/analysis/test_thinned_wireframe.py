@@ -7,7 +7,7 @@ import pytest
 import scipy
 
 from vehicle.analysis.thinned_wireframe import MOST_LINES, MOST_NODES, neighbours, thinned
-from vehicle.rendering.stage import MOST_GEOMS
+from vehicle.rendering.canvas import MOST_GEOMS
 
 
 def plate(columns, rows, apart=0.05):
@@ -31,7 +31,7 @@ def test_a_mesh_of_5000_nodes_is_thinned_and_stays_whole():
         scipy.sparse.coo_matrix((np.ones(len(lines)), lines.T), shape=(len(positions),) * 2)
     )
     assert count == len(positions) - len(shown) + 1
-    assert MOST_NODES + 2 * MOST_LINES < MOST_GEOMS - 1000  # what a film draws of it, twice; the rest is for the car
+    assert MOST_NODES + MOST_LINES < MOST_GEOMS - 1000  # what a film draws of it; the rest is for the car
 
 
 def test_two_parts_are_not_joined_and_lines_have_their_own_limit():

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from tests.rendering.test_palette import linear, oklab
-from vehicle.rendering.motion import Coil, RecordedMotion, Wireframe
+from vehicle.rendering.body_wireframe import Wireframe
+from vehicle.rendering.motion import Coil, RecordedMotion
 from vehicle.rendering.overlay import colours, round_up
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import mujoco
 
+FARTHEST = 120.0
+"""What lies farther from the camera is not drawn [m]."""
+
 FLOOR_COLOUR = (0.78, 0.80, 0.82, 1.0)
 BACKGROUND = (0.80, 0.825, 0.85)
 
@@ -22,14 +25,15 @@ def add_studio(spec: mujoco.MjSpec, size: tuple[int, int], samples: int, ground:
     spec.visual.quality.offsamples = samples
     # Nodes and members of the wireframe are thin; round ones would cost more than the whole car.
     spec.visual.quality.numslices, spec.visual.quality.numstacks = 10, 4
+    spec.visual.quality.numquads = 1  # faces of a box: all light is parallel, so more would look the same
     spec.visual.headlight.ambient = [0.36, 0.37, 0.39]
     spec.visual.headlight.diffuse = [0.22, 0.22, 0.22]
     spec.visual.headlight.specular = [0.05, 0.05, 0.05]
     spec.visual.map.znear = 0.01
-    spec.visual.map.zfar = 30.0
     spec.visual.map.haze = 0.3
     spec.visual.rgba.haze = [*BACKGROUND, 1.0]
     spec.stat.extent = 4.0
+    spec.visual.map.zfar = FARTHEST / spec.stat.extent
     spec.stat.center = [2.2, 0.0, 0.9]
     spec.add_texture(
         name="sky",
@@ -41,10 +45,11 @@ def add_studio(spec: mujoco.MjSpec, size: tuple[int, int], samples: int, ground:
         height=48,
     )
     spec.add_material(name="floor", rgba=FLOOR_COLOUR, specular=0.1, shininess=0.2)
+    # Four squares: an infinite plane would be 40 000 of them.
     spec.worldbody.add_geom(
         name="floor",
         type=mujoco.mjtGeom.mjGEOM_PLANE,
-        size=[0.0, 0.0, 0.05],
+        size=[1.1 * FARTHEST] * 3,
         pos=[0.0, 0.0, ground],
         material="floor",
         contype=0,

@@ -12,8 +12,8 @@ from multiprocessing.connection import Connection
 import numpy as np
 
 from vehicle.errors import OutputError
+from vehicle.rendering.canvas import Picture
 from vehicle.rendering.shot import Shot
-from vehicle.rendering.stage import Picture
 from vehicle.threads import one_thread_each
 
 WORTH_A_PROCESS = 40

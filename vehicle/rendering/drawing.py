@@ -7,9 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.parameters.composition import Composition
-from vehicle.rendering.motion import Coil, Motion, State, Wireframe
+from vehicle.rendering.body_wireframe import Wireframe
+from vehicle.rendering.canvas import Canvas
+from vehicle.rendering.motion import Coil, Motion, State
 from vehicle.rendering.overlay import colours
-from vehicle.rendering.stage import Canvas
 
 
 class Drawing:

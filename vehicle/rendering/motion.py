@@ -1,14 +1,10 @@
-"""Motion about the design position, exaggerated; wireframe of the flexible body, coil of a spring.
+"""Motion about the design position, exaggerated; coil of a spring.
 
 Every body has a design pose (p0, R0) and, in a state of motion, a displacement u and a rotation vector theta. Shown is
 
-    p = p0 + k u,    R = exp(k [theta]) R0,
+    p = p0 + k u,    R = exp(k [theta]) R0.
 
-and a node of the flexible body at r from its origin, with modal coordinates q,
-
-    x = p + exp(k [theta]) (r + k Phi q).
-
-With k = 1 this is MuJoCo's own kinematics plus the modal displacement.
+With k = 1 this is MuJoCo's own kinematics.
 """
 
 from __future__ import annotations
@@ -20,27 +16,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.analysis.thinned_wireframe import MOST_NODES, thinned
 from vehicle.parameters.composition import Composition, PlacedSpring
 from vehicle.rendering.recorded_run import wheels_of
-from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.recording import Recording
 
 Vector = npt.NDArray[np.float64]
-
-NODE_RADIUS = 0.020
-MEMBER_RADIUS = 0.0085
-SHADOW_RADIUS = 0.005
-"""Drawn sizes [m]."""
-
-FRAME_LINES = 200
-"""Lines up to which they have these sizes: those of a frame of beams."""
-
-SHADOW_COLOUR = np.array([0.35, 0.38, 0.42, 0.8], dtype=np.float32)
-"""Colour of the members in the design position, against which the motion is seen."""
-
-
-UPRIGHT = np.eye(3).ravel()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -161,68 +141,6 @@ class RecordedMotion(Motion):
             rotation=values[bodies : 2 * bodies].reshape(-1, 3),
             modal=values[2 * bodies :],
         )
-
-
-class Wireframe:
-    """Nodes and members of the superelement, coloured by how far each node moves.
-
-    Args:
-        car: the car.
-        motion: its motion.
-    """
-
-    def __init__(self, car: CarModel, motion: Motion) -> None:
-        element = car.superelement
-        self.motion = motion
-        self.body = int(motion.model.body("body").id)
-        lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
-        # A body without lines is its nodes; of one with lines, those that lines end at.
-        shown, index = np.unique(lines, return_inverse=True) if len(lines) else (slice(MOST_NODES), lines)
-        self.rest, self.edges = np.asarray(element.positions)[shown], index.reshape(-1, 2)
-        self.shapes = np.asarray(element.shapes)[: len(motion.modal), shown]  # (modes, n, 3); none of a rigid body
-        # Members as thick as those of a frame would hide a dense mesh.
-        self.slim = min(1.0, float(np.cbrt(FRAME_LINES / max(len(lines), 1))))
-
-    def places(self, state: State, factor: float) -> Vector:
-        """Exaggerated positions of the nodes [m], (n, 3)."""
-        elastic = np.einsum("m,mni->ni", state.modal, self.shapes)
-        return self.motion.moved(state, factor, self.body, self.rest + factor * elastic)
-
-    def displacement(self, state: State) -> Vector:
-        """True distance of each node from its design position [m], (n,)."""
-        return np.asarray(np.linalg.norm(self.places(state, 1.0) - self.rest, axis=1))
-
-    def draw(self, scene: mujoco.MjvScene, places: Vector, colours: npt.NDArray[np.float32]) -> None:
-        """Append spheres and capsules to a scene.
-
-        Args:
-            scene: scene that has been updated; must have room.
-            places: node positions [m], (n, 3).
-            colours: red, green, blue, opacity of the nodes, (n, 4); a member takes the mean of its ends.
-        """
-        for place, colour in zip(places, colours, strict=True):
-            _append(scene, mujoco.mjtGeom.mjGEOM_SPHERE, self.slim * NODE_RADIUS, place, colour)
-        middle = 0.5 * (colours[self.edges[:, 0]] + colours[self.edges[:, 1]])
-        shadow = np.broadcast_to(SHADOW_COLOUR, middle.shape)
-        for radius, at, shades in (
-            (self.slim * MEMBER_RADIUS, places, middle),
-            (self.slim * SHADOW_RADIUS, self.rest, shadow),
-        ):
-            for (first, second), colour in zip(self.edges, shades, strict=True):
-                capsule = _append(scene, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, at[first], colour)
-                mujoco.mjv_connector(capsule, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, at[first], at[second])
-
-
-def _append(
-    scene: mujoco.MjvScene, kind: mujoco.mjtGeom, radius: float, place: Vector, colour: npt.NDArray[np.float32]
-) -> mujoco.MjvGeom:
-    geom = scene.geoms[scene.ngeom]
-    mujoco.mjv_initGeom(geom, kind, np.full(3, radius), place, UPRIGHT, colour)
-    geom.category = mujoco.mjtCatBit.mjCAT_DECOR
-    geom.emission = 0.35
-    geom.specular = 0.1
-    scene.ngeom += 1
-    return geom
 
 
 def coil_seats(composition: Composition, spring: PlacedSpring) -> list[str]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.parameters.composition import Composition
-from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.recording import Recording
+
+if TYPE_CHECKING:  # processes that draw a film need no compiler of models
+    from vehicle.simulation.car_model import CarModel
 
 Vector = npt.NDArray[np.float64]
 

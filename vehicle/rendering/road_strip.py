@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.parameters.composition import PlacedWheel
+from vehicle.rendering.added_geom import add_geom
 from vehicle.simulation.recording import Recording
 
 Vector = npt.NDArray[np.float64]
@@ -98,9 +99,6 @@ class RoadStrip:
                 along = rise / length
                 across, up = np.array([0.0, 1.0, 0.0]), np.array([-along[2], 0.0, along[0]])
                 middle = np.array([x[number], wheel.patch[1], z[number]]) + 0.5 * rise - 0.5 * THICKNESS * up
-                geom = scene.geoms[scene.ngeom]
                 size = np.array([0.5 * length, HALF_WIDTH, 0.5 * THICKNESS])
                 frame = np.column_stack([along, across, up]).ravel()
-                mujoco.mjv_initGeom(geom, mujoco.mjtGeom.mjGEOM_BOX, size, middle, frame, shade)
-                geom.category = mujoco.mjtCatBit.mjCAT_DECOR
-                scene.ngeom += 1
+                add_geom(scene, mujoco.mjtGeom.mjGEOM_BOX, size, middle, shade, frame)

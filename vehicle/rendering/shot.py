@@ -13,8 +13,11 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import side_of, wheel_words
+from vehicle.rendering.body_wireframe import Wireframe
+from vehicle.rendering.cameras import close_up, whole_car
+from vehicle.rendering.canvas import Canvas, Picture
 from vehicle.rendering.drawing import Drawing
-from vehicle.rendering.motion import RecordedMotion, Wireframe
+from vehicle.rendering.motion import Motion, RecordedMotion
 from vehicle.rendering.overlay import Layout, Overlay, Trace, round_factor, round_up
 from vehicle.rendering.recorded_run import (
     RecordedRun,
@@ -27,7 +30,6 @@ from vehicle.rendering.recorded_run import (
 )
 from vehicle.rendering.road_strip import RoadStrip
 from vehicle.rendering.rolling import RollingRim
-from vehicle.rendering.stage import OPACITY, Canvas, Picture, close_up, stage_model, whole_car
 
 Vector = npt.NDArray[np.float64]
 
@@ -113,7 +115,10 @@ class Shot:
     """
 
     def __init__(self, run: RecordedRun, layout: Layout, take: Take) -> None:
-        # What is kept can be sent to another process, so nothing that a compiler of models holds is.
+        # What is kept can be sent to another process, so nothing that a compiler of models holds is; there, drawing
+        # imports no shapes.
+        from vehicle.rendering.stage import stage_model, unveiled
+
         recording, vehicle = run.recording, run.car.model.vehicle
         self.recording, self.vehicle, self.wheel = recording, vehicle, run.wheel
         self.layout, self.speed, self.composition = layout, take.speed, vehicle.composition
@@ -135,9 +140,12 @@ class Shot:
         frames = max(int(length * take.slow * FPS + 1e-9), 1)
         self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
         self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes that of the model
-        self.motion = RecordedMotion(self.model, recording, start, start + length)
+        self.unveiled = unveiled(self.model)
+        self.motion = Motion(self.model)
         self.wireframe = Wireframe(run.car.model, self.motion)
-        largest, node = self._largest(start + np.arange(frames) / (FPS * take.slow), interval)
+        recorded = RecordedMotion(self.model, recording, start, start + length)
+        self.states = [recorded.at(start + number * interval, interval) for number in range(frames)]
+        largest, node = self._largest()
         factor = round_factor(VISIBLE_TRAVEL / largest) if take.exaggeration is None else take.exaggeration
         self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=reason)
         self.road = None if take.speed is None else RoadStrip(self.composition.wheels, recording, take.speed, interval)
@@ -168,7 +176,7 @@ class Shot:
             drawing = Drawing(canvas, self.motion, self.wireframe, self.composition, self.scale_top)
             for number in range(first, self.cut.frames, every):
                 time = self.cut.start + number * self.cut.interval
-                state = self.motion.at(time, self.cut.interval)
+                state = self.states[number]
                 drawing.pose(state, factor)
                 for rim in rims:
                     rim.turn(drawing.data, state, factor, time)
@@ -182,24 +190,21 @@ class Shot:
     def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]]:
         """Camera, viewport and opacity of all materials of each view."""
         layout, wheel, model = self.layout, self.wheel, self.model
-        usual, cleared = self.opacity, self.opacity.copy()
+        cleared = self.unveiled.copy()
         rolling = next(one.part for one in self.composition.wheels if one.name == wheel)
-        names = {model.mat(number).name: number for number in range(model.nmat)}
         cleared[model.geom_matid[model.geom_bodyid == model.body(rolling).id]] = GHOST_OPACITY
-        cleared[[names[name] for name in OPACITY if name in names]] = 0.0
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
         return [
-            (whole_car(self.vehicle), (0, 0, layout.main_width, layout.view_height), usual),
+            (whole_car(self.vehicle), (0, 0, layout.main_width, layout.view_height), self.opacity),
             (close_up(self.motion, self.vehicle, wheel), right, cleared),
         ]
 
-    def _largest(self, times: Vector, exposure: float) -> tuple[float, float]:
+    def _largest(self) -> tuple[float, float]:
         """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
         parts, nodes = [], []
         bodies = [(hub_of(self.composition, wheel.name), wheel.plate) for wheel in self.composition.wheels]
         moving = [int(self.model.body(name).id) for pair in bodies for name in pair]
-        for time in times:
-            state = self.motion.at(time, exposure)
+        for state in self.states:
             parts.append(np.linalg.norm(state.translation[moving], axis=1))
             nodes.append(self.wireframe.displacement(state))
         largest = max(float(np.max(parts)), float(np.max(nodes)), VISIBLE_TRAVEL / LARGEST_FACTOR)
