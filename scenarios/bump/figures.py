@@ -26,7 +26,7 @@ from vehicle.output.folder import write_whole
 from vehicle.rendering.backend import choose_backend
 from vehicle.rendering.figure import COLOURS, LINES
 from vehicle.rendering.film import write_film
-from vehicle.rendering.overlay import Layout, font
+from vehicle.rendering.layout import Layout, font
 from vehicle.rendering.shot import Shot, Take
 
 Vector = npt.NDArray[np.float64]

@@ -8,8 +8,9 @@ import pytest
 
 from tests.rendering.test_palette import linear, oklab
 from vehicle.rendering.body_wireframe import Wireframe
+from vehicle.rendering.colour_scale import colours
 from vehicle.rendering.motion import Coil, RecordedMotion
-from vehicle.rendering.overlay import colours, round_up
+from vehicle.rendering.rounding import round_up
 
 
 @pytest.fixture(scope="module")

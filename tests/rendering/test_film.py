@@ -12,7 +12,8 @@ from vehicle.errors import ConfigurationError, OutputError
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.rendering.crew import drawn_by
 from vehicle.rendering.film import film
-from vehicle.rendering.overlay import SLIP_COLOUR, STICK_COLOUR, Layout
+from vehicle.rendering.layout import Layout
+from vehicle.rendering.overlay import SLIP_COLOUR, STICK_COLOUR
 from vehicle.rendering.shot import Shot, Take
 
 

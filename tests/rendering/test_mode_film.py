@@ -15,8 +15,8 @@ from vehicle.commands import modes as command
 from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.rendering import backend, mode_film
 from vehicle.rendering.backend import find_ffmpeg
+from vehicle.rendering.layout import OneView
 from vehicle.rendering.mode_film import ModeMotion, ModeShot
-from vehicle.rendering.overlay import OneView
 from vehicle.rendering.wireframe import car_wireframe
 
 SMALL = 1e-5

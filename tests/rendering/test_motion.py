@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from tests.rendering.conftest import fabricated
 from vehicle.rendering.motion import RecordedMotion
-from vehicle.rendering.overlay import round_factor
+from vehicle.rendering.rounding import round_factor
 
 EXACT = 1e-9
 """[m], [1]: a spline passes through its knots; what remains is rounding through a rotation vector and back."""

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from scenarios.charts import LEVEL_COLOURS
-from vehicle.rendering import overlay
+from vehicle.rendering import overlay, trace_strip
 from vehicle.rendering.figure import COLOURS, FADING, INK, LINES, fading, saved_figure
 
 SIGHT = {
@@ -73,7 +73,7 @@ def test_red_and_green_of_equal_lightness_would_be_refused():
 
 
 def test_levels_and_traces_are_colours_of_the_palette():
-    traces = ["#" + bytes(colour).hex() for colour in overlay.TRACE_COLOURS]
+    traces = ["#" + bytes(colour).hex() for colour in trace_strip.TRACE_COLOURS]
     assert set(LEVEL_COLOURS) | set(traces) <= set(COLOURS)
     assert len(set(LINES)) == len(LINES) == len(COLOURS)
 

@@ -13,8 +13,8 @@ from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.car import Car
 from vehicle.names import side_of, wheel_words
 from vehicle.rendering.backend import choose_backend
+from vehicle.rendering.layout import Layout
 from vehicle.rendering.motion import RecordedMotion
-from vehicle.rendering.overlay import Layout
 from vehicle.rendering.recorded_run import hub_channel
 from vehicle.rendering.road_strip import RoadStrip
 from vehicle.rendering.rolling import RollingRim

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.thinned_wireframe import thinned
+from vehicle.rendering.colour_scale import colours
 from vehicle.rendering.figure import COLOURS, saved_figure
-from vehicle.rendering.overlay import colours
 
 Vector = npt.NDArray[np.float64]
 

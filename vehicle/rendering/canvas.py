@@ -7,11 +7,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.rendering.added_geom import add_geom
-
-Picture = npt.NDArray[np.uint8]
+from vehicle.rendering.layout import Picture
 
 MOST_GEOMS = 5000
 """Room in a scene: shapes, nodes and members of the wireframe, pieces of a road."""

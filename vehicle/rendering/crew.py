@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 import numpy as np
 
 from vehicle.errors import OutputError
-from vehicle.rendering.canvas import Picture
+from vehicle.rendering.layout import Picture
 from vehicle.rendering.shot import Shot
 from vehicle.threads import one_thread_each
 

@@ -9,8 +9,8 @@ import numpy.typing as npt
 from vehicle.parameters.composition import Composition
 from vehicle.rendering.body_wireframe import Wireframe
 from vehicle.rendering.canvas import Canvas
+from vehicle.rendering.colour_scale import colours
 from vehicle.rendering.motion import Coil, Motion, State
-from vehicle.rendering.overlay import colours
 
 
 class Drawing:

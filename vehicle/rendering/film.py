@@ -8,7 +8,7 @@ from pathlib import Path
 from vehicle.errors import OutputError
 from vehicle.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.rendering.crew import drawn_by
-from vehicle.rendering.overlay import Layout, Picture
+from vehicle.rendering.layout import Layout, Picture
 from vehicle.rendering.recorded_run import RecordedRun
 from vehicle.rendering.shot import FPS, Cut, Shot, Take
 

@@ -15,10 +15,12 @@ from vehicle.rendering.backend import choose_backend
 from vehicle.rendering.body_wireframe import Wireframe
 from vehicle.rendering.cameras import whole_car
 from vehicle.rendering.canvas import Canvas
+from vehicle.rendering.caption import Caption
 from vehicle.rendering.drawing import Drawing
 from vehicle.rendering.film import write_film
+from vehicle.rendering.layout import OneView, Picture
 from vehicle.rendering.motion import Motion, State
-from vehicle.rendering.overlay import Caption, OneView, Picture, round_up
+from vehicle.rendering.rounding import round_up
 from vehicle.rendering.shot import FPS
 from vehicle.rendering.stage import stage_model
 from vehicle.rendering.wireframe import car_wireframe, unit_factor

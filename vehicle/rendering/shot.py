@@ -15,10 +15,11 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import side_of, wheel_words
 from vehicle.rendering.body_wireframe import Wireframe
 from vehicle.rendering.cameras import close_up, whole_car
-from vehicle.rendering.canvas import Canvas, Picture
+from vehicle.rendering.canvas import Canvas
 from vehicle.rendering.drawing import Drawing
+from vehicle.rendering.layout import Layout, Picture
 from vehicle.rendering.motion import Motion, RecordedMotion
-from vehicle.rendering.overlay import Layout, Overlay, Trace, round_factor, round_up
+from vehicle.rendering.overlay import Overlay
 from vehicle.rendering.recorded_run import (
     RecordedRun,
     dampers_of,
@@ -30,6 +31,8 @@ from vehicle.rendering.recorded_run import (
 )
 from vehicle.rendering.road_strip import RoadStrip
 from vehicle.rendering.rolling import RollingRim
+from vehicle.rendering.rounding import round_factor, round_up
+from vehicle.rendering.trace_strip import Trace, TraceStrip
 
 Vector = npt.NDArray[np.float64]
 
@@ -154,10 +157,8 @@ class Shot:
         self.overlay = Overlay(
             layout=layout,
             heading=self._heading(run, take.slow),
-            time=recording.time,
-            traces=self._traces(),
-            visible=self.visible,
             scale_top=1e3 * self.scale_top,
+            strip=TraceStrip(layout=layout, time=recording.time, traces=self._traces(), visible=self.visible),
         )
 
     def frames(self, backend: str, first: int = 0, every: int = 1) -> Iterator[Picture]:

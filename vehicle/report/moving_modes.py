@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.linear.modes import Mode
-from vehicle.rendering.overlay import colours
+from vehicle.rendering.colour_scale import colours
 from vehicle.rendering.wireframe import GROUPS, CarWireframe, unit_factor
 
 FULL = 999

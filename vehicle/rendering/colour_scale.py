@@ -1,0 +1,31 @@
+"""Colours of a displacement."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+SCALE = "viridis"
+"""Colour map of the displacement: equal steps look equally large, in print without colours and to colour-blind eyes too
+(Smith and van der Walt, 2015). Violet is at rest, yellow the top of the scale."""
+
+SHADES = 256
+"""Of its table."""
+
+
+def colours(values: npt.ArrayLike, top: float) -> npt.NDArray[np.float32]:
+    """Colours of values between 0 and the top of the scale; what lies above is drawn as the top.
+
+    Args:
+        values: (n,), same unit as `top`.
+        top: largest value of the scale, above 0.
+
+    Returns:
+        Red, green, blue and opacity 1, (n, 4).
+    """
+    from matplotlib import colormaps
+
+    table = np.array(colormaps[SCALE](np.linspace(0.0, 1.0, SHADES)))[:, :3]
+    place = np.clip(np.atleast_1d(np.asarray(values, dtype=float)) / top, 0.0, 1.0) * (SHADES - 1)
+    rgb = [np.interp(place, np.arange(SHADES), column) for column in table.T]
+    return np.column_stack([*rgb, np.ones(len(place))]).astype(np.float32)
