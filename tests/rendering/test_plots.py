@@ -14,9 +14,10 @@ from tests.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.motion_response import MotionResponse
 from vehicle.parameters.vehicle import load_vehicle
+from vehicle.rendering import plots
 from vehicle.rendering.figure import FADED, wrapped_phase
 from vehicle.rendering.frf_plot import plot_frfs
-from vehicle.rendering.plots import plot_frf, plot_time
+from vehicle.rendering.plots import outline, plot_frf, plot_time
 from vehicle.rendering.recorded_run import excerpt_start, liveliest
 
 CHANNELS = load_vehicle().acceleration_channels
@@ -209,3 +210,21 @@ def test_without_slip_the_knuckle_decides(run):
     start, reason = excerpt_start(run.recording, "fl", "knuckle_fl_acc_z", 1.0, 0.1)
     assert reason == "liveliest knuckle; no slip"
     assert 0.0 <= start <= 0.2
+
+
+def test_an_outline_keeps_the_extremes_of_every_pixel_column(monkeypatch):
+    """Column by column, sample by sample: nothing is lost, and nothing moves by more than a piece, 0.11 columns."""
+    monkeypatch.setattr(plots, "MOST_POINTS", 800)
+    count, columns = 12_347, 43
+    time, values = np.linspace(0.0, 1e-3 * (count - 1), count), np.random.default_rng(1).normal(size=count)
+    values[[0, 5003, count - 1]] = 90.0, -80.0, 70.0  # of a single sample each, at both ends too
+    at, drawn = outline(time, values)
+    assert 600 < drawn.size <= 800 and np.all(np.diff(at) >= 0.0)
+    piece, width = 0.031, time[-1] / columns
+    for column in range(columns):
+        begin, end = column * width, (column + 1) * width
+        seen = [y for t, y in zip(at, drawn, strict=True) if begin <= t <= end]
+        surely = [y for t, y in zip(time, values, strict=True) if begin + piece <= t <= end]
+        perhaps = [y for t, y in zip(time, values, strict=True) if begin <= t <= end + piece]
+        assert min(perhaps) <= min(seen) <= min(surely) and max(surely) <= max(seen) <= max(perhaps)
+    np.testing.assert_array_equal(outline(time[:800], values[:800])[1], values[:800])

@@ -105,7 +105,7 @@ def _axis(
     span: _Span, record: NDArray[np.float64], name: str, factor: float, average: RunningAverage
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the measures of one axis (n,) and what must be said about them."""
-    step = span.time_step
+    step, sickness = span.time_step, _motion_sickness(span, record)
     response = weighted_record(step, record, name)
     weighted, settled = span.whole(response), span.settled(response, name)
     if not settled.size:
@@ -139,7 +139,7 @@ def _axis(
         "crest_factor": crest_factor(settled),
         "vdv": dose,
         "estimated_vdv": estimated_vibration_dose_value(rms, duration),
-        "msdv": _motion_sickness(span, record),
+        "msdv": sickness,
         "msdv_weighting": MOTION_SICKNESS,
         "mtvv_ratio": transient / rms if rms > 0.0 else None,
         "vdv_ratio": dose / (rms * duration**0.25) if rms > 0.0 else None,

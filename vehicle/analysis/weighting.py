@@ -169,9 +169,10 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
     samples = array.shape[1]
     # the slowest pole has the real part -w1/sqrt(2): after 4/f1 it has fallen by exp(-17.8) = 2e-8
     length = scipy.fft.next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
-    spectrum, frequency = scipy.fft.rfft(array, length, axis=1), scipy.fft.rfftfreq(length, step)
+    # Those of numpy need no room of their own.
+    spectrum, frequency = np.fft.rfft(array, length, axis=1), np.fft.rfftfreq(length, step)
     for first in range(0, frequency.size, LINES_AT_ONCE):
         some = slice(first, first + LINES_AT_ONCE)
         spectrum[:, some] *= curve.transfer_function(frequency[some])
-    weighted = scipy.fft.irfft(spectrum, length, axis=1)[:, :samples]
+    weighted = np.fft.irfft(spectrum, length, axis=1)[:, :samples]
     return np.asarray(weighted.reshape(np.shape(signals)), dtype=np.float64)

@@ -184,7 +184,10 @@ def _job(options: argparse.Namespace) -> None:
             from vehicle.report.page import report_page
 
             progress = ProgressLine("report    ", enabled=not options.quiet)
-            path.write_text(report_page([read_run(folder, place=output, car=car)], progress), encoding="utf-8")
+            path.write_text(
+                report_page([read_run(folder, place=output, car=car, recording=run.recording)], progress),
+                encoding="utf-8",
+            )
 
         summary = write_run(
             folder,

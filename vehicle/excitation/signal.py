@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -170,14 +171,23 @@ class Signal:
         return PlateMotion(time=at, displacement=motion[0], velocity=motion[1], acceleration=motion[2])
 
 
+@lru_cache(maxsize=2)
 def uniform_time(*, samples: int, timestep: float) -> NDArray[np.float64]:
-    """Sample times i * timestep, i = 0 ... samples - 1 [s]; one product each, so that rounding does not add up."""
-    return np.arange(samples, dtype=np.float64) * timestep
+    """Sample times i * timestep, i = 0 ... samples - 1 [s]; one product each, so that rounding does not add up.
+
+    A signal and the run on it share them, so they cannot be written to.
+    """
+    time: NDArray[np.float64] = np.arange(samples, dtype=np.float64)
+    time *= timestep
+    time.setflags(write=False)
+    return time
 
 
 def _read_only(values: ArrayLike) -> NDArray[np.float64]:
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
+    array = np.asarray(values, dtype=np.float64)
+    if array.flags.writeable or not array.flags.owndata:
+        array = np.array(array)
+        array.setflags(write=False)
     return array
 
 

@@ -99,6 +99,7 @@ def write_run(
     channels = run.car.vehicle.acceleration_channels
     responses, missing = _frfs(run, DependentInputsError if road is None else DataError)
     files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
+    summary = summarise(run, responses, files)
     if responses:
         files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
     if road is not None:
@@ -129,8 +130,7 @@ def write_run(
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
         files["video"] = str(name)
-    beside = None if measured is None else write_beside(folder, measured, run, files)
-    summary = {**summarise(run, responses, files), "measured": beside}
+    summary["measured"] = None if measured is None else write_beside(folder, measured, run, files)
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing
@@ -197,7 +197,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
     Args:
         run: finished run.
         responses: its FRFs of all acceleration channels to each motion of its plates; none where there are none.
-        files: kind of file to its name.
+        files: kind of file to its name, which may grow.
 
     Returns:
         Plain numbers, texts, lists and dictionaries; None where a value does not exist.

@@ -58,10 +58,15 @@ def read(path: Path, wanted: Wanted) -> Table:
                 "repair or cut the record"
             )
     header = Header(path=path, line=0, cells=tuple(f"{name} [{units.get(name) or ''}]" for name in numbers))
+    key = wanted.key(header)
+    found.clear()
+    table = np.empty((count, len(numbers)), order="F")
+    for column, name in enumerate(tuple(numbers)):
+        table[:, column] = numbers.pop(name)  # a long record stands in memory once
     return Table(
         header=header,
-        key=wanted.key(header),
-        values=np.column_stack([values.astype(float) for values in numbers.values()]),
+        key=key,
+        values=table,
         lines=np.arange(1, count + 1),
         notices=(),
         sha256=hashlib.sha256(path.read_bytes()).hexdigest(),

@@ -14,6 +14,9 @@ from vehicle.errors import DataError
 from vehicle.records.table import TIME, Header, Record, Table, Vector, Wanted
 from vehicle.records.text import read_text
 
+ROWS_AT_ONCE = 4096
+"""Rows of a table that are written at once, so that a long one does not stand in memory as text."""
+
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?", re.ASCII)
 _SPREADSHEET_ERROR = re.compile(r"#(N/?A|NAME\?|VALUE!|DIV/0!|REF!|NUM!|NULL!)", re.IGNORECASE)
@@ -85,16 +88,19 @@ def write_table(
         forms: of a number, or of all numbers of a row, separated by commas.
     """
     each = forms.split(",") if "," in forms else [forms] * len(cells)
-    table = np.column_stack(columns)
-    row, gaps = ",".join(each), set(np.flatnonzero(np.isnan(table).any(axis=1)).tolist())
-    lines = [*(f"# {comment}" for comment in comments), ",".join(cells)]
-    lines += [
-        ",".join("" if value != value else form % value for form, value in zip(each, values, strict=True))
-        if index in gaps
-        else row % tuple(values)
-        for index, values in enumerate(table.tolist())
-    ]
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="")
+    row = ",".join(each)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.writelines(f"{line}\n" for line in (*(f"# {comment}" for comment in comments), ",".join(cells)))
+        for first in range(0, len(columns[0]), ROWS_AT_ONCE):
+            table = np.column_stack([column[first : first + ROWS_AT_ONCE] for column in columns])
+            gaps = set(np.flatnonzero(np.isnan(table).any(axis=1)).tolist())
+            file.writelines(
+                ",".join("" if value != value else form % value for form, value in zip(each, values, strict=True))
+                + "\n"
+                if index in gaps
+                else row % tuple(values) + "\n"
+                for index, values in enumerate(table.tolist())
+            )
 
 
 def write(path: Path, record: Record, frame: str) -> None:

@@ -92,8 +92,8 @@ def level_words(recording: Recording, wheel: str, rms: float) -> str:
         rms: of its displacement [m].
     """
     plate = 1e3 * recording[f"plate_{wheel}_displacement"]
-    largest = float(np.max(np.abs(plate)))
-    if np.mean(np.abs(plate) > 0.01 * largest) < BUMP_SHARE:
+    largest = float(np.max(np.abs(plate, out=plate)))
+    if np.mean(plate > 0.01 * largest) < BUMP_SHARE:
         return f"{largest:.2g} mm bump"
     return f"RMS {1e3 * rms:.3g} mm"
 
@@ -114,7 +114,8 @@ def liveliest(time: Vector, values: Vector, length: float) -> float:
         First time of the stretch [s].
     """
     count = min(round(length / (time[1] - time[0])) + 1, len(time))
-    sums = np.concatenate([[0.0], np.cumsum(values**2)])
+    sums = np.zeros(len(time) + 1)
+    np.cumsum(values**2, out=sums[1:])
     return float(time[np.argmax(sums[count:] - sums[:-count])])
 
 

@@ -86,13 +86,16 @@ class FinishedRun:
         )
 
 
-def read_run(folder: Path, *, place: Path | None = None, car: Car | None = None) -> FinishedRun:
+def read_run(
+    folder: Path, *, place: Path | None = None, car: Car | None = None, recording: Recording | None = None
+) -> FinishedRun:
     """Read the folder of a run.
 
     Args:
         folder: with `summary.json`, `vehicle.toml`, `time.npz` or `time.csv`, and `frf.csv` where there are FRFs.
         place: what the folder will be called, where it is still written under another name.
         car: its car where it is at hand; else built from `vehicle.toml`.
+        recording: its time histories where they are at hand; else read.
 
     Raises:
         ConfigurationError: no folder of a run.
@@ -121,7 +124,17 @@ def read_run(folder: Path, *, place: Path | None = None, car: Car | None = None)
     for kind, path in places.items():
         if not path.is_file():
             raise DataError(f"{path}: missing, though summary.json lists it as {kind}; run it again")
-    record = read_columns(places["time"])
+    if recording is None:
+        record = read_columns(places["time"])
+        recording = Recording(
+            time=record.time,
+            channels=record.channels,
+            units=record.units,
+            excited=excited,
+            pose_time=np.empty(0),
+            poses=np.empty((0, 0)),
+            statistics=statistics,
+        )
     own = car or _car(places["vehicle"], summary)
     frfs = _responses(places["frf"], own.vehicle.acceleration_channels, summary) if "frf" in places else ()
     return FinishedRun(
@@ -130,15 +143,7 @@ def read_run(folder: Path, *, place: Path | None = None, car: Car | None = None)
         place=place or folder,
         summary=summary,
         car=own,
-        recording=Recording(
-            time=record.time,
-            channels=record.channels,
-            units=record.units,
-            excited=excited,
-            pose_time=np.empty(0),
-            poses=np.empty((0, 0)),
-            statistics=statistics,
-        ),
+        recording=recording,
         responses=frfs,
     )
 
