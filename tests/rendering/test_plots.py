@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import sys
+from typing import Any
 
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from tests.rendering.conftest import FakeCar, FakeRun, fabricated
@@ -69,7 +71,7 @@ def every_axis(figure):
     return [axis for part in (figure, *figure.subfigs) for axis in part.axes]
 
 
-def test_frf_plot_names_quantities_and_caption(long_run, response, tmp_path, figures):
+def test_frf_plot_names_quantities_and_caption_and_draws_the_asked_channel(long_run, response, tmp_path, figures):
     plot_frf(tmp_path / ".123.frf.png", long_run, response, "shake.csv, RMS 0.25 mm; estimator: local rational model")
     axes = every_axis(figures[0])
     assert {axis.get_ylabel() for axis in axes} - {""} == {
@@ -91,11 +93,7 @@ def test_frf_plot_names_quantities_and_caption(long_run, response, tmp_path, fig
         "body front",
         "roof, left rear",
     }
-
-
-def test_frf_plot_draws_the_asked_channel(long_run, response, tmp_path, figures):
-    plot_frf(tmp_path / "frf.png", long_run, response, "")
-    lines = {line.get_label(): line for line in every_axis(figures[0])[0].get_lines()}
+    lines = {line.get_label(): line for line in axes[0].get_lines()}
     row = CHANNELS.index("damper_top_fr_acc_z")
     drawn = lines["damper top"].get_ydata()
     there = np.isfinite(drawn)
@@ -103,8 +101,10 @@ def test_frf_plot_draws_the_asked_channel(long_run, response, tmp_path, figures)
     np.testing.assert_allclose(drawn[there], np.abs(response.response[row])[there])
 
 
-def test_time_plot_names_quantities(long_run, tmp_path, figures):
+def test_time_plot_names_quantities_and_leaves_no_global_figure(long_run, tmp_path, figures):
+    before = "matplotlib.pyplot" in sys.modules
     plot_time(tmp_path / "time.png", long_run)
+    assert ("matplotlib.pyplot" in sys.modules) == before
     axes = every_axis(figures[0])
     assert {axis.get_ylabel().replace("\n", " ") for axis in axes} - {""} == {
         "plate displacement [mm]",
@@ -133,12 +133,6 @@ def test_plots_are_the_same_bytes_whatever_the_user_has_set(long_run, response, 
     assert first == second
 
 
-def test_plots_leave_no_global_figure(long_run, tmp_path):
-    before = "matplotlib.pyplot" in sys.modules
-    plot_time(tmp_path / "time.png", long_run)
-    assert ("matplotlib.pyplot" in sys.modules) == before
-
-
 def test_phase_breaks_where_it_wraps():
     angle = np.radians([100.0, 170.0, 190.0, 260.0])
     phase = wrapped_phase(np.exp(1j * angle))
@@ -156,7 +150,7 @@ def test_frf_plot_is_grey_where_the_input_tells_nothing_and_shows_the_random_err
     grey = next(part for part in magnitude.collections if part.get_label() == "no FRF: no input")
     edges = np.concatenate([path.vertices[:, 0] for path in grey.get_paths()])
     assert (edges.min(), edges.max()) == pytest.approx((20.0, 30.0), abs=0.2)
-    bands = [part for part in magnitude.collections if part is not grey]
+    bands: Any = [part for part in magnitude.collections if isinstance(part, PolyCollection) and part is not grey]
     assert len(bands) == 4
     top = max(path.vertices[:, 1].max() for path in bands[0].get_paths())
     row = CHANNELS.index("knuckle_fr_acc_z")
@@ -197,6 +191,27 @@ def test_a_common_motion_is_said_in_the_title(long_run, response, tmp_path, figu
             "",
         )
         assert figures[-1].get_suptitle() == f"FRFs to the common motion of plates {words}"
+
+
+def test_a_long_history_keeps_its_peaks(monkeypatch):
+    monkeypatch.setattr(plots, "MOST_POINTS", 40)
+    values = np.zeros(1000)
+    values[[333, 334, 777]] = [5.0, -3.0, 2.0]
+    time = np.arange(1000) / 100.0
+    along, drawn = plots.outline(time, values)
+    assert along.size == drawn.size <= 40
+    assert drawn.max() == 5.0 and drawn.min() == -3.0
+    np.testing.assert_allclose(along[drawn != 0.0], [3.0, 3.0, 7.5], err_msg="the piece of half a second that it is in")
+    assert plots.outline(time[:40], values[:40])[1].size == 40, "a short one is as it was"
+
+
+def test_a_cloud_keeps_its_rare_dots_once():
+    common = np.linspace(-1.0, 1.0, 11)
+    speed, force = np.tile(common, 1000), np.tile(2.0 * common, 1000)
+    speed[4321], force[4321] = 7.0, 3.0
+    drawn = set(zip(*plots.distinct(speed, force), strict=True))
+    assert drawn == {*zip(common, 2.0 * common, strict=True), (7.0, 3.0)}
+    assert [part.tolist() for part in plots.distinct(np.zeros(5), np.zeros(5))] == [[0.0], [0.0]], "a car at rest"
 
 
 def test_liveliest_stretch():

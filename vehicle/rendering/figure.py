@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.rendering.grid_lines import bared, draw_grid
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -38,6 +40,8 @@ INK = "#444444"
 
 UNDRIVEN = "#ececec"
 """Colour of a frequency band without an FRF."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 FRF_BAND = (1.0, 50.0)
 FRF_TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
@@ -87,14 +91,16 @@ def saved_figure(
     Yields:
         The figure.
     """
-    from matplotlib import style
+    from matplotlib import rc_context, rcParamsDefault
     from matplotlib.figure import Figure
 
     # The reader's own matplotlibrc must not change the files of a run.
     form = "svg" if path.suffix == ".svg" else "png"
-    with style.context(["default", STYLE, SVG if form == "svg" else {}]):
+    with rc_context({**rcParamsDefault, **STYLE, **(SVG if form == "svg" else {})}):
         figure = Figure(figsize=size, layout=None if placed else "constrained")
         yield figure
+        parts: list[Any] = [figure, *figure.subfigs]
+        grids = [(axes, bared(axes)) for part in parts for axes in part.axes]
         edge = EDGE / size[1]
         if title:
             figure.suptitle(title, fontsize=12, **({"y": 1.0 - edge} if placed else {}))
@@ -105,10 +111,22 @@ def saved_figure(
         if engine is not None:
             engine.execute(figure)
             figure.set_layout_engine(None)
+        for axes, grid in grids:
+            draw_grid(axes, grid)
         about: dict[str, Any] = {"metadata": dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",))}
         if form == "png":
             about["pil_kwargs"] = {"compress_level": COMPRESSION}
         figure.savefig(path, format=form, **about)
+
+
+def power_of_ten(value: float, _: int | None = None) -> str:
+    """A decade of a logarithmic axis in plain letters: matplotlib's own needs its parser of formulas.
+
+    Args:
+        value: a power of ten.
+        _: number of the tick, which a formatter is given.
+    """
+    return "10" + str(round(np.log10(value))).translate(SUPERSCRIPTS)
 
 
 def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[float, ...]) -> None:
@@ -123,6 +141,7 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
     upper.set(xscale="log", yscale="log", xlim=FRF_BAND, ylabel="acceleration / plate displacement [(m/s²)/m]")
     middle.set(ylim=(-180.0, 180.0), yticks=(-180, -90, 0, 90, 180), ylabel="phase [deg]")
     lower.set(ylim=(0.0, 1.05), yticks=coherence_ticks, ylabel="coherence [-]")
+    upper.yaxis.set_major_formatter(power_of_ten)
     for axis in axes[2]:
         axis.set_xlabel("frequency [Hz]")
         axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
@@ -167,8 +186,9 @@ def fading(
         here = (known >= lowest) & (known < highest)
         # One point more, so that the pieces meet.
         joined = here | np.concatenate([[False], here[:-1]])
-        piece = np.where(joined, values, np.nan)
-        axis.plot(frequency, piece, alpha=opacity, label=label if opacity == 1.0 else None, **style)
+        words = label if opacity == 1.0 else None
+        if words or joined.any():
+            axis.plot(frequency, np.where(joined, values, np.nan), alpha=opacity, label=words, **style)
 
 
 def shade(
@@ -183,5 +203,7 @@ def shade(
         colour: of the shade.
         label: legend text.
     """
+    if not where.any():
+        return
     transform = axis.get_xaxis_transform()
     axis.fill_between(along, 0.0, 1.0, where=where, transform=transform, color=colour, zorder=0, label=label)

@@ -37,6 +37,9 @@ DETAIL = 2.0
 MOST_POINTS = 250_000
 """Points of a line: a record of four minutes is drawn as it is, of a longer one the outline."""
 
+CELLS = 2000
+"""Of a characteristic, across its width and its height: finer than a dot of a page."""
+
 LEGEND_ROOM = 0.22
 """Share of the height of a panel kept free for its legend."""
 
@@ -169,9 +172,8 @@ def plot_time(path: Path, run: RecordedRun) -> None:
         axes[0, 0].set_title("whole record")
         axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
         for axis, name in zip(characteristics, dampers, strict=True):
-            thin = slice(None, None, -(-time.size // MOST_POINTS))
-            speed, force = 1e3 * recording[f"damper_{name}_velocity"][thin], recording[f"damper_{name}_force"][thin]
-            axis.plot(speed, force, ".", markersize=1.5, color=COLOURS[0], zorder=3, rasterized=True)
+            dots = distinct(1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"])
+            axis.plot(*dots, ".", markersize=1.5, color=COLOURS[0], zorder=3, rasterized=True)
             for limit in (-1e3 * slip, 1e3 * slip):
                 axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
             axis.set(
@@ -194,6 +196,21 @@ def outline(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> t
     starts = np.arange(0, time.size, -(-2 * time.size // MOST_POINTS))
     ends = np.stack([np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)], axis=1)
     return np.repeat(time[starts], 2), ends.ravel()
+
+
+def distinct(x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
+    """A cloud of dots without those that lie on others, so that a long record keeps its rare ones.
+
+    Args:
+        x: (n,).
+        y: (n,).
+
+    Returns:
+        One point of each occupied cell of the cloud's range, both (m,).
+    """
+    column, row = (np.rint((place - place.min()) / (np.ptp(place) or 1.0) * CELLS).astype(np.int64) for place in (x, y))
+    _, kept = np.unique(column * (CELLS + 1) + row, return_index=True)
+    return x[kept], y[kept]
 
 
 def _each(channel: str, label: str, these: Sequence[str], wheels: Sequence[str]) -> dict[str, str]:
