@@ -12,7 +12,7 @@ from vehicle.simulation.car_model import CarModel
 RADIUS = 0.005
 """Of the rods of a frame of beams [m]."""
 
-COLOUR = (0.35, 0.38, 0.42, 0.8)
+COLOUR = (0.35, 0.38, 0.42, 1.0)
 
 
 def frame_at_rest(car: CarModel) -> dict[str, Shape]:
