@@ -229,10 +229,27 @@ def add_options(found: argparse.ArgumentParser) -> None:
     )
     mapping_options(found)
     record_options(found, "", channel=False)
-    found.add_argument("--fit", action="append", default=[], metavar=TEXT, help="parameter; by default the authors'")
-    found.add_argument("--channel", action="append", default=[], metavar="NAME", help=f"default: {', '.join(CHANNELS)}")
-    found.add_argument("--band", default=f"{BAND[0]:g}:{BAND[1]:g}", metavar="LOW:HIGH", help="fitted frequencies [Hz]")
-    found.add_argument("--spacing", type=float, default=SPACING, metavar="HZ", help="distance of the frequencies [Hz]")
+    found.add_argument(
+        "--fit",
+        action="append",
+        default=[],
+        metavar=TEXT,
+        help="parameter, its bounds and where the fit begins; those of source 1 by default; may be repeated",
+    )
+    found.add_argument(
+        "--channel",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help=f"channel that counts; by default {', '.join(CHANNELS)} of FRFs, all but the plates of records; may be "
+        "repeated",
+    )
+    found.add_argument(
+        "--band", default=f"{BAND[0]:g}:{BAND[1]:g}", metavar="LOW:HIGH", help="fitted frequencies [Hz]; %(default)s"
+    )
+    found.add_argument(
+        "--spacing", type=float, default=SPACING, metavar="HZ", help="distance of the frequencies [Hz]; %(default)g"
+    )
     found.add_argument("--window", type=float, metavar="S", help="the FRFs were averaged over Hann windows this long")
 
 

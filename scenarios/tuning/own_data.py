@@ -90,6 +90,11 @@ def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Me
     names = [] if held is None else [one for one in held.channels if not one.startswith("plate_")]
     if held is None or not names:
         raise DataError(f"{file}: holds no time history beside that of a plate; choose with --map CHANNEL=NAME")
+    if options.channel:
+        there = ", ".join(names)
+        names = [one for one in names if one in options.channel]
+        if not names:
+            raise DataError(f"{file}: holds no time history of --channel {' '.join(options.channel)}; found {there}")
     step = 1.0 / car.vehicle.solver.record_rate
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
     times = held.time + options.delay - measured.start

@@ -126,3 +126,8 @@ def test_logarithmic_scale():
     assert parameter.value(0.0) == 2.0
     assert parameter.value(parameter.half_width) == pytest.approx(4.0)
     assert parameter.value(-parameter.half_width) == pytest.approx(1.0)
+
+
+def test_what_a_path_begins_is_nearer_than_what_is_spelt_alike(car):
+    with pytest.raises(ConfigurationError, match=r"the nearest is front\.damper\.coulomb_friction$"):
+        full_path(car.vehicle.table, "front.damper.coulom")

@@ -66,3 +66,11 @@ def test_the_part_that_counts(files):
     assert np.sqrt(np.mean(late.residuals(Car.load(overrides=STRIBECK)) ** 2)) > 0.5
     with pytest.raises(DataError, match="nothing in common; give --delay S"):
         measured(files, "--delay", "5")
+
+
+def test_the_channels_that_count(files):
+    assert measured(files, "--delay", "0.2", "--channel", "damper_fr_velocity").rows == ("bump, damper_fr_velocity",)
+    with pytest.raises(
+        DataError, match=r"no time history of --channel seat_rail_acc_z; found knuckle_fr_acc_z, damper"
+    ):
+        measured(files, "--channel", "seat_rail_acc_z")

@@ -94,7 +94,7 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
 
 def report(found: dict[str, Any]) -> str:
     """The table as text."""
-    about = [f"{found['file']}: {found['format']}, {len(found['channels'])} channels"]
+    about = [f"{found['file']}: {found['format']}, {(count := len(found['channels']))} channel{'s' * (count != 1)}"]
     about += [found[key] for key in ("program", "start") if found[key]]
     width = max([4, *(len(one["name"]) for one in found["channels"])])
     width = min(width, 40)

@@ -72,9 +72,12 @@ def paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
 
 
 def nearest(path: str, known: Iterable[str]) -> str:
-    """The known path that is spelt most like another one."""
+    """The known path that another one begins, else the one that is spelt most like it."""
     # A short path is compared with the ends of the known ones; of equal ones the first wins.
     ends = {".".join(one.split(".")[-(path.count(".") + 1) :]): one for one in reversed(list(known))}
+    begun = min((end for end in ends if end.startswith(path)), key=len, default=None)
+    if begun is not None:
+        return ends[begun]
     return ends[difflib.get_close_matches(path, list(ends)[::-1], n=1, cutoff=0.0)[0]]
 
 
