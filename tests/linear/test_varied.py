@@ -87,7 +87,7 @@ def test_every_number_of_a_vehicle_file_moves_what_it_moves_in_a_built_car(file,
         factor = 1.04 if "inertia" in path else 1.01 + 0.001 * (index % 37)
         change = f"{path}={value * factor if value else 1e-3!r}"
         try:
-            short = reference.varied([change])._short is not None
+            short = reference.varied([change])._from_terms is not None
         except VehicleError:
             # A moment alone may be refused; those of a part together are moved below.
             short = "inertia" in path
@@ -130,8 +130,8 @@ def test_a_spring_on_a_corner_of_its_table_has_its_car_built():
     spring = reference._terms.rows.layout.springs.rows[0]
     at = -float(reference.static.preload[spring]) / RATE
     # The two sides differ so little that the spring carries the same force, and stands on the corner.
-    assert reference.varied(table(at + 0.01, RATE + 1e-3))._short is not None
-    assert reference.varied(table(at, RATE + 1e-3))._short is None
+    assert reference.varied(table(at + 0.01, RATE + 1e-3))._from_terms is not None
+    assert reference.varied(table(at, RATE + 1e-3))._from_terms is None
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_a_spring_on_a_corner_of_its_table_has_its_car_built():
     ],
 )
 def test_another_kind_of_element_or_another_place_is_built(car, changes):
-    assert car.varied(changes)._short is None
+    assert car.varied(changes)._from_terms is None
 
 
 @pytest.mark.parametrize(

@@ -1,26 +1,15 @@
-"""The car in Python: load it, run it on a signal, ask the run for what a test bench would give.
-
-car = Car.load()
-run = car.run(read_signal(find_input("low.csv")))
-run["seat_rail_acc_z"]                # time history
-run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
-run.comfort().overall                 # comfort value of source 1
-"""
+"""A car: its vehicle file read, its model built, its matrices, and its runs."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.analysis.comfort import ComfortValue, comfort_value
-from vehicle.analysis.motion_response import MotionResponse
-from vehicle.analysis.slip import first_slip, slip_share
+from vehicle.car.run import Run
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.library import body_model
@@ -33,11 +22,8 @@ from vehicle.linear.natural_modes import grows
 from vehicle.linear.response import frequency_response as exact_response
 from vehicle.linear.step_error import accurate_step, require_accurate_step
 from vehicle.linear.varied import Terms, VariedCar
-from vehicle.names import AXES, ENGINES
-from vehicle.notebook.cards import car_card, run_card
-from vehicle.notebook.frames import recording_dataset, recording_frame
-from vehicle.notebook.picture import Picture, picture
-from vehicle.notebook.run_response import RunResponse, of_wheel, require_moving, responses
+from vehicle.names import ENGINES
+from vehicle.notebook.cards import car_card
 from vehicle.parameters.paths import override
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.varied import Family
@@ -47,16 +33,8 @@ from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced
 from vehicle.simulation.car_model import CarModel, build_model
 from vehicle.simulation.judgement import require_finite, require_memory
-from vehicle.simulation.recording import Recording
 from vehicle.simulation.run import Progress, simulate
 from vehicle.simulation.static_trim import StaticTrim
-
-FRF_BAND = (1.0, 50.0)
-"""Frequencies of an FRF [Hz]."""
-
-SATURATED_VELOCITY = 1e-3
-"""Damper velocity [m/s] above which the smooth friction law is within 0.6 % of its limit: stick has ended. No slip yet:
-that is `damper.slip_velocity`."""
 
 
 class Car:
@@ -74,7 +52,7 @@ class Car:
         self.overrides: tuple[str, ...] = ()
         self._checked: set[str] = set()
         self._stepped: Car | None = None
-        self._like: Car | None = None
+        self._base: Car | None = None
         own = self.vehicle
         self._family = Family(own, folder or Path(), lambda more: vehicle_of(override(own.table, more), folder))
 
@@ -117,7 +95,7 @@ class Car:
         car = Car(self._family.vehicle_of(more), folder=self.folder)
         car.overrides = (*self.overrides, *more)
         car.origin = {**self.origin, "overrides": list(car.overrides)}
-        car._like = self
+        car._base = self
         return car
 
     def __repr__(self) -> str:
@@ -143,22 +121,22 @@ class Car:
         return Terms(self.model, self.matrices, self.trimmed_body)
 
     @cached_property
-    def _short(self) -> VariedCar | None:
+    def _from_terms(self) -> VariedCar | None:
         """What the terms of another car make of this one; None where it has to be built."""
-        return None if self._like is None else self._like._terms.car_of(self.vehicle)
+        return None if self._base is None else self._base._terms.car_of(self.vehicle)
 
     @cached_property
     def matrices(self) -> CarMatrices:
         """Mass, damping and stiffness matrices of the same model in its design position."""
-        if self._short:
-            return self._short.matrices
+        if self._from_terms:
+            return self._from_terms.matrices
         # By what the car is, not by what this process has compiled: the same car has the same matrices to the bit.
-        return car_matrices(self.model.model, self.model.static, compiled=self._like is not None)
+        return car_matrices(self.model.model, self.model.static, compiled=self._base is not None)
 
     @property
     def static(self) -> StaticTrim:
         """Preloads, and static loads of the tyres and of other contacts with the ground."""
-        return self._short.static if self._short else self.model.static
+        return self._from_terms.static if self._from_terms else self.model.static
 
     @cached_property
     def poles(self) -> PoleModel:
@@ -209,7 +187,7 @@ class Car:
 
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
-        model = self._like.model if self._like and self._short else self.model
+        model = self._base.model if self._base and self._from_terms else self.model
         names = model.superelement.mode_names
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
 
@@ -234,7 +212,7 @@ class Car:
         """Simulate the car on a signal.
 
         Args:
-            signal: displacement of one or both plates.
+            signal: displacement of the plates.
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
             engine: "mujoco"; "reduced", hundreds of times faster, linear but for the dampers; "auto", which takes the
                 reduced one and falls back to MuJoCo where the motion leaves its validity or numba is missing.
@@ -285,109 +263,6 @@ class Car:
         if channels is not None:
             recording = recording.only(channels)
         return Run(car=car, signal=signal, recording=recording, engine_reason=reason)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
-    """A finished simulation and what can be asked of it."""
-
-    car: Car
-    signal: Signal
-    recording: Recording
-    engine_reason: str = "asked for"
-
-    def __repr__(self) -> str:
-        """One line."""
-        engine = self.recording.statistics.engine
-        source = Path(self.signal.source).name
-        short = source if len(source) < 50 else f"{source[:47]}..."
-        return f"Run({short}, {self.signal.duration:g} s, {engine}, {self.car!r})"
-
-    def _repr_html_(self) -> str:
-        return run_card(self)
-
-    def plot(self) -> Picture:
-        """The main time histories as a figure that a notebook shows."""
-        from vehicle.rendering.plots import plot_time
-
-        return picture(lambda path: plot_time(path, self))
-
-    def to_dataframe(self) -> Any:
-        """All channels as a pandas table over the time [s]; `attrs["units"]` has their units."""
-        return recording_frame(self.recording)
-
-    def to_xarray(self) -> Any:
-        """All channels as an xarray dataset over the time, each with its unit."""
-        return recording_dataset(self.recording)
-
-    def __getitem__(self, channel: str) -> npt.NDArray[np.float64]:
-        """Time history of a channel; names are those of `interface.md`, units in `recording.units`."""
-        return self.recording[channel]
-
-    @property
-    def time(self) -> npt.NDArray[np.float64]:
-        """Sample times [s]."""
-        return self.recording.time
-
-    @property
-    def wheel(self) -> str:
-        """The excited wheel; the right one where both are, the first of the signal where its plates stand still."""
-        return (*self.recording.excited, *self.signal.wheels)[0]
-
-    def frf(
-        self, channels: Sequence[str] | None = None, *, window: float | None = None, wheel: str | None = None
-    ) -> RunResponse:
-        """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
-
-        Where several plates move independently, the FRF is that to the plate of one wheel alone, the coherence that
-        with all; plates that are copies without a delay count as one, and the FRF is that to their common motion.
-
-        Args:
-            channels: names; all acceleration channels by default.
-            window: None for the estimate without leakage from the whole record; a length [s] for the H1 estimate
-                of averaged Hann windows.
-            wheel: whose plate; `self.wheel` by default.
-
-        Returns:
-            The estimate; rows in the order of `channels`; NaN where the plate drives nothing.
-
-        Raises:
-            DataError: the record is too short, or no plate moves.
-            DependentInputsError: one plate moves as the other some time before.
-        """
-        require_moving(self.recording, wheel)
-        names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
-        return of_wheel(self.frfs(channels, window=window), wheel, names)
-
-    def frfs(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> tuple[MotionResponse, ...]:
-        """FRFs of acceleration channels to each plate that moves by itself, separated; arguments as of `frf`.
-
-        Returns:
-            One for each independent motion; plates that move together without a delay are one.
-
-        Raises:
-            DataError, DependentInputsError: as of `frf`.
-        """
-        names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
-        return responses(self.recording, self.signal, names, FRF_BAND, window)
-
-    def comfort(self, place: str = "seat_rail") -> ComfortValue:
-        """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""
-        return comfort_value(self.recording.timestep, [self.recording[f"{place}_acc_{axis}"] for axis in AXES])
-
-    def slip_share(self, wheel: str, velocity: float | None = None) -> float:
-        """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""
-        return slip_share(*self._damper(wheel, velocity))
-
-    def first_slip(self, wheel: str, velocity: float | None = None) -> float | None:
-        """First time [s] with |damper velocity| above a velocity [m/s], by default as `slip_share`; None for never."""
-        return first_slip(self.time, *self._damper(wheel, velocity))
-
-    def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
-        """Velocity of a damper, and the one that counts as slip [m/s]."""
-        self.car.vehicle.require_wheels((wheel,))
-        limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
-        return self.recording[f"damper_{wheel}_velocity"], limit
 
 
 def _is_stuck(damper: str) -> bool:
