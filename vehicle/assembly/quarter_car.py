@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.assembly.spec import LEAST_FRICTION
+from vehicle.assembly.elements import LEAST_FRICTION
 from vehicle.errors import ConfigurationError
 from vehicle.laws.damper import RECORD, actuator_parameters
 from vehicle.laws.kelvin import Kelvin
