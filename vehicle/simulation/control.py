@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from vehicle.compiler import jitable
 from vehicle.laws.semi_active import PRESENT, act
-from vehicle.simulation.records import Fields, Layout, State
+from vehicle.simulation.element_records import Layout
+from vehicle.simulation.records import Fields, State
 
 
 @jitable

@@ -35,9 +35,10 @@ from vehicle.laws.curve import curve_force
 from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import slope_at_rest
 from vehicle.simulation.control import control
+from vehicle.simulation.element_records import Layout, Tables
 from vehicle.simulation.modal_rows import modal_rows
 from vehicle.simulation.modal_space import advance_modes, modal_forces
-from vehicle.simulation.records import Efc, Fields, Layout, State, Tables, Weights
+from vehicle.simulation.records import Efc, Fields, State, Weights
 from vehicle.simulation.rotations import rotations
 
 EMPTY_ROW = 1e-9

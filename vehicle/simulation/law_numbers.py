@@ -12,7 +12,7 @@ from vehicle.assembly.law_numbers import AVERAGED, TURNING, WIDTH
 from vehicle.laws.damper import unpack
 from vehicle.laws.semi_active import in_steps
 from vehicle.names import AXES
-from vehicle.simulation.records import Layout, Tables, Vector
+from vehicle.simulation.element_records import Layout, Tables, Vector
 from vehicle.simulation.tables import tables_through
 
 Numbers = Mapping[str, Vector]

@@ -12,8 +12,7 @@ import numpy.typing as npt
 from vehicle.assembly.law_numbers import TURNING
 from vehicle.laws.damper import unpack
 from vehicle.laws.semi_active import in_steps
-from vehicle.simulation.law_numbers import law_names, laws_of, model_numbers, with_numbers
-from vehicle.simulation.records import (
+from vehicle.simulation.element_records import (
     Bushings,
     Controls,
     Dampers,
@@ -27,6 +26,7 @@ from vehicle.simulation.records import (
     Table,
     Vector,
 )
+from vehicle.simulation.law_numbers import law_names, laws_of, model_numbers, with_numbers
 from vehicle.simulation.tables import tables_through
 
 

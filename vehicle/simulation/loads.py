@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from vehicle.names import AXES
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.records import Index, Indices
+from vehicle.simulation.element_records import Index, Indices
 from vehicle.simulation.rows import Rows, joint_dampers, joint_springs
 
 Vector = npt.NDArray[np.float64]

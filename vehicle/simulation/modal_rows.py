@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from vehicle.compiler import jitable
-from vehicle.simulation.records import Efc, Fields, Layout, State
+from vehicle.simulation.element_records import Layout
+from vehicle.simulation.records import Efc, Fields, State
 
 
 @jitable

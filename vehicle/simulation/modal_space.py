@@ -18,7 +18,8 @@ where the dense solver takes nv^2 rows of them. Where modes are no more than r, 
 from __future__ import annotations
 
 from vehicle.compiler import jitable
-from vehicle.simulation.records import Fields, Layout, ModalSpace, State, Vector, Weights
+from vehicle.simulation.element_records import Layout, ModalSpace, Vector
+from vehicle.simulation.records import Fields, State, Weights
 
 
 @jitable

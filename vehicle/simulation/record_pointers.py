@@ -31,7 +31,7 @@ ARRAYS = {
     "Records": types.Array(numba.from_dtype(RECORD), 1, "C"),
     "Settings": types.Array(numba.from_dtype(SETTING), 1, "C"),
 }
-"""What the words for arrays in `vehicle.simulation.records` and `vehicle.simulation.sampling` mean."""
+"""What the words for arrays in `vehicle.simulation.element_records` and those built on it mean."""
 
 NUMBERS = {"int": numba.int64, "float": numba.float64}
 

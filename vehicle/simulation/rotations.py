@@ -14,7 +14,8 @@ moment r x f is to the torque, which is left out too (`vehicle.simulation.kernel
 from __future__ import annotations
 
 from vehicle.compiler import jitable
-from vehicle.simulation.records import Fields, Layout, State, Vector, Weights
+from vehicle.simulation.element_records import Layout, Vector
+from vehicle.simulation.records import Fields, State, Weights
 
 
 @jitable

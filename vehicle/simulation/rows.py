@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.laws.semi_active import RING
+from vehicle.simulation.element_records import Layout, ModalSpace
 from vehicle.simulation.kernel import EMPTY_ROW, damper_force, rewrite
 from vehicle.simulation.law_numbers import Numbers, law_names, with_numbers
 from vehicle.simulation.layout import read_layout
-from vehicle.simulation.records import Efc, Fields, Layout, ModalSpace, State, Weights
+from vehicle.simulation.records import Efc, Fields, State, Weights
 from vehicle.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
 from vehicle.simulation.tables import standing_on
 

@@ -9,9 +9,9 @@ import numpy.typing as npt
 from vehicle.assembly.spec import assemble_on
 from vehicle.flexbody.superelement import attached_nodes
 from vehicle.simulation.car_model import CarModel
+from vehicle.simulation.element_records import ModalSpace
 from vehicle.simulation.law_numbers import model_numbers
 from vehicle.simulation.layout import read_layout
-from vehicle.simulation.records import ModalSpace
 from vehicle.simulation.rows import joint_dampers, joint_springs, prepare_model
 
 Vector = npt.NDArray[np.float64]

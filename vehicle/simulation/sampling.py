@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from vehicle.compiler import jitable
+from vehicle.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector
 from vehicle.simulation.modal_space import modal_acceleration
-from vehicle.simulation.records import Index, Indices, ModalSpace, Table, Tables3, Vector
 
 
 class Plates(NamedTuple):

@@ -19,8 +19,8 @@ import scipy
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.simulation.callbacks import installed
+from vehicle.simulation.element_records import Layout
 from vehicle.simulation.layout import wheels_of
-from vehicle.simulation.records import Layout
 from vehicle.simulation.rows import Rows, joint_springs
 from vehicle.simulation.tables import curve_of, standing_on
 

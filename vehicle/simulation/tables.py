@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vehicle.laws.curve import Curve
-from vehicle.simulation.records import Layout, Table, Tables, Vector
+from vehicle.simulation.element_records import Layout, Table, Tables, Vector
 
 
 def tables_through(points: Sequence[tuple[Table, tuple[int, int, int]]]) -> Tables:
