@@ -23,7 +23,7 @@ from scenarios.study import QUICK_NOTE, car_study
 from vehicle.analysis.comfort import comfort_values
 from vehicle.analysis.seat_value import weighted_rms_of
 from vehicle.car import Run
-from vehicle.commands.options import ROAD_NUMBERS
+from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.semi_active import LAWS, PASSIVE

@@ -16,7 +16,7 @@ from vehicle.analysis.comfort import comfort_values
 from vehicle.analysis.seat_value import seat_value, weighted_rms_of
 from vehicle.analysis.slip import slip_shares
 from vehicle.car import Car, Run
-from vehicle.commands.options import ROAD_NUMBERS
+from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.errors import SimulationError
 from vehicle.names import AXES

@@ -40,7 +40,7 @@ from scenarios.tuning.own_data import check_parameters, own_measurements
 from vehicle.car import Car, Run
 from vehicle.commands.command_line import ProgressLine
 from vehicle.commands.compare import mapping_options
-from vehicle.commands.options import record_options
+from vehicle.commands.input_options import record_options
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range

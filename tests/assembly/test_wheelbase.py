@@ -12,7 +12,7 @@ import pytest
 
 from tests.assembly.test_four_wheels import RIDE, ride_table
 from vehicle.car import Car, Run
-from vehicle.commands.options import ROAD_NUMBERS
+from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.excitation.iso_road import drive
 from vehicle.parameters.vehicle import vehicle_of

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat, wavfile
 
-from vehicle.commands.options import record_choice
+from vehicle.commands.input_options import record_choice
 from vehicle.commands.shaker import parser
 from vehicle.errors import DataError
 from vehicle.excitation.signal_file import read_signal

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from vehicle.commands.comfort import main as comfort
+from vehicle.commands.input_options import record_choice
 from vehicle.commands.inspect import main as inspect
-from vehicle.commands.options import record_choice
 from vehicle.commands.shaker import parser
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal_file import read_signal

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from vehicle.car import Car
-from vehicle.commands.options import ROAD_NUMBERS
+from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 
 

@@ -8,14 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
-from vehicle.commands.options import (
-    command_parser,
-    engine_option,
-    message_options,
-    output_options,
-    record_options,
-    vehicle_options,
-)
+from vehicle.commands.input_options import record_options
+from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:

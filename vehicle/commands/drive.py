@@ -9,15 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import (
-    command_parser,
-    engine_option,
-    message_options,
-    output_options,
-    record_choice,
-    record_options,
-    vehicle_options,
-)
+from vehicle.commands.input_options import record_choice, record_options
+from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.names import CORNERS
 

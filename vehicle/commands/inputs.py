@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from vehicle.commands.options import drives_on_road
+from vehicle.commands.input_options import drives_on_road
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 

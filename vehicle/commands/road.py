@@ -7,14 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import (
-    FORCE_HELP,
-    ROAD_NUMBERS,
-    command_parser,
-    message_options,
-    road_options,
-    vehicle_options,
-)
+from vehicle.commands.input_options import ROAD_NUMBERS, road_options
+from vehicle.commands.options import FORCE_HELP, command_parser, message_options, vehicle_options
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.input_options import signal_options
 from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
     command_parser,
@@ -17,7 +18,6 @@ from vehicle.commands.options import (
     jobs_option,
     message_options,
     output_options,
-    signal_options,
     skip_option,
     vehicle_options,
 )

@@ -1,0 +1,84 @@
+"""The summary of a run as the text that a command prints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import Any
+
+from vehicle.names import side_of
+
+
+def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
+    """What is said of each wheel by its name and its word, as a list."""
+    words = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
+    return last.join(word for word in (", ".join(words[:-1]), words[-1]) if word)
+
+
+def summary_text(summary: dict[str, Any], output: Path) -> str:
+    """The summary of a run as a page of text.
+
+    Args:
+        summary: the content of `summary.json`.
+        output: the folder of the run.
+    """
+    share, first = summary["slip_share"], summary["first_slip_s"]
+    load = summary["static"]["tyre_load_n"]
+    saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
+    plates = summary["input"]["plate_rms_m"]
+    moved = [f"{1e3 * rms:.4g} mm ({side_of(wheel, plates)})" for wheel, rms in plates.items() if rms > 0.0]
+    lines = [
+        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s, plate RMS {', '.join(moved)}",
+        f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
+        f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
+        f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
+        f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
+        f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
+        f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
+    ]
+    for channel in (f"knuckle_{summary['input']['wheel']}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
+        if channel not in summary["peaks"]:
+            continue
+        strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
+        text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
+        lines.append(f"resonances  {channel}: {text + ' Hz' if text else 'none found'}")
+    lines += _comfort(summary)
+    lines += [
+        f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",
+        f"solver      {summary['solver']['engine']}, step {1e3 * summary['solver']['timestep_s']:g} ms, "
+        f"{summary['solver']['realtime_factor']:.1f} times real time{_balance(summary['solver'])}",
+    ]
+    lines += [f"warning     {text}" for text in summary["solver"]["warnings"]]
+    lines += [f"note        {text}" for text in summary["notices"]]
+    lines.append(f"files       {output}: {', '.join(summary['files'].values())}")
+    return "\n".join(lines)
+
+
+def _comfort(summary: dict[str, Any]) -> list[str]:
+    """Comfort at the seat rail, and on the seat of a car that has one."""
+    lines, places = [], summary["comfort"]
+    if "seat_rail" in places:
+        rms = places["seat_rail"]["rms_2_50_hz"]
+        lines.append(
+            f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz (x {rms['x']:.4f}, "
+            f"y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {_weighted(places, 'seat_rail'):.4f} m/s2"
+        )
+    if (ratio := summary["seat_value"]) is not None:
+        lines.append(
+            f"            seat: ISO 2631-1 vector sum {_weighted(places, 'seat'):.4f} m/s2 (x, y by Wd, z by Wk); SEAT "
+            f"value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
+        )
+    return lines
+
+
+def _weighted(places: dict[str, Any], place: str) -> float:
+    return float(places[place]["iso2631"]["vector_sum"]["weighted_rms"])
+
+
+def _balance(solver: dict[str, Any]) -> str:
+    """Energy residual, where the engine keeps an energy balance."""
+    return "" if solver["energy_residual"] is None else f", energy residual {solver['energy_residual']:.1e}"
+
+
+def _time(value: float | None) -> str:
+    return "never" if value is None else f"at {value:.3f} s"
