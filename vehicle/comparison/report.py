@@ -15,32 +15,12 @@ from vehicle.comparison.record_comparison import RecordComparison
 SHOWN = 12
 """Most rows of a table on the console."""
 
-HEADS = (
-    *(
-        "kind",
-        "channel",
-        "low_hz",
-        "high_hz",
-        "error",
-        "magnitude_db",
-        "magnitude_rms_db",
-        "phase_deg",
-        "weight",
-        "lines",
-    ),
-    *(
-        "frac",
-        "scaled_frac",
-        "frequency_scale",
-        "rms_ratio",
-        "correlation",
-        "iso18571",
-        "corridor",
-        "phase",
-        "magnitude",
-    ),
-    *("slope", "lag_s"),
-)
+BAND_HEADS = ("error", "magnitude_db", "magnitude_rms_db", "phase_deg", "weight", "lines")
+"""What is said of a response in a band."""
+
+HEADS = ("kind", "channel", "low_hz", "high_hz", *BAND_HEADS, "frac", "scaled_frac", "frequency_scale", "rms_ratio",
+         "correlation", "iso18571", "corridor", "phase", "magnitude", "slope", "lag_s")  # fmt: skip
+"""Columns of `compare.csv`."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -70,7 +50,7 @@ class Comparison:
                 "channel": one.channel,
                 "low_hz": band.low,
                 "high_hz": band.high,
-                **{name: getattr(band, name) for name in HEADS[4:10]},
+                **{name: getattr(band, name) for name in BAND_HEADS},
                 "frac": one.frac,
                 "scaled_frac": one.scaled_frac,
                 "frequency_scale": one.scale,

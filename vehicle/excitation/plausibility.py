@@ -99,7 +99,7 @@ def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArra
     return np.concatenate((inner[:1], inner, inner[-1:]))
 
 
-def velocity_share_near_nyquist(z: NDArray[np.float64], timestep: float) -> float:
+def velocity_share_near_nyquist(z: NDArray[np.float64]) -> float:
     """Share of the variance of the VELOCITY above 0.8 of the Nyquist frequency [-].
 
     sum over f > 0.8 fN of f^2 |Z(f)|^2 / sum over all f, Hann window. The displacement of a road falls so steeply
@@ -118,7 +118,7 @@ def velocity_share_near_nyquist(z: NDArray[np.float64], timestep: float) -> floa
 def aliasing_notices(displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> tuple[str, ...]:
     """One notice for each plate whose velocity has more than 5 % of its variance above 0.8 of the Nyquist frequency."""
     limit = 0.4 / timestep
-    shares = {wheel: velocity_share_near_nyquist(z, timestep) for wheel, z in displacement.items()}
+    shares = {wheel: velocity_share_near_nyquist(z) for wheel, z in displacement.items()}
     return tuple(
         f"plate {wheel}: {100.0 * share:.1f} % of the velocity variance lies above {limit:.4g} Hz (0.8 of Nyquist; "
         "expected below "

@@ -73,7 +73,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         mujoco.mj_forward(model, data)
     jacobian = data.efc_J.reshape(-1, model.nv).copy()
     places, bushings, preload = LoadPlaces(car, rows), rows.layout.bushings, car.static.preload
-    joint_forces = _joint_forces(matrices, rows)
+    joint_forces = _joint_forces(matrices)
     widths = [model.nv] * 3 + [len(system.branch_time)] + [len(system.inputs)] * 2 + [len(matrices.dampers)]
     fields = ("displacement", "velocity", "acceleration", "branch", "height", "height_rate", "friction")
     found: dict[str, tuple[float, dict[str, Vector]]] = {}
@@ -130,7 +130,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     return LoadRows(names=places.names, static=np.array([static for static, _ in chosen]), **arrays)
 
 
-def _joint_forces(matrices: CarMatrices, rows: Rows) -> dict[str, Vector]:
+def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
     """What the ideal joints carry, in world axes, as rows over the motion; (3 k, ...) each."""
     system = matrices.system
     split = np.linalg.pinv(system.constraints.T)

@@ -166,7 +166,7 @@ def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.c
     raise ConfigurationError(
         f"this car does not stand: {worst.description.removeprefix('grows: ')} grows by itself, e-fold in "
         f"{1.0 / worst.growth:.3g} s. Its weight and preloads are more than its springs hold: what works most there is "
-        f"{holding_parameter(car, matrices, worst.growth + 0j, worst.shape)}; check it against "
+        f"{holding_parameter(car, worst.growth + 0j, worst.shape)}; check it against "
         f"body.mass ({vehicle.body.mass:g} kg), body.cog and gravity ({vehicle.gravity:g} m/s2), or look at "
         "python -m vehicle.modes"
     )

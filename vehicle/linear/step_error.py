@@ -106,7 +106,7 @@ def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
         step /= 2.0
     culprit = (
         f"{fault.words} ({abs(fault.pole) / (2.0 * np.pi):.0f} Hz: {moving_part(matrices, fault.shape)} moves, held by "
-        f"{holding_parameter(car, matrices, fault.pole, fault.shape)})"
+        f"{holding_parameter(car, fault.pole, fault.shape)})"
     )
     mend = (
         f"give solver.timestep={step:g}, or another value of that parameter where it is a mistake"

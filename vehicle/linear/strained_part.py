@@ -29,11 +29,11 @@ def moving_part(matrices: CarMatrices, shape: Complex) -> str:
     return max(energy, key=lambda name: energy[name])
 
 
-def holding_parameter(car: CarModel, matrices: CarMatrices, pole: complex, shape: Complex) -> str:
+def holding_parameter(car: CarModel, pole: complex, shape: Complex) -> str:
     """Path and value of the parameter whose element works most in a mode, K |r|2 or |s| B |r|2.
 
     Args:
-        car, matrices: the car.
+        car: the car.
         pole: s [rad/s].
         shape: displacements; (n,).
 
