@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from vehicle.comparison.frf_comparison import BANDS, FrfComparison, compare_responses
 from vehicle.comparison.record_comparison import RecordComparison, compare_records, shifted
-from vehicle.comparison.report import Comparison
 from vehicle.comparison.simulated import Simulated
+from vehicle.comparison.tables import Comparison
 from vehicle.errors import DataError
 from vehicle.records.measured import Measured
 

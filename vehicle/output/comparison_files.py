@@ -11,8 +11,8 @@ from typing import Any
 from vehicle.car import Run
 from vehicle.comparison.comparison import comparison_of
 from vehicle.comparison.pictures import plot_histories, plot_responses, plot_signatures
-from vehicle.comparison.report import Comparison
 from vehicle.comparison.simulated import of_run
+from vehicle.comparison.tables import Comparison
 from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.records.measured import Measured
 
