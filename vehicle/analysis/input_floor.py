@@ -25,6 +25,8 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 TAPERS, BANDWIDTH, TAPER_SAMPLES = 5, 6.0, 2048
+"""Slepian tapers, their time-bandwidth product, and samples that each is computed at; a spline is laid through these.
+Source: D. J. Thomson, Spectrum estimation and harmonic analysis, Proc. IEEE 70, 1982."""
 
 ABOVE_FLOOR = 100.0
 """Power over the floor from which an input counts: its noise then changes the FRF by less than 1 %."""

@@ -17,6 +17,7 @@ from vehicle.records.table import Record
 Vector = npt.NDArray[np.float64]
 
 LEAST_SAMPLES = 20
+"""That both have in common: fewer are no time history. Assumed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -23,6 +23,7 @@ from vehicle.flexbody.inertia import about_cog, inertia_tensor, second_moments
 from vehicle.parameters.body import TrimmedBody
 
 _MAX_STEPS = 50
+"""Newton steps at most; they converge quadratically, so that more would not help."""
 
 
 def matched_masses(

@@ -13,6 +13,7 @@ from vehicle.records.reader import recognise
 from vehicle.records.table import TIME, Record, Table, Vector, Wanted, key_column, name_and_unit
 
 LEAST_SAMPLES = 3
+"""Of a record: two tell a step, the third that it is uniform."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

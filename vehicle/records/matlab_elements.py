@@ -12,11 +12,13 @@ from pathlib import Path
 from vehicle.errors import DataError
 
 MATRIX, COMPRESSED = 14, 15
+"""Kinds of data elements of MAT-file level 5: an array, and one that is compressed."""
 WIDTHS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8, 16: 1, 17: 2, 18: 4}
 """Kind of data to bytes of a number."""
 NUMERIC = range(6, 16)
 """Classes of arrays of numbers."""
 DEEPEST = 40
+"""Structures within structures that are followed; a damaged file may nest without end."""
 
 
 def check_matrix(path: Path, data: bytes, order: str, where: str, depth: int = 0) -> None:

@@ -22,8 +22,9 @@ from vehicle.reduced.pole_model import PoleModel
 Complex = npt.NDArray[np.complex128]
 
 SERIES_BELOW = 2.0
-"""|x| below which the recursion loses digits and the series of phi is summed; 30 terms reach round-off there."""
+"""|x| below which the recursion loses digits and the series of phi is summed."""
 SERIES_TERMS = 30
+"""Terms of that series: 2^30 / 30! is far below round-off."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

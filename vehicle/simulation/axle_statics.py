@@ -27,6 +27,7 @@ from vehicle.simulation.axle_parts import Spring, Tie, axle_parts
 Vector = npt.NDArray[np.float64]
 
 ITERATIONS = 100
+"""Newton steps at most for one position."""
 TOLERANCE = 1e-10
 """Largest step of a coordinate [m or rad] that ends the iteration."""
 

@@ -22,7 +22,7 @@ from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.sources.matrices import BodyMatrices
 from vehicle.flexbody.sources.reduction import FreeModes, residual_vectors
 
-_DEPENDENT = 1e-10
+DEPENDENT = 1e-10
 """Flexibility over the largest, below which a combination of attachments is another one's: two at one node."""
 
 
@@ -53,7 +53,7 @@ def attachment_modes(body: BodyMatrices, modes: FreeModes, places: Sequence[Any]
     load = np.hstack([place.toarray() for place in places])
     psi = residual_vectors(body, modes, load)
     flexibility, turn = scipy.linalg.eigh(psi.T @ (body.stiffness @ psi))
-    real = flexibility > _DEPENDENT * flexibility[-1]
+    real = flexibility > DEPENDENT * flexibility[-1]
     psi = psi @ (turn[:, real] / np.sqrt(flexibility[real]))  # psi' K psi = 1
     inverse, mix = scipy.linalg.eigh(psi.T @ (body.mass @ psi))
     return kept_modes(inverse, mix, psi, places, up_to)

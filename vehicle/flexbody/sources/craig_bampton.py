@@ -17,12 +17,9 @@ import numpy as np
 import scipy
 
 from vehicle.flexbody.beam import FloatArray
-from vehicle.flexbody.sources.attachment_modes import ReducedModes, kept_modes
+from vehicle.flexbody.sources.attachment_modes import DEPENDENT, ReducedModes, kept_modes
 from vehicle.flexbody.sources.matrices import BodyMatrices
-from vehicle.flexbody.sources.reduction import DENSE, SHIFT, FreeModes, lowest_modes
-
-_DEPENDENT = 1e-10
-_REFINEMENTS = 60
+from vehicle.flexbody.sources.reduction import DENSE, REFINEMENTS, SHIFT, FreeModes, lowest_modes
 
 
 def craig_bampton(body: BodyMatrices, free: FreeModes, places: Sequence[Any], up_to: float) -> tuple[ReducedModes, int]:
@@ -40,7 +37,7 @@ def craig_bampton(body: BodyMatrices, free: FreeModes, places: Sequence[Any], up
     constraint = np.hstack([place.toarray() for place in places])
     answer = free.factor.solve(constraint)
     size, turn = scipy.linalg.eigh(constraint.T @ answer)
-    real = size > _DEPENDENT * size[-1]
+    real = size > DEPENDENT * size[-1]
     turn = turn[:, real] / np.sqrt(size[real])
     constraint, answer = constraint @ turn, answer @ turn  # N'(K + s M)^-1 N = 1
 
@@ -50,7 +47,7 @@ def craig_bampton(body: BodyMatrices, free: FreeModes, places: Sequence[Any], up
         return np.asarray(found - answer @ (constraint.T @ found))
 
     static = answer.copy()  # N' x = 1, to be made a solution of K x = N lambda
-    for _ in range(_REFINEMENTS):
+    for _ in range(REFINEMENTS):
         change = -held(body.stiffness @ static)
         static += change
         if np.abs(change).max() <= 1e-12 * np.abs(static).max():

@@ -18,9 +18,11 @@ SHIFT = 1.0 / 40.0
 """By which K is shifted, so that a free body can be factorised, over the highest frequency wanted [1]: below the
 elastic modes, and near enough to them that the six rigid ones do not take their digits."""
 _FIRST_GUESS, _MORE = 30, 2
+"""Modes that Lanczos is asked for at first, and the factor by which more are while all of them lie below the limit."""
 DENSE = 300
 """Degrees of freedom up to which all modes are computed: faster there, and with hardly any mass too few for Lanczos."""
-_REFINEMENTS = 60
+REFINEMENTS = 60
+"""Passes of iterative refinement at most; round-off ends it much earlier."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -129,7 +131,7 @@ def residual_vectors(body: BodyMatrices, modes: FreeModes, load: FloatArray) -> 
     kept = np.hstack([modes.rigid_vectors, modes.vectors])
     load = load - body.mass @ (kept @ (kept.T @ load))
     answer = np.zeros_like(load)
-    for _ in range(_REFINEMENTS):
+    for _ in range(REFINEMENTS):
         change = modes.factor.solve(load - body.stiffness @ answer)
         change -= kept @ (kept.T @ (body.mass @ change))
         answer += change
