@@ -308,9 +308,10 @@ def _degrees_of_freedom(response: FrequencyResponse) -> dict[str, Any]:
 
 
 def _caption(run: Run, response: FrequencyResponse) -> str:
-    """One line under the FRF plot: input, level, estimator."""
+    """One line under the FRF plot: input, levels, estimator."""
+    moving = [wheel for wheel in run.signal.wheels if run.signal.rms(wheel) > 0.0] or [run.wheel]
+    levels = ", ".join(f"{1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}" for wheel in moving)
     return (
-        f"{Path(run.signal.source).name}, RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}, "
-        f"{run.signal.duration:g} s; estimator: {response.estimator}, "
+        f"{Path(run.signal.source).name}, RMS {levels}, {run.signal.duration:g} s; estimator: {response.estimator}, "
         f"resolution {response.resolution_hz:.2g} Hz; engine: {run.recording.statistics.engine}"
     )
