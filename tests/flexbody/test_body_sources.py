@@ -19,6 +19,7 @@ from vehicle.flexbody.sources.matrix_files import read_matrices
 from vehicle.flexbody.sources.mode_shapes import GivenModes, normalised
 from vehicle.flexbody.sources.reduction import free_modes
 from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
+from vehicle.flexbody.sources.text_matrices import rows_of_numbers
 
 PLACES = {"a": tuple(POSITIONS[1]), "b": tuple(POSITIONS[6])}
 
@@ -257,3 +258,14 @@ def test_matrices_come_from_matrix_market_matlab_and_abaqus(box, tmp_path):
     nodes.write_text("\n".join(rows[:-1]))
     with pytest.raises(DataError, match="node 71 of the matrices has no place"):
         read_matrices(tmp_path / "K.mtx", tmp_path / "M.mtx", dofs, nodes)
+
+
+def test_one_line_of_names_stands_above_numbers(tmp_path):
+    path = tmp_path / "dofs.csv"
+    for first in ("node,direction\n", "Node  Dir_1\n", "", "# node,direction\n"):
+        path.write_text(f"{first}7,1\n7,3\n")
+        assert rows_of_numbers(path, 1, columns=2).tolist() == [[7.0, 1.0], [7.0, 3.0]]
+    for first in ("node,x [mm]\n", "nan,nan\n", "node,direction\nnode,direction\n"):
+        path.write_text(f"{first}7,1\n7,3\n")
+        with pytest.raises(DataError, match="number"):
+            rows_of_numbers(path, 1, columns=2)

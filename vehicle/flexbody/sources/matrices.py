@@ -203,7 +203,7 @@ class BodyMatrices(BodyNodes):
         if rigid_frequency > _RIGID_MOTION * first_elastic:
             raise DataError(
                 f"stiffness: rigid motions are held, at {rigid_frequency:.3g} Hz, while the first elastic mode is at "
-                f"{first_elastic:.4g} Hz: it holds a support, or elements that resist rotations (CalculiX expands "
-                "shells and beams to solids with such constraints). Export the matrices of the free body, of solid "
-                "elements where CalculiX makes them."
+                f"{first_elastic:.4g} Hz: it holds a support, its nodes are in other axes or units than the matrices, "
+                "or it has elements that resist rotations (CalculiX expands shells and beams to solids with such "
+                "constraints). Export the matrices of the free body, of solid elements where CalculiX makes them."
             )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,12 @@ from vehicle.flexbody.beam import FloatArray
 IntArray = npt.NDArray[np.intp]
 
 
+_NAMES = re.compile(r"(?!nan|inf)[a-z_]\w*([\s,]+[a-z_]\w*)*", re.IGNORECASE)
+"""A line of names above the numbers, as node,direction. With units in brackets it is none: those are options."""
+
+
 def rows_of_numbers(path: Path, least: int, *, separator: str | None = None, columns: int | None = None) -> FloatArray:
-    """The numbers of a file of equal rows, shape (rows, columns).
+    """The numbers of a file of equal rows, shape (rows, columns); a first line of names is passed over.
 
     Args:
         path: the file.
@@ -33,13 +38,18 @@ def rows_of_numbers(path: Path, least: int, *, separator: str | None = None, col
         text = path.read_text(encoding="ascii")
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"{path}: cannot be read as text ({error}).") from error
+    if _NAMES.fullmatch(text[: (end := text.find("\n"))].strip()):
+        text = text[end + 1 :]
     text = text.replace(separator or ",", " ").replace("D", "E").replace("d", "e")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # of no rows, which is said below
             found = np.loadtxt(io.StringIO(text), ndmin=2, comments=("#", "%", "**"))
     except ValueError as error:
-        raise DataError(f"{path}: not rows of numbers, or cut off: {error}") from error
+        raise DataError(
+            f"{path}: not rows of numbers, or cut off: {error}; needed are numbers alone, below one line "
+            "of names at most"
+        ) from error
     if not np.all(np.isfinite(found)):
         raise DataError(f"{path}: row {int(np.argwhere(~np.isfinite(found))[0, 0]) + 1} holds a number not finite.")
     if len(found) < least or (columns is not None and found.shape[1] != columns):
