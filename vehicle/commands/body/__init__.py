@@ -6,7 +6,7 @@ import argparse
 
 from vehicle.commands.body import build_body, compare_bodies, import_body, participation, show_body
 from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import command_parser
+from vehicle.commands.options import EXIT_CODES, command_parser
 
 TASKS = {
     "import": import_body,
@@ -23,8 +23,9 @@ def parser() -> Parser:
         "body", "Body models: import one from finite elements or a modal test, build, show, compare, participation."
     )
     tasks = found.add_subparsers(dest="task", required=True, metavar="|".join(TASKS))
-    for task in TASKS.values():
+    for name, task in TASKS.items():
         task.add(tasks)
+        tasks.choices[name].epilog = EXIT_CODES
     return found
 
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 def add(tasks: Any) -> None:
     """The options."""
     compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
-    compared.add_argument("file", type=Path, metavar="FILE")
-    compared.add_argument("other", type=Path, metavar="OTHER")
+    compared.add_argument("file", type=Path, metavar="FILE", help="body model, .toml or .npz")
+    compared.add_argument("other", type=Path, metavar="OTHER", help="the one that it is compared with")
     vehicle_options(compared)
     message_options(compared)
 
