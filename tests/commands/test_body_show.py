@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import tomllib
 
 import numpy as np
@@ -47,6 +48,18 @@ def test_tables_and_files(car, tmp_path, capsys):
         {name: own[2, 2] for name, own in body.residual.items()}, rel=1e-5
     )
     assert (folder / "shapes.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_json_is_the_model_in_numbers(car, capsys):
+    assert main(["show", "--json", "--set", STORED, "--set", IMPROVED, "--set", "body.mass=823"]) == 0
+    found, body = json.loads(capsys.readouterr().out), car.trimmed_body
+    assert (found["mass_kg"], found["vehicle"]["mass_kg"]) == (pytest.approx(body.mass), 823.0)
+    assert found["inertia_kgm2"] == pytest.approx(body.inertia) and len(found["notices"]) == 1
+    assert [one["frequency_hz"] for one in found["modes"]] == body.frequencies.tolist()
+    level = np.sqrt(body.mass) * np.linalg.norm(body.shape_at("seat_rail"), axis=0)
+    assert found["participation"]["seat_rail"] == pytest.approx(level)
+    assert found["residual_m_per_n"].keys() == body.residual.keys() and found["on_this_car"]
+    assert not set(found["without_residual"]) & set(body.residual)
 
 
 def test_a_model_of_another_mass_is_named_in_every_run(capsys):

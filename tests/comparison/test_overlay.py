@@ -11,9 +11,13 @@ import pytest
 from scenarios.tuning.__main__ import main as tuning
 from vehicle.car import Car
 from vehicle.commands.compare import main as compare
+from vehicle.commands.compare import measured_beside
+from vehicle.commands.input_options import record_choice
 from vehicle.commands.shaker import main as shaker
+from vehicle.commands.shaker import parser as shaker_options
 from vehicle.comparison.comparison import comparison_of
 from vehicle.comparison.simulated import of_folder
+from vehicle.errors import ConfigurationError
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal_file import read_signal
 from vehicle.parameters.paths import overrides_of
@@ -168,6 +172,27 @@ def test_a_record_that_began_later_names_its_delay(run, tmp_path):
     assert notices[1].endswith("0.05 s late, all alike: if the records began at different times, give --delay 0.05")
     again = comparison_of(measured, of_folder(run), delay=0.05)
     assert again.notices == notices[:1] and again.records[0].correlation == pytest.approx(1.0)
+
+
+def test_a_unit_is_of_the_input_or_of_what_was_measured(tmp_path):
+    """`--unit` of the shaker: of the plate that --channel names, else of a channel of the measurement."""
+    time = np.arange(0.0, 2.0, 1e-3)
+    wave = np.sin(50.0 * time)
+    write_table(tmp_path / "hub.csv", ["time [s]", "knuckle_fr_acc_z"], [time, wave], [])
+    words = ["--input", "x.csv", "--channel", "fr=1", "--unit", "fr=mm", "--measured", str(tmp_path / "hub.csv")]
+    known = ("knuckle_fr_acc_z", "seat_rail_acc_z")
+    for unit, factor in (("g", 9.80665), ("m/s2", 1.0)):
+        options = shaker_options().parse_args([*words, "--unit", f"knuckle_fr_acc_z={unit}"])
+        choice = record_choice(options, "fr")
+        assert choice is not None and dict(choice.units) == {"fr": "mm"}
+        found = measured_beside(options, known, choice.units)
+        assert found is not None and found.record is not None
+        assert found.record.channels["knuckle_fr_acc_z"] == pytest.approx(factor * wave)
+    options = shaker_options().parse_args([*words, "--unit", "knuckle_fr=g"])
+    with pytest.raises(
+        ConfigurationError, match=r"--unit knuckle_fr=\.\.\.: not one of the compared channels: knuckle_fr"
+    ):
+        measured_beside(options, known, {"fr"})
 
 
 def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):

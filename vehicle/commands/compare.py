@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -79,7 +80,8 @@ def measured_options(parser: argparse.ArgumentParser, *, required: bool = False)
         + (
             ""
             if required
-            else "; one that needs --unit, --rate, --from, --delay: python -m vehicle compare, after the run"
+            else "; --unit CHANNEL=UNIT is of it where CHANNEL is one of the model; one that needs --rate, --from, "
+            "--delay: python -m vehicle compare, after the run"
         ),
     )
     mapping_options(parser)
@@ -107,8 +109,12 @@ def mapping_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def measured_choice(options: argparse.Namespace) -> Choice:
+def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> Choice:
     """What the options ask of the measurement.
+
+    Args:
+        options: of the command.
+        taken: names whose units are of another file.
 
     Raises:
         ConfigurationError: a channel twice, an unknown unit, a number out of range.
@@ -118,7 +124,7 @@ def measured_choice(options: argparse.Namespace) -> Choice:
     channels = pairs("--map", options.mapping, "")
     if "" in channels:
         raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
-    units = pairs("--unit", options.units, "") if hasattr(options, "delay") else {}
+    units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in taken}
     own = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass")}
     return Choice(channels=channels, units=units, **(own if hasattr(options, "delay") else {}))
 
@@ -160,18 +166,19 @@ def _measured(
     return read_measured(options.measured, known, choice, turned=options.turned, window=window, measurement=measurement)
 
 
-def measured_beside(options: argparse.Namespace, known: tuple[str, ...]) -> Measured | None:
+def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: Container[str] = ()) -> Measured | None:
     """The measurement that a run shall stand beside, read before the run; None where none is asked for.
 
     Args:
         options: with those of `measured_options`.
         known: names of the channels of the run.
+        taken: names whose units are of the input.
     """
     if options.measured is None:
         if options.mapping or options.turned:
             raise ConfigurationError("--map and --turn belong to --measured FILE")
         return None
-    return _measured(options, known, measured_choice(options))
+    return _measured(options, known, measured_choice(options, taken))
 
 
 def _simulated(

@@ -170,9 +170,10 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
     from vehicle.records.choice import Choice, pairs
 
     channels = pairs("--channel", options.picks, role)
-    units = pairs("--unit", options.units, "")
-    unknown = next((name for name in units if name and name not in channels), None)
-    if unknown is not None:
+    asked = pairs("--unit", options.units, "")
+    units = {name: unit for name, unit in asked.items() if not name or name in channels}
+    unknown = next((name for name in asked if name not in units), None)
+    if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
         raise ConfigurationError(f"--unit {unknown}=...: no --channel {unknown}=NAME is given")
     found = Choice(
         channels=channels,

@@ -148,7 +148,7 @@ def _job(options: argparse.Namespace) -> None:
         signal = drive.signal()
     _check_signal(options, signal)
     channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)
-    measured = measured_beside(options, channels or car.vehicle.channels)
+    measured = measured_beside(options, channels or car.vehicle.channels, choice.units if choice else ())
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
     car.check(engine)
     if options.road is None:

@@ -91,6 +91,9 @@ def read_measured(
             f"{path}: none of its channels has a name of the model; say what is what: --map knuckle_fr_acc_z=NAME, "
             f"with a number, exact name or pattern with *; the file has {listed}"
         )
+    foreign = next((name for name in asked.units if name and name not in roles), None)
+    if foreign is not None:
+        raise ConfigurationError(f"--unit {foreign}=...: not one of the compared channels: {', '.join(roles)}")
     spectra = {
         name: wanted
         for name, wanted in roles.items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,7 @@ def add(tasks: Any) -> None:
     shown.add_argument("file", type=Path, nargs="?", metavar="FILE", help="body model; that of the vehicle by default")
     shown.add_argument("--output", type=Path, metavar="DIR", help=f"write {', '.join(FILES)} there")
     shown.add_argument("--force", action="store_true", help=FORCE_HELP)
+    shown.add_argument("--json", action="store_true", help="print JSON")
     vehicle_options(shown)
     message_options(shown)
 
@@ -40,7 +42,16 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         from vehicle.commands.body.shown_files import write_files
 
         write_files(options.output, options.force, model, levels(model, vehicle))
-    print("\n".join(report(model, vehicle)))
+    if not options.json:
+        print("\n".join(report(model, vehicle)))
+        return
+    from vehicle.commands.body.shown_numbers import numbers
+
+    try:
+        found = numbers(model, vehicle, levels(model, vehicle), _bare(model, vehicle))
+    except DataError:
+        found = numbers(model, vehicle, {}, None)
+    print(json.dumps(found, indent=2, allow_nan=False))
 
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:

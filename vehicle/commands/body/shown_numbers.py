@@ -1,0 +1,51 @@
+"""What `body show --json` prints: a body model in plain numbers and texts, SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vehicle.flexbody.superelement import Superelement
+    from vehicle.parameters.vehicle import Vehicle
+
+
+def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], bare: list[str] | None) -> dict[str, Any]:
+    """A model as the printed tables have it, unrounded.
+
+    Args:
+        model: the body model.
+        vehicle: the car that its mass properties stand against.
+        levels: shapes at attachments and places over their mean in the body [-]: name to (modes, 3).
+        bare: attachments without residual flexibility; None of a model that is not on this car.
+
+    Returns:
+        Inertia as the tensor about the CoG, its elements off the diagonal minus the products; participation |shape|
+        over its mean in the body, (modes,) for each attachment and place; residual flexibility [m/N], (3, 3).
+    """
+    import numpy as np
+
+    from vehicle.flexbody.mass_difference import mass_difference
+    from vehicle.flexbody.rigid_body import rigid_body
+
+    def mass_of(body: Any) -> dict[str, Any]:
+        tensor = np.asarray(body.inertia).tolist()
+        return {"mass_kg": float(body.mass), "cog_m": np.asarray(body.cog).tolist(), "inertia_kgm2": tensor}
+
+    modes = zip(model.frequencies, model.damping_ratio, model.mode_names, strict=True)
+    return {
+        "name": model.name,
+        "provenance": model.provenance,
+        "nodes": len(model.nodes),
+        **mass_of(model),
+        "vehicle": mass_of(rigid_body(vehicle.body)),
+        "notices": list(mass_difference(model, vehicle.body)),
+        "modes": [
+            {"frequency_hz": float(frequency), "damping_ratio": float(ratio), "name": name}
+            for frequency, ratio, name in modes
+        ],
+        "on_this_car": bare is not None,
+        "participation": {name: np.linalg.norm(one, axis=1).tolist() for name, one in levels.items()},
+        "residual_m_per_n": {name: np.asarray(own).tolist() for name, own in model.residual.items()},
+        "without_residual": bare,
+    }
