@@ -228,7 +228,7 @@ def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
                 for y, x, spread, value in zip(height + shift, change, error, values, strict=True):
                     away = 3 if x >= 0.0 else -3
                     axis.annotate(
-                        f"{value:.4g}",
+                        np.format_float_positional(value, precision=4, fractional=False, trim="-"),
                         (x + np.sign(away) * spread, y),
                         xytext=(away, 0),
                         textcoords="offset points",

@@ -65,11 +65,12 @@ class Friction(ABC):
         """Derivative d F / d v [N s/m]."""
         v = np.asarray(velocity, dtype=float)
         scaled = self.smoothing * v
-        # dL/dv is fall / v, written so that v = 0 divides nothing: atan(eps v)/v tends to eps there.
-        moving = v != 0.0
-        ratio = np.where(moving, np.arctan(scaled) / np.where(moving, v, 1.0), self.smoothing)
-        rising = self.limit(v) * self.smoothing / (1.0 + scaled * scaled)
-        return np.asarray((2.0 / np.pi) * (self.fall_at(v, self) * ratio + rising))
+        fall, rising = self.fall_at(v, self), self.limit(v) * self.smoothing / (1.0 + scaled * scaled)
+        if np.any(fall):
+            # dL/dv is fall / v, written so that v = 0 divides nothing: atan(eps v)/v tends to eps there.
+            moving = v != 0.0
+            rising = rising + fall * np.where(moving, np.arctan(scaled) / np.where(moving, v, 1.0), self.smoothing)
+        return np.asarray((2.0 / np.pi) * rising)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

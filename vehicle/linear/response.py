@@ -17,7 +17,8 @@ BLOCK = 32768
 """Partial fractions held at once: they stay in the cache, and no fresh memory is asked for at each step."""
 
 DEFECTIVE = 1e-8
-"""Smallest reciprocal condition of the eigenvectors trusted; below it the systems are solved line by line."""
+"""Smallest reciprocal condition of the eigenvectors trusted, each state in a unit of its own; below it the systems are
+solved line by line."""
 
 
 def frequency_response(
@@ -64,9 +65,13 @@ def frequency_response(
     s = 2j * np.pi * lines  # (m,)
     poles, vectors = np.linalg.eig(form.state)  # (..., s), (..., s, s)
     weights = rows @ vectors[..., : rows.shape[-1], :]  # (..., o, s)
-    usable = 1.0 / np.linalg.cond(vectors) > DEFECTIVE
-    safe = np.where(usable[..., None, None], vectors, np.eye(vectors.shape[-1]))
-    inputs = np.linalg.solve(safe, np.stack((push, drag), axis=-1))  # (..., s, 2)
+    # Each state in a unit of its own: with metres beside newtons of Maxwell branches, vectors look nearly dependent.
+    unit = np.max(np.abs(vectors), axis=-1, keepdims=True)  # (..., s, 1)
+    unit = np.where(unit > 0.0, unit, 1.0)
+    scaled = vectors / unit
+    usable = 1.0 / np.linalg.cond(scaled) > DEFECTIVE
+    safe = np.where(usable[..., None, None], scaled, np.eye(scaled.shape[-1]))
+    inputs = np.linalg.solve(safe, np.stack((push, drag), axis=-1) / unit)  # (..., s, 2)
     # (b0 + s b1)/(s - pole) = (b0 + pole b1)/(s - pole) + b1, and C b1 is zero: a rate of an input moves no coordinate.
     residues = weights * (inputs[..., 0] + poles * inputs[..., 1])[..., None, :]  # (..., o, s)
     response = _partial_fractions(s.imag, poles, residues)
