@@ -19,7 +19,7 @@ from vehicle.parameters.vehicle import load_vehicle
 from vehicle.rendering import plots
 from vehicle.rendering.figure import FADED, wrapped_phase
 from vehicle.rendering.frf_plot import plot_frfs
-from vehicle.rendering.plots import outline, plot_frf, plot_time
+from vehicle.rendering.plots import distinct, outline, plot_frf, plot_time
 from vehicle.rendering.recorded_run import excerpt_start, liveliest
 
 CHANNELS = load_vehicle().acceleration_channels
@@ -193,25 +193,13 @@ def test_a_common_motion_is_said_in_the_title(long_run, response, tmp_path, figu
         assert figures[-1].get_suptitle() == f"FRFs to the common motion of plates {words}"
 
 
-def test_a_long_history_keeps_its_peaks(monkeypatch):
-    monkeypatch.setattr(plots, "MOST_POINTS", 40)
-    values = np.zeros(1000)
-    values[[333, 334, 777]] = [5.0, -3.0, 2.0]
-    time = np.arange(1000) / 100.0
-    along, drawn = plots.outline(time, values)
-    assert along.size == drawn.size <= 40
-    assert drawn.max() == 5.0 and drawn.min() == -3.0
-    np.testing.assert_allclose(along[drawn != 0.0], [3.0, 3.0, 7.5], err_msg="the piece of half a second that it is in")
-    assert plots.outline(time[:40], values[:40])[1].size == 40, "a short one is as it was"
-
-
 def test_a_cloud_keeps_its_rare_dots_once():
     common = np.linspace(-1.0, 1.0, 11)
     speed, force = np.tile(common, 1000), np.tile(2.0 * common, 1000)
     speed[4321], force[4321] = 7.0, 3.0
-    drawn = set(zip(*plots.distinct(speed, force), strict=True))
+    drawn = set(zip(*distinct(speed, force), strict=True))
     assert drawn == {*zip(common, 2.0 * common, strict=True), (7.0, 3.0)}
-    assert [part.tolist() for part in plots.distinct(np.zeros(5), np.zeros(5))] == [[0.0], [0.0]], "a car at rest"
+    assert [part.tolist() for part in distinct(np.zeros(5), np.zeros(5))] == [[0.0], [0.0]], "a car at rest"
 
 
 def test_liveliest_stretch():

@@ -40,12 +40,13 @@ MOST_POINTS = 250_000
 CELLS = 2000
 """Of a characteristic, across its width and its height: finer than a dot of a page."""
 
+LEGEND_COLUMNS = 2
 LEGEND_ROOM = 0.22
-"""Share of the height of a panel kept free for its legend."""
+"""Share of the height of a panel kept free for each row of its legend."""
 
 FRF_MARGINS = Margins(left=0.74, right=0.14, bottom=0.68, top=0.52, across=0.26, down=0.2)
 HISTORY_MARGINS = Margins(left=0.92, right=3.65, bottom=0.68, top=0.5, across=0.28, down=0.18)
-DAMPER_MARGINS = Margins(left=12.25, right=0.05, bottom=0.68, top=0.5, down=0.72)
+DAMPER_MARGINS = Margins(left=12.25, right=0.2, bottom=0.68, top=0.5, down=0.72)
 
 SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", INK, "#fff3c4"
 
@@ -154,9 +155,10 @@ def plot_time(path: Path, run: RecordedRun) -> None:
                 whole.plot(*outline(time, values), linewidth=0.5, label=label, **style)
                 detail.plot(time[inside], values[inside], **style)
             lowest, highest = whole.get_ylim()
-            whole.set(ylim=(lowest, highest + LEGEND_ROOM * (highest - lowest)), ylabel=unit)
+            room = LEGEND_ROOM * -(-len(lines) // LEGEND_COLUMNS)
+            whole.set(ylim=(lowest, highest + room * (highest - lowest)), ylabel=unit)
             if len(lines) > 1 or "acceleration" in unit:
-                whole.legend(loc="upper right", ncols=2)
+                whole.legend(loc="upper right", ncols=LEGEND_COLUMNS)
             whole.axvspan(start, end, color=MAGNIFIED, zorder=0)
             whole.set_xlim(time[0], time[-1])
             detail.set_xlim(start, end)

@@ -7,10 +7,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
-from vehicle.commands.options import message_options, vehicle_options
+from vehicle.commands.options import FORCE_HELP, message_options, vehicle_options
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from vehicle.flexbody.superelement import Superelement
     from vehicle.parameters.vehicle import Vehicle
+
+FILES = ("mac.csv", "mac.png")
+
+MOST = 40
+"""Modes of each body in the picture; of more, their frequencies could not be read."""
 
 
 def add(tasks: Any) -> None:
@@ -18,17 +27,22 @@ def add(tasks: Any) -> None:
     compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
     compared.add_argument("file", type=Path, metavar="FILE", help="body model, .toml or .npz")
     compared.add_argument("other", type=Path, metavar="OTHER", help="the one that it is compared with")
+    compared.add_argument("--output", type=Path, metavar="DIR", help=f"write {', '.join(FILES)} there")
+    compared.add_argument("--force", action="store_true", help=FORCE_HELP)
     vehicle_options(compared)
     message_options(compared)
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Print frequencies and MAC at the points of the car."""
+    """Print frequencies and MAC at the points of the car, and write files where asked for."""
     import numpy as np
 
     from vehicle.analysis.modal_assurance import mac
     from vehicle.flexbody.superelement import attached_nodes
+    from vehicle.output.folder import check_output
 
+    if options.output is not None:
+        check_output(options.output, force=options.force)
     models = [model_of(file, options, vehicle) for file in (options.file, options.other)]
     places = vehicle.composition.attachments()
     shapes = []
@@ -36,6 +50,8 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         nodes = attached_nodes(model, places)
         shapes.append(np.array([model.shape_at(nodes[place]).T for place in places.values()]).transpose(1, 0, 2))
     likeness = mac(*shapes)
+    if options.output is not None:
+        _write_files(options, models, likeness, f"MAC of the shapes at {len(places)} points of the car")
     print(
         f"{'mode':>4} {'Hz':>8}   {'mode':>4} {'Hz':>8} {'change':>8} {'MAC':>6}   at {len(places)} points of the car"
     )
@@ -44,3 +60,23 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         one, other = models[0].frequencies[i], models[1].frequencies[j]
         change = 100.0 * (other / one - 1.0)
         print(f"{i + 1:>4} {one:>8.3f}   {j + 1:>4} {other:>8.3f} {change:>+7.2f}% {row[j]:>6.3f}")
+
+
+def _write_files(
+    options: argparse.Namespace, models: list[Superelement], likeness: npt.NDArray[np.float64], about: str
+) -> None:
+    """All MAC as a table, and as a picture of the first modes."""
+    from vehicle.comparison.pictures import plot_mac
+    from vehicle.output.folder import output_folder, write_text, write_whole
+
+    rows, columns = (model.frequencies for model in models)
+    table = [f"# {about}; rows: {options.file.name}, columns: {options.other.name}"]
+    table.append("mode,frequency [Hz]" + "".join(f",mode_{j + 1} {one:.9g} Hz [-]" for j, one in enumerate(columns)))
+    for i, (one, row) in enumerate(zip(rows, likeness, strict=True)):
+        table.append(f"{i + 1},{one:.9g}," + ",".join(f"{value:.6g}" for value in row))
+    title = f"down: {options.file.name}\nacross: {options.other.name}"
+    most = f"; the first {MOST} modes" if max(likeness.shape) > MOST else ""
+    shown = [(title, likeness[:MOST, :MOST], rows[:MOST].tolist(), columns[:MOST].tolist())]
+    with output_folder(options.output, force=options.force) as place:
+        write_text(place / FILES[0], "\n".join(table) + "\n")
+        write_whole(place / FILES[1], lambda file: plot_mac(file, shown, f"{about}{most}"))
