@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from importlib import import_module
 
 from vehicle.commands import COMMANDS
-from vehicle.commands.command_line import run_command
+from vehicle.commands.command_line import begin_process, run_command
 from vehicle.errors import ConfigurationError
 
 
@@ -22,6 +22,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code, as of `run_command`.
     """
     given = sys.argv[1:] if arguments is None else list(arguments)
+    if arguments is None:
+        begin_process()
     if given and given[0] in COMMANDS:
         code: int = import_module(f"vehicle.commands.{given[0]}").main(given[1:])
         return code

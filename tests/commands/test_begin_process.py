@@ -1,0 +1,47 @@
+"""What a process is told that is one command, and one that only calls a command is not."""
+
+from __future__ import annotations
+
+import atexit
+import gc
+import os
+import sys
+
+import pytest
+
+from vehicle.commands import command_line
+from vehicle.commands.command_line import COLLECTED, Parser, begin_process, parse_and_run
+
+
+@pytest.fixture
+def at_end(monkeypatch):
+    """What is to be called at the end of the process; the garbage collector has its own pace again behind the test."""
+    registered: list[object] = []
+    before = gc.get_threshold()
+    monkeypatch.setattr(atexit, "register", registered.append)
+    yield registered
+    gc.set_threshold(*before)
+
+
+def test_a_process_collects_seldom_and_loads_no_window(monkeypatch, at_end):
+    monkeypatch.setenv("MUJOCO_GL", "")
+    monkeypatch.delenv("MUJOCO_GL")
+    begin_process()
+    assert gc.isenabled() and gc.get_threshold() == COLLECTED
+    assert at_end == [gc.freeze]
+    assert os.environ["MUJOCO_GL"] == "disable"
+
+
+def test_the_library_that_a_user_names_stays(monkeypatch, at_end):
+    monkeypatch.setenv("MUJOCO_GL", "egl")
+    begin_process()
+    assert os.environ["MUJOCO_GL"] == "egl"
+
+
+@pytest.mark.parametrize(("arguments", "times"), [(None, 1), ([], 0)])
+def test_only_the_arguments_of_the_process_make_it_one(monkeypatch, arguments, times):
+    begun = []
+    monkeypatch.setattr(command_line, "begin_process", lambda: begun.append(True))
+    monkeypatch.setattr(sys, "argv", ["shaker"])
+    assert parse_and_run(Parser(), lambda options: None, arguments) == 0
+    assert len(begun) == times
