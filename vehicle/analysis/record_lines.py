@@ -63,7 +63,8 @@ class RecordLines:
             (last - first,).
         """
         if not is_long(self.samples):
-            return np.fft.rfft(piece(self.parts[0]))[self.chosen].copy()
+            whole: Complex = scipy.fft.rfft(piece(self.parts[0]))
+            return whole[self.chosen].copy()
         found = np.zeros(self.turn.size, dtype=np.complex128)
         block = np.zeros(self.zoom.n)
         for part in self.parts[::-1]:
