@@ -18,11 +18,9 @@ from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.flexbody.mass_difference import mass_difference
 from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.output.comparison_files import write_beside
 from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.output.own_files import write_own_files
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
-from vehicle.output.run_formats import writer
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
 from vehicle.records.formats import FORMATS
@@ -123,6 +121,8 @@ def write_run(
         write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
     for one in dict.fromkeys(formats):
         if one != time_format:
+            from vehicle.output.run_formats import writer
+
             files[f"time_{one}"] = f"time.{one}"
             write_whole(folder / f"time.{one}", writer(one, run, responses, channels, FRAME))
     write_whole(folder / "time.png", lambda path: plot_time(path, run))
@@ -130,7 +130,11 @@ def write_run(
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
         files["video"] = str(name)
-    summary["measured"] = None if measured is None else write_beside(folder, measured, run, files)
+    summary["measured"] = None
+    if measured is not None:
+        from vehicle.output.comparison_files import write_beside
+
+        summary["measured"] = write_beside(folder, measured, run, files)
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing
