@@ -7,6 +7,7 @@ import pytest
 
 from tests.linear.plain_matrices import plain_matrices
 from vehicle.errors import ConfigurationError
+from vehicle.linear import response
 from vehicle.linear.first_order import first_order, free_basis
 from vehicle.linear.modes import car_modes, group_of
 from vehicle.linear.response import frequency_response
@@ -137,3 +138,20 @@ def test_groups_of_parts(car):
         "stabilizer",
         "wheel_fl",
     ]
+
+
+def test_newtons_beside_metres_are_no_dependent_vectors(monkeypatch):
+    # The force of a stiff Maxwell branch is a state; by the poles all the same, not line by line. In metres and newtons
+    # the reciprocal condition is 2e-6 here, and 7e-9 in a whole car.
+    monkeypatch.setattr(response, "DEFECTIVE", 1e-4)
+    stiffness, time = 1e9, 1e-3
+    system = quarter_car(branch=[(stiffness, time)]).system
+    by_lines: list[object] = []
+    monkeypatch.setattr(response, "_solved", lambda *given: by_lines.append(given))
+    lines = np.array([1.0, 10.0, 40.0])
+    found = frequency_response(first_order(system), lines, "body_acc_z", driven=[1.0, 0.0])
+    assert not by_lines
+    for line, ours in zip(2j * np.pi * lines, found, strict=True):
+        damper = line * (VISCOUS + stiffness * time / (1.0 + line * time))
+        dynamic = line**2 * system.mass + np.diag([TYRE, SUSPENSION + damper])
+        assert ours == pytest.approx(np.linalg.solve(dynamic, [TYRE, 0.0]).sum(), rel=1e-9)
