@@ -100,8 +100,16 @@ def test_the_table_holds_every_published_row(tmp_path):
     assert exact["elastomer, largest loss angle [deg]"] == pytest.approx(10.1, abs=0.05)
 
 
+class Shorter(Short):
+    """Two seconds: no spectrum has to fit in."""
+
+    @property
+    def duration(self) -> float:
+        return 2.0
+
+
 def test_the_march_of_the_spectra_is_the_stiff_solution():
-    runs = Short(car=load_quarter_car(), quick=False)
+    runs = Shorter(car=load_quarter_car(), quick=False)
     for family, engine in (("no engine", "none"), ("linear mount", "linear")):
         marched = runs._march(family)[LOW, 0][0]
         stiff = runs.road(LOW, engine=engine).acceleration("body")
