@@ -72,7 +72,7 @@ def in_mujoco(
     data = mujoco.MjData(model)
     rows = Rows(model)
     times: Array = timestep * np.arange(int(np.floor(signal.duration / timestep + 1e-6)) + 1, dtype=np.float64)
-    plate = PlateArrays.of(signal, times, (WHEEL,))
+    plate = PlateArrays.of(signal, timestep, times.size - 1, (WHEEL,))
     position, velocity = np.zeros((times.size, model.nv)), np.zeros((times.size, model.nv))
     sensors = np.zeros((times.size, model.nsensordata))
     with installed(rows):

@@ -132,7 +132,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     prepare_model(model)
     data = mujoco.MjData(model)
     rows = Rows(model, car.model.static.preload)
-    motion = PlateArrays.of(signal, model.opt.timestep * np.arange(steps), car.vehicle.wheels)
+    motion = PlateArrays.of(signal, model.opt.timestep, steps - 1, car.vehicle.wheels)
     plates = [model.body_mocapid[model.body(f"plate_{wheel}").id] for wheel in car.vehicle.wheels]
     heights = data.mocap_pos[plates, 2] + motion.displacement
 

@@ -57,7 +57,7 @@ def in_mujoco(car):
     model = half_car_spec(car, damper_of(car), STEP).compile()
     prepare_model(model)
     data, rows = mujoco.MjData(model), Rows(model)
-    plates = PlateArrays.of(ROAD, TIME, ("fr", "rr"))
+    plates = PlateArrays.of(ROAD, STEP, TIME.size - 1, ("fr", "rr"))
     velocity, coefficient = np.zeros((TIME.size, model.nv)), np.zeros((TIME.size, 2))
     with installed(rows):
         for index in range(TIME.size):

@@ -20,6 +20,10 @@ STEP_TOLERANCE = 1e-6
 MINIMUM_SAMPLES = 32
 """Fewer samples than this are no signal: the filter of the plausibility check needs its padding on both sides."""
 
+MARGIN = 64
+"""Samples on each side of the times for which a spline is made: what a sample does to it shrinks by 2 - sqrt(3) = 0.27
+from each to the next, so to 1e-36 over them."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PlateMotion:
@@ -131,6 +135,12 @@ class Signal:
             return 0.0
         return float(np.std(self.displacement[wheel]))
 
+    def spline(self, wheel: str, first: float, last: float) -> scipy.interpolate.CubicSpline:
+        """That of `plate_motion` for the times from first to last [s], through the samples around them."""
+        begin, end = (int(time / self.timestep) for time in (first, last))
+        near = slice(max(begin - MARGIN, 0), end + 2 + MARGIN)
+        return scipy.interpolate.CubicSpline(self.time[near], self.displacement[wheel][near], bc_type="not-a-knot")
+
     def plate_motion(self, times: ArrayLike, wheels: Iterable[str] | None = None) -> PlateMotion:
         """Displacement, velocity and acceleration of the plates at arbitrary times within the record.
 
@@ -163,9 +173,8 @@ class Signal:
         at = np.clip(at, 0.0, self.duration)
         motion: list[dict[str, NDArray[np.float64]]] = [{}, {}, {}]
         for wheel in self.wheels if wheels is None else wheels:
-            spline = None
-            if wheel in self.displacement:
-                spline = scipy.interpolate.CubicSpline(self.time, self.displacement[wheel], bc_type="not-a-knot")
+            driven = wheel in self.displacement and at.size
+            spline = self.spline(wheel, float(at.min()), float(at.max())) if driven else None
             for order, values in enumerate(motion):
                 values[wheel] = np.zeros_like(at) if spline is None else spline(at, order)
         return PlateMotion(time=at, displacement=motion[0], velocity=motion[1], acceleration=motion[2])

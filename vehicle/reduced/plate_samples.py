@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
-import scipy
 
 from vehicle.excitation.signal import Signal
 from vehicle.simulation.acceleration import continued
@@ -17,11 +16,6 @@ Vector = npt.NDArray[np.float64]
 LARGEST_TABLE = 64_000_000
 """Largest table that is kept [byte]: two minutes of both plates at 8 kHz. Longer ones are made piece by piece, so that
 memory does not grow with the steps of a long record."""
-
-
-MARGIN = 64
-"""Samples of the signal on each side of what is asked for: a sample moves its spline by 2 - sqrt(3) = 0.27 of it from
-one to the next, so by 1e-36 behind them."""
 
 
 class LongPlates:
@@ -36,11 +30,10 @@ class LongPlates:
         inside, last = index <= self.steps, min(self.step * self.steps, signal.duration)
         at = np.clip(self.step * index[inside], 0.0, signal.duration)
         after = np.asarray(self.step * (index[~inside] - self.steps), dtype=np.float64)
-        first, end = (int(t / signal.timestep) for t in (at[0] if at.size else last, last if after.size else at[-1]))
-        near = slice(max(first - MARGIN, 0), end + 2 + MARGIN)
+        begin, end = float(at[0]) if at.size else last, last if after.size else float(at[-1])
         columns = []
         for wheel in signal.wheels:
-            spline = scipy.interpolate.CubicSpline(signal.time[near], signal.displacement[wheel][near])
+            spline = signal.spline(wheel, begin, end)
             z, velocity, acceleration = (float(spline(last, order)) for order in range(3))
             columns.append(np.append(spline(at), continued(z, velocity, acceleration, after)))
             columns.append(np.append(spline(at, 1), velocity + acceleration * after))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Sequence
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.names import AXES, channel_units
 from vehicle.simulation.acceleration import AHEAD, acceleration
 from vehicle.simulation.car_model import CarModel
@@ -123,8 +122,10 @@ class Recorder:
         self.channels |= {name: np.zeros(samples) for name in requested}
         # Positions until the end of the run, which makes accelerations of them.
         self.channels |= {name: np.zeros(samples + AHEAD) for name in car.vehicle.acceleration_channels}
-        self.poses: list[Vector] = []
+        # All that are finished, the samples of all, and those of the samples in the buffers.
+        self.poses = np.zeros((-(-samples // pose_every), car.model.nq))
         self.pose_index: list[int] = []
+        self.new_poses: list[Vector] = []
         self.filled = 0
         self.done = 0
         self.work_in = 0.0
@@ -137,7 +138,7 @@ class Recorder:
     def before_step(self) -> None:
         """Keep what the step will overwrite: the present pose."""
         if (self.done + self.filled) % self.pose_every == 0:
-            self.poses.append(self.data.qpos.copy())
+            self.new_poses.append(self.data.qpos.copy())
             self.pose_index.append(self.done + self.filled)
 
     def after_step(self, *, moved: bool) -> None:
@@ -155,7 +156,7 @@ class Recorder:
         """Count the samples up to a step that a compiled loop has written into the buffers, and take over its poses."""
         samples = np.arange(self.done + self.filled, last // self.every + 1)
         self.filled += len(samples)
-        self.poses.extend(self.buffers.poses[:posed].copy())
+        self.new_poses.extend(self.buffers.poses[:posed].copy())
         self.pose_index.extend(int(sample) for sample in samples[samples % self.pose_every == 0])
 
     def finite_samples(self) -> int:
@@ -171,9 +172,10 @@ class Recorder:
 
     def _pose(self, index: int) -> Vector:
         """A stored pose with all modal coordinates; of a sample in the buffers they are there."""
-        sample = self.pose_index[index] - self.done
-        pose = self.poses[index]
-        return pose if sample < 0 else self.rows.whole(pose, self.buffers.modal_position[sample])
+        new = index - (len(self.pose_index) - len(self.new_poses))
+        if new < 0:
+            return np.array(self.poses[index])
+        return self.rows.whole(self.new_poses[new], self.buffers.modal_position[self.pose_index[index] - self.done])
 
     def _stored_energy(self, half: float) -> float:
         """Kinetic, elastic and gravity energy [J] at the present time."""
@@ -184,7 +186,7 @@ class Recorder:
         data = mujoco.MjData(model)
         last = self.filled - 1
         modal = self.buffers.modal_position[last], self.buffers.modal_velocity[last]
-        data.qpos[:] = rows.whole(self.data.qpos if half > 0.0 else self.poses[-1], modal[0])
+        data.qpos[:] = rows.whole(self.data.qpos if half > 0.0 else self.new_poses[-1], modal[0])
         data.qvel[:] = rows.whole(self.data.qvel + half * self.data.qacc, modal[1])
         data.mocap_pos[:] = self.data.mocap_pos
         mujoco.mj_fwdPosition(model, data)
@@ -231,8 +233,9 @@ class Recorder:
         here = slice(self.done, self.done + count)
         steps = slice(index - (count - 1) * every, index + 1, every)
         self._keep_positions(here, b.places, b.turn, b.modal_position)
-        for pose in range(bisect_left(self.pose_index, self.done), len(self.poses)):
+        for pose in range(len(self.pose_index) - len(self.new_poses), len(self.pose_index)):
             self.poses[pose] = self._pose(pose)
+        self.new_poses.clear()
         e, bushings = self.rows.layout, self.rows.layout.bushings
         total = b.solved + b.explicit
         damper_force = -(b.actuator + total[:, e.dampers.rows] + total[:, e.dampers.frictions])
@@ -258,7 +261,9 @@ class Recorder:
         # What lifts the weight is known without any quadrature, and is a multiple of what the dampers take.
         static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]
         power_in = np.sum((tyre - static) * velocity, axis=1)
-        self.lifting = float(static @ (motion.displacement[index] - motion.displacement[0]))
+        if self.done == 0:
+            self.start = motion.displacement[0].copy()
+        self.lifting = float(static @ (motion.displacement[index] - self.start))
         rate = b.rate + 0.5 * self.step * self._row_acceleration(b.solved)
         # The damping of a tyre answers the averaged velocity of its plate and works along the true one.
         true_rate = rate.copy()
@@ -343,7 +348,7 @@ class Recorder:
     def recording(self, signal: Signal, statistics: Statistics) -> Recording:
         """The finished recording."""
         interval = 1.0 / self.car.vehicle.solver.record_rate
-        time: Vector = interval * np.arange(self.samples, dtype=np.float64)
+        time = uniform_time(samples=self.samples, timestep=interval)
         for name in self.car.vehicle.acceleration_channels:
             self.channels[name] = acceleration(self.channels[name], interval)
         return Recording(
@@ -352,6 +357,6 @@ class Recorder:
             units=channel_units(self.channels),
             excited=tuple(wheel for wheel in self.wheels if np.any(signal.displacement.get(wheel, np.zeros(1)) != 0.0)),
             pose_time=time[self.pose_index],
-            poses=np.array(self.poses),
+            poses=self.poses,
             statistics=statistics,
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import mujoco
@@ -16,7 +17,7 @@ from vehicle.simulation.acceleration import AHEAD
 from vehicle.simulation.callbacks import compiled_rows, installed
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.judgement import judge_energy
-from vehicle.simulation.plate_arrays import PlateArrays
+from vehicle.simulation.plate_arrays import PlateArrays, PlateBlock
 from vehicle.simulation.recorder import CHUNK, Recorder
 from vehicle.simulation.recording import Recording, Statistics
 from vehicle.simulation.rows import Rows
@@ -71,20 +72,22 @@ def simulate(
     step = model.opt.timestep
     count = int(np.floor(signal.duration / step + 1e-6))
     count -= count % every
-    times = step * np.arange(count + 1)
-    motion = PlateArrays.of(signal, times, car.vehicle.wheels, AHEAD * every)
+    pose_every = max(round(1.0 / (POSE_RATE * step * every)), 1)
     mocap = [int(model.body_mocapid[model.body(wheel.plate).id]) for wheel in car.vehicle.composition.wheels]
+    level = data.mocap_pos[mocap, 2].copy()
+    unit = every * pose_every
+    motion = partial(PlateArrays.of, signal, step, count, car.vehicle.wheels, AHEAD * every)
+    block = PlateBlock(motion, count + 1 + AHEAD * every, level, unit=unit, least=(CHUNK + 1) * every + unit)
     plates = Plates(
-        height=data.mocap_pos[mocap, 2] + motion.displacement,
-        velocity=motion.row_velocity,
-        acceleration=motion.acceleration,
+        height=block.height,
+        velocity=block.velocity,
+        acceleration=block.acceleration,
         mocap=np.array(mocap, dtype=np.int64),
         mocap_position=data.mocap_pos,
         row_velocity=rows.state.plate_velocity,
         row_acceleration=rows.state.plate_acceleration,
     )
     compiled, notices = _compiled(rows, native)
-    pose_every = max(round(1.0 / (POSE_RATE * step * every)), 1)
     recorder = Recorder(
         car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
     )
@@ -98,20 +101,23 @@ def simulate(
         while index <= count:
             # The first and the last sample also ask for the energy of the car, so they are taken one by one.
             last = every * min(recorder.done + CHUNK - 1, count // every - 1)
-            if advance is not None and 0 < index <= last:
-                recorder.keep(last, advance(index, last))
+            loop = advance if 0 < index <= last else None
+            # From the first of the samples in the buffers on, which are evaluated together.
+            offset = block.reach(min(index, every * recorder.done), last if loop else index)
+            if loop is not None:
+                recorder.keep(last, loop(index - offset, last - offset))
                 index = last
             else:
-                move_plates(index, plates)
+                move_plates(index - offset, plates)
                 _step(model, data, recorder, recorded=index % every == 0, moved=index < count)
             if index == count or recorder.filled == CHUNK:
                 _check_state(model, data, recorder, every * step)
-                recorder.flush(motion, index, every)
+                recorder.flush(block.motion, index - offset, every)
                 if progress is not None:
                     progress(index / count)
             index += 1
         for index in range(count, count + AHEAD * every):
-            move_plates(index, plates)
+            move_plates(index - block.reach(index, index), plates)
             mujoco.mj_step(model, data)
             if (index + 1) % every == 0:
                 recorder.keep_ahead((index + 1 - count) // every - 1)
