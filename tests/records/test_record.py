@@ -8,8 +8,9 @@ import pytest
 from vehicle.commands.comfort import main
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal_file import read_signal
+from vehicle.records import text, text_format
 from vehicle.records.formats import FORMATS, read_columns
-from vehicle.records.table import Record, Vector
+from vehicle.records.table import Record, Vector, Wanted, key_column
 
 TIME: Vector = np.linspace(2.0, 5.999, 4000)
 SINE: Vector = np.sin(2 * np.pi * 8.0 * TIME)
@@ -87,3 +88,26 @@ def test_arrays_beyond_the_memory_are_refused_before_they_are_unpacked(tmp_path,
     monkeypatch.setattr("vehicle.records.npz_format.MEMORY_LIMIT", 60_000)
     with pytest.raises(DataError, match=r"own\.npz: its arrays need .* GiB of memory; allowed"):
         read_columns(tmp_path / "own.npz")
+
+
+@pytest.mark.parametrize("ending", ["", "\n", "\n\n# the end"])
+def test_a_long_table_is_read_in_pieces(tmp_path, monkeypatch, ending):
+    """Whatever the length of a piece: the same numbers, the same lines, the same place of a fault."""
+    rows = [f"{0.001 * n:.3f},{n % 7 - 3},{n * n:.6e}" for n in range(300)]
+    rows[17] = "# a remark"
+    rows[18] = ""
+    path = tmp_path / "long.csv"
+    path.write_text("# first\ntime [s],a [m],b [m]\n" + "\n".join(rows) + ending)
+    wanted = Wanted(needed="time [s]", key=key_column("time [s]", "time [s]"))
+    whole = text_format.read(path, wanted)
+    assert whole.values.shape == (298, 3) and whole.values[17, 2] == 19.0**2 and whole.lines[17] == 22
+    damaged = tmp_path / "damaged.csv"
+    damaged.write_text(path.read_text().replace("0.250,", "0.25o,"))
+    for size in (1, 40, 1000):
+        monkeypatch.setattr(text, "PIECE", size)
+        found = text_format.read(path, wanted)
+        np.testing.assert_array_equal(found.values, whole.values)
+        np.testing.assert_array_equal(found.lines, whole.lines)
+        assert [line for _, lines in text.read_text(path).pieces() for line in lines] == text.read_text(path).lines
+        with pytest.raises(DataError, match=r"damaged\.csv:253:1: .*0\.25o"):
+            text_format.read(damaged, wanted)

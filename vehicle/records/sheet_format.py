@@ -21,10 +21,10 @@ def read(path: Path) -> Measurement:
     sheets = _sheets(path)
     told: DataError | None = None
     for title, cells in sheets.items():
-        lines = [_row(row) for row in cells]
+        body = "\n".join(_row(row) for row in cells)
         notice = () if len(sheets) == 1 else (f"sheet {title!r} of {len(sheets)}",)
         try:
-            return read_lines(path, Text(lines=lines, notices=notice, sha256=digest(path)), "xlsx")
+            return read_lines(path, Text(body=body, notices=notice, sha256=digest(path)), "xlsx")
         except DataError as error:
             told = told or error
     raise told or DataError(f"{path}: no sheet; save it again")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,15 +24,33 @@ LONGEST_LINE = 1_000_000
 BOM = b"\xef\xbb\xbf"
 
 
+PIECE = 1_000_000
+"""Characters of a long text that are cut into lines at once: lines take four times the memory of their text."""
+
+
 class Text(NamedTuple):
     """A text file."""
 
-    lines: list[str]
-    """All lines without their ends; line number = index + 1."""
+    body: str
+    """All of it; lines end with a line feed alone."""
     notices: tuple[str, ...]
     """What was accepted although it is unusual."""
     sha256: str
     """Hexadecimal digest of the bytes."""
+
+    @property
+    def lines(self) -> list[str]:
+        """All lines without their ends; line number = index + 1."""
+        return self.body.split("\n")
+
+    def pieces(self) -> Iterator[tuple[int, list[str]]]:
+        """The same lines, some at once, with the number of the first of them."""
+        begin, number = 0, 1
+        while begin <= len(self.body):
+            end = self.body.find("\n", begin + PIECE)
+            lines = self.body[begin : end if end >= 0 else len(self.body)].split("\n")
+            yield number, lines
+            begin, number = end + 1 if end >= 0 else len(self.body) + 1, number + len(lines)
 
 
 def read_text(path: Path, *, western: bool = False) -> Text:
@@ -70,19 +89,20 @@ def read_text(path: Path, *, western: bool = False) -> Text:
         notices.append("line ends of another system (CR) read as line ends")
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
-        lines = data.decode("utf-8").split("\n")
+        text = Text(body=data.decode("utf-8"), notices=tuple(notices), sha256=digest)
     except UnicodeDecodeError as error:
         if western:
             notices.append("the text is not UTF-8: read as Windows text (cp1252)")
-            return Text(lines=data.decode("cp1252", "replace").split("\n"), notices=tuple(notices), sha256=digest)
+            return Text(body=data.decode("cp1252", "replace"), notices=tuple(notices), sha256=digest)
         raise DataError(
             f"{_place(path, data, error.start)}: byte 0x{data[error.start]:02x} is not UTF-8; save the file as UTF-8 "
             "text"
         ) from error
-    longest = max(range(len(lines)), key=lambda index: len(lines[index]))
-    if len(lines[longest]) > LONGEST_LINE:
-        raise _line_too_long(path, longest + 1)
-    return Text(lines=lines, notices=tuple(notices), sha256=digest)
+    for number, lines in text.pieces():
+        longest = max(lines, key=len)
+        if len(longest) > LONGEST_LINE:
+            raise _line_too_long(path, number + lines.index(longest))
+    return text
 
 
 def _check_bytes(path: Path, data: bytes) -> None:

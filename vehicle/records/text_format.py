@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.records.table import TIME, Header, Record, Table, Vector, Wanted
-from vehicle.records.text import read_text
+from vehicle.records.text import Text, read_text
 
 ROWS_AT_ONCE = 4096
 """Rows of a table that are written at once, so that a long one does not stand in memory as text."""
@@ -26,7 +26,7 @@ _MISSING = re.compile(r"|nan|#?na|n/a|null|none|-|[+-]?inf(inity)?", re.IGNORECA
 def read(path: Path, wanted: Wanted) -> Table:
     """Read a table; cells are separated by commas, semicolons or tabs, and may be quoted.
 
-    The fast way hands all rows to numpy at once. Whatever it does not take as finite numbers in the right shape goes
+    The fast way hands many rows to numpy at once. Whatever it does not take as finite numbers in the right shape goes
     through a slow pass cell by cell, which either understands it or names line and column.
 
     Raises:
@@ -35,21 +35,26 @@ def read(path: Path, wanted: Wanted) -> Table:
             doubt; or of `wanted`.
     """
     text = read_text(path)
-    data = [n for n, line in enumerate(text.lines, 1) if not _is_comment(line)]
-    if not data:
+    head, first = _first_line(text)
+    if not head:
         raise DataError(f"{path}: only comments; needed are the columns {wanted.needed} in a header line and one row "
                         "per sample")  # fmt: skip
-    head, *numbers = data
-    first = text.lines[head - 1]
     delimiter = next((sign for sign in (";", "\t") if sign in first), ",")
     header = Header(path=path, line=head, cells=tuple(_split(first, delimiter)), delimiter=delimiter)
     key = wanted.key(header)
     notices = list(text.notices)
     if delimiter != ",":
         notices.append(f"delimiter {delimiter!r} accepted; ',' is the usual one")
+    plain = _plain(text, header)
+    if plain is not None:
+        return Table(
+            header=header, key=key, values=plain[0], lines=plain[1], notices=tuple(notices), sha256=text.sha256
+        )
+    lines = text.lines
+    numbers = [n for n, line in enumerate(lines[head:], head + 1) if not _is_comment(line)]
     if not numbers:
         raise DataError(f"{path}:{head}: the file ends after the header; needed is one row per sample below it")
-    rows = [text.lines[n - 1] for n in numbers]
+    rows = [lines[n - 1] for n in numbers]
     if delimiter != "," and any("," in row for row in rows):
         rows = decimal_points(numbers, rows, header)
         notices.append("decimal comma read as decimal point")
@@ -59,6 +64,33 @@ def read(path: Path, wanted: Wanted) -> Table:
     return Table(
         header=header, key=key, values=values, lines=np.array(numbers), notices=tuple(notices), sha256=text.sha256
     )
+
+
+def _first_line(text: Text) -> tuple[int, str]:
+    """Number and content of the first line that is no comment; 0 where there is none."""
+    for start, lines in text.pieces():
+        for number, line in enumerate(lines, start):
+            if not _is_comment(line):
+                return number, line
+    return 0, ""
+
+
+def _plain(text: Text, header: Header) -> tuple[Vector, NDArray[np.int64]] | None:
+    """All numbers below the header, and their lines, piece by piece; None unless `fast` takes them as they stand."""
+    values, places = [], []
+    for start, lines in text.pieces():
+        numbers = [n for n, line in enumerate(lines, start) if n > header.line and not _is_comment(line)]
+        rows = [lines[n - start] for n in numbers]
+        if not rows:
+            continue
+        if header.delimiter != "," and any("," in row for row in rows):
+            return None
+        found = fast(rows, header)
+        if found is None:
+            return None
+        values.append(found)
+        places.append(np.array(numbers))
+    return (np.concatenate(values), np.concatenate(places)) if values else None
 
 
 def read_texts(path: Path) -> list[list[str]]:
