@@ -49,30 +49,26 @@ class CarFactors:
 
     Attributes:
         columns: driven plates; (m,).
-        marched: marched poles; (p + q,).
-        pairs, reals: numbers of those, p and q.
-        decay, inputs: E and factors of mean forces, slopes, z' and mean z', of all poles; (n, 1), (n, 2 d + 2 m).
-        static: kappa; (n, m).
-        ahead, force, ramp: what z', the mean forces and their slopes add to eta; (n, m), (n, d), (n, d).
+        marched: marched poles, p of pairs and q real ones; (p + q,).
+        pairs: p.
+        step: E and factors of mean forces, slopes, z' and mean z', of the marched poles; (p + q, 1 + 2 d + 2 m).
+        direct: what mean forces, their slopes, z' and z add to eta, of all poles; (n, 2 d + 2 m).
         slip: rows of the damper velocities; (d, n).
+        gains: what z', mean forces and slopes add to the damper velocities; (d, m), (d, d), (d, d).
     """
 
     columns: list[int]
     marched: npt.NDArray[np.intp]
     pairs: int
-    reals: int
-    decay: Complex
-    inputs: Complex
-    static: Complex
-    ahead: Complex
-    force: Complex
-    ramp: Complex
+    step: Complex
+    direct: Complex
     slip: Complex
+    gains: tuple[Vector, Vector, Vector]
 
     @property
-    def gains(self) -> tuple[Vector, Vector, Vector]:
-        """What z', the mean forces and their slopes add to the damper velocities; (d, m), (d, d), (d, d)."""
-        return (self.slip @ self.ahead).real, (self.slip @ self.force).real, (self.slip @ self.ramp).real
+    def reals(self) -> int:
+        """Number of marched real poles, q."""
+        return len(self.marched) - self.pairs
 
     @property
     def coupled(self) -> float:
@@ -80,30 +76,45 @@ class CarFactors:
         gain = np.abs(self.gains[1])
         return float(np.max(gain.sum(axis=1) / np.diag(gain))) - 1.0
 
-    def poles(self, heights: Vector, rates: Vector) -> tuple[Vector, Vector]:
-        """Rows of the pairs and of the real poles, as `advance` takes them, of a car at rest in its design position.
+    def start(self, heights: Vector, rates: Vector) -> tuple[Vector, Vector]:
+        """States of the pairs, real and imaginary parts by turns, and of the real poles of a car at rest by design.
 
         Args:
             heights, rates: (z, z') of the driven plates at the first instant; (m,) each.
+        """
+        eta = -self.direct[self.marched, -2 * len(self.columns) :] @ np.append(rates, heights)
+        return eta[: self.pairs].view(np.float64), eta[self.pairs :].real
+
+    def rows(self) -> tuple[Vector, Vector]:
+        """Rows of the pairs and of the real poles, as `vehicle.reduced.lane_step.advance` takes them.
 
         Returns:
-            State, decay, inputs, damper velocities: (pairs, ...) with real and imaginary parts, (reals, ...).
+            Decay, inputs, damper velocities: (pairs, ...) with real and imaginary parts, (reals, ...).
         """
-        eta = (-self.static @ heights - self.ahead @ rates)[:, None]
-        rows, p = np.hstack([eta, self.decay, self.inputs, self.slip.T])[self.marched], self.pairs
-        groups = np.split(rows[:p], np.cumsum([1, 1, self.inputs.shape[1]]), axis=1)
-        parts = [part for one in groups for part in (one.real, one.imag)]
-        return np.hstack([*parts[:-1], -parts[-1]]), rows[p:].real
+        slip, p = self.slip[:, self.marched].T, self.pairs
+        decay, inputs = self.step[:p, :1], self.step[:p, 1:]
+        pairs = [decay.real, decay.imag, inputs.real, inputs.imag, slip[:p].real, -slip[:p].imag]
+        return np.hstack(pairs), np.hstack([self.step[p:].real, slip[p:].real])
 
-    def weights(self, outputs: Outputs) -> tuple[Vector, Vector, Vector]:
-        """Weights of the pairs, the real poles, and of mean forces, slopes, z' and z; (outputs, ...) each."""
-        rows, p = outputs.poles[:, self.marched], self.pairs
-        pairs = np.stack([rows[:, :p].real, -rows[:, :p].imag], axis=2).reshape(len(rows), 2 * p)
-        direct = (outputs.poles @ np.hstack([self.force, self.ramp, self.ahead, self.static])).real
-        m = len(self.columns)
-        direct[:, -2 * m : -m] += outputs.velocity[:, self.columns]
-        direct[:, -m:] += outputs.height[:, self.columns]
-        return pairs, rows[:, p:].real, direct
+    def weights(self, rows: Complex) -> Vector:
+        """Weights of the states (pairs, real poles), and of mean forces, slopes, z' and z, in sums Re(rows xi).
+
+        Args:
+            rows: (k, n).
+
+        Returns:
+            (k, 2 p + q + 2 d + 2 m).
+        """
+        chosen, p = rows[:, self.marched].conj(), self.pairs
+        pairs = np.ascontiguousarray(chosen[:, :p]).view(np.float64)
+        return np.hstack([pairs, chosen[:, p:].real, (rows @ self.direct).real])
+
+    def weights_of(self, outputs: Outputs) -> Vector:
+        """Weights of linear outputs, in which plates stand too."""
+        found, m = self.weights(outputs.poles), len(self.columns)
+        found[:, -2 * m : -m] += outputs.velocity[:, self.columns]
+        found[:, -m:] += outputs.height[:, self.columns]
+        return found
 
 
 def car_factors(
@@ -123,48 +134,62 @@ def car_factors(
     ]
     if not known:
         return {}
-    # The poles of all cars at once.
-    poles, height, velocity, force = (
-        np.concatenate([getattr(models[car], name) for car in known])
-        for name in ("poles", "height", "velocity", "force")
-    )
-    h, s, chosen = timestep, poles[:, None], list(columns)
-    m0, m1, m2 = (
-        h * factorial(j) * phi[:, None]
-        for j, phi in enumerate(phi_functions(np.asarray(poles * h, dtype=np.complex128), 3))
-    )
-    decay, static = np.exp(s * h), -height[:, chosen] / s
-    residue = velocity[:, chosen] - static
-    both = np.hstack([residue, force])
-    ends = np.cumsum([0, *(len(models[car].poles) for car in known)]).tolist()
-    own = [slice(*ends[place : place + 2]) for place in range(len(known))]
-    marched = [_marched(models[car], both[part], h) for car, part in zip(known, own, strict=True)]
-    late = np.concatenate(marched)[:, None]
-    ahead = np.where(late, residue * (3.0 * m2 - 2.0 * m1), -residue / s)
-    ramp = force * np.where(late, m1 - 0.5 * m0, -0.5 / s)
-    force = force * np.where(late, m0, -1.0 / s)
+    h, chosen = timestep, list(columns)
+    m, d = len(chosen), models[known[0]].force.shape[1]
+    own = [_Inputs(models[car], chosen, h) for car in known]
+    # The marched poles of all cars at once.
+    s = np.concatenate([one.poles[one.marched] for one in own])[:, None]
+    inputs = np.concatenate([one.both[one.marched] for one in own])
+    residue, force = inputs[:, :m], inputs[:, m:]
+    m0, m1, m2 = (h * factorial(j) * phi for j, phi in enumerate(phi_functions(s * h, 3)))
+    decay, ahead = np.exp(s * h), residue * (3.0 * m2 - 2.0 * m1)
+    direct = np.hstack([force * m0, force * (m1 - 0.5 * m0), ahead])
     begin = residue * (m0 - 4.0 * m1 + 3.0 * m2) + decay * ahead
-    inputs = np.hstack([decay * force, decay * ramp, begin, residue * 6.0 * (m1 - m2)])
-    found = {}
-    for car, part, one in zip(known, own, marched, strict=True):
-        places = np.flatnonzero(one)
-        pairs = int(np.count_nonzero(places < models[car].pairs))
+    step = np.hstack([decay, decay * direct[:, : 2 * d], begin, residue * 6.0 * (m1 - m2)])
+    found, first = {}, 0
+    for car, one in zip(known, own, strict=True):
+        part = slice(first, first + len(one.marched))
+        first = part.stop
+        # Those that are not marched follow at once.
+        at_once = one.both / -one.poles[:, None]
+        whole = np.hstack([at_once[:, m:], 0.5 * at_once[:, m:], at_once[:, :m], one.static])
+        whole[one.marched, :-m] = direct[part]
+        slip = models[car].slip
+        added = (slip @ whole).real
         factors = CarFactors(
             columns=chosen,
-            marched=places,
-            pairs=pairs,
-            reals=len(places) - pairs,
-            decay=decay[part],
-            inputs=inputs[part],
-            static=static[part],
-            ahead=ahead[part],
-            force=force[part],
-            ramp=ramp[part],
-            slip=models[car].slip,
+            marched=one.marched,
+            pairs=int(np.count_nonzero(one.marched < models[car].pairs)),
+            step=step[part],
+            direct=whole,
+            slip=slip,
+            gains=(added[:, 2 * d : -m], added[:, :d], added[:, d : 2 * d]),
         )
         if factors.coupled <= LOOSEST:
             found[car] = factors
     return found
+
+
+class _Inputs:
+    """What moves the poles of a car, and which are marched.
+
+    Args:
+        model: the car.
+        columns: driven plates.
+        timestep: [s].
+
+    Attributes:
+        poles: s; (n,).
+        static: kappa; (n, m).
+        both: residues r of z' of the driven plates, and e of the forces; (n, m + d).
+        marched: numbers of the marched poles.
+    """
+
+    def __init__(self, model: PoleModel, columns: list[int], timestep: float) -> None:
+        self.poles = model.poles
+        self.static = -model.height[:, columns] / model.poles[:, None]
+        self.both = np.hstack([model.velocity[:, columns] - self.static, model.force])
+        self.marched = np.flatnonzero(_marched(model, self.both, timestep))
 
 
 def _marched(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArray[np.bool_]:
@@ -178,7 +203,8 @@ def _marched(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArray[
     system, s, n = model.matrices.system, model.poles, len(model.poles)
     places = np.array([row[: system.size] for row in system.outputs.values()]).reshape(-1, system.size)
     # Damper velocities, and positions, of which accelerations are made.
-    rows = np.vstack([model.slip, places @ model.modal])
+    shapes = np.ascontiguousarray(model.modal).view(np.float64)
+    rows = np.concatenate([model.slip, (places @ shapes).view(np.complex128)])
     order = np.where(np.arange(len(rows)) < len(model.slip), 0, 2)[:, None, None]
     # A pole of a pair stands for its conjugate, whose share at a line is the conjugate of its own at minus the line.
     band = 2j * np.pi / (STEPS_A_PERIOD * timestep)
@@ -186,15 +212,20 @@ def _marched(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArray[
     shares = rows @ (inputs[:, :, None] / (lines - s[:, None])[:, None, :]).reshape(n, -1)
     shares = shares.reshape(len(rows), -1, 2, len(LINES))
     response = (shares[:, :, 0] + shares[:, :, 1].conj()) * LINES**order
-    size = np.sqrt(np.mean(np.abs(response) ** 2, axis=2, keepdims=True)) + np.finfo(float).tiny
+    size = np.sqrt(np.mean(_squares(response), axis=2)) + np.finfo(float).tiny
     quick, found = np.flatnonzero(np.abs(s) > abs(band)), np.ones(n, dtype=bool)
     if not quick.size:
         return found
-    s = s[quick]
-    products = (rows[:, quick][:, None] * (inputs[quick].T / size)).reshape(-1, len(s))
+    s = s[quick][:, None]
+    products = (np.ascontiguousarray(rows.T[quick])[:, None] * (inputs[quick][:, :, None] / size.T)).reshape(len(s), -1)
     late = products * (band / (s * (band - s))) + (products * (band / (s * (band + s)))).conj()
-    sequence = np.argsort(np.max(np.abs(late), axis=0), kind="stable")
-    together = np.max(np.abs(np.cumsum(late[:, sequence], axis=1)), axis=0)
-    fast = np.flatnonzero(together <= DELAY)
+    sequence = np.argsort(np.max(_squares(late), axis=1), kind="stable")
+    together = np.max(_squares(np.cumsum(late[sequence], axis=0)), axis=1)
+    fast = np.flatnonzero(together <= DELAY**2)
     found[quick[sequence[: fast[-1] + 1 if fast.size else 0]]] = False
     return found
+
+
+def _squares(numbers: Complex) -> Vector:
+    """Squares of magnitudes."""
+    return np.asarray(numbers.real**2 + numbers.imag**2)

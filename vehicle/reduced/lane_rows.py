@@ -21,8 +21,8 @@ ALIGNMENT = 32
 INNER = 64
 """Samples between two readings of the states: they stay in the cache of a core."""
 
-TILE = 4
-"""Rows that are read at once."""
+TILE = 3
+"""Outputs that are read at once: those of three axes."""
 
 PAST = 2 * AHEAD
 """Samples before a block that the accelerations in it need."""
@@ -32,8 +32,8 @@ class Rows(NamedTuple):
     """Where the sections of a table of cars begin, and how long they are.
 
     Attributes:
-        pairs, reals: numbers of poles; the table begins with the pairs, real poles come next.
-        real: first row of the real poles.
+        pairs, reals: numbers of poles; the table begins with factors of the pairs, those of the real poles come next.
+        real: first row of those.
         slip: what z' at the end of a step adds to the damper velocities, dampers by plates.
         gain, ramp: what mean forces and their slopes add, dampers by dampers each.
         law: of each damper, `pieces` + 1 times (x, F_c/2, friction as a share of its limit).

@@ -53,7 +53,8 @@ class LaneTable:
 
     Attributes:
         pairs, reals, plates: numbers of poles and of driven plates.
-        states: numbers that an output of a sample is a sum over.
+        states: numbers that an output of a sample is a sum over: states of a sample, and heights of the plates.
+        begin: states of the first sample; (..., LANES).
         rows: its sections.
         table: what the march changes; (rows, LANES).
         laws: records of the dampers where a friction limit varies, (d, LANES); else none.
@@ -63,13 +64,12 @@ class LaneTable:
         self.cars = [*cars, *[cars[-1]] * (LANES - len(cars))]
         laws = [*dampers, *[dampers[-1]] * (LANES - len(cars))]
         d, m = len(dampers[0]), start.shape[1]
-        # An even number of real poles, as `read` takes them.
-        self.pairs, self.reals = max(car.pairs for car in cars), 2 * max((car.reals + 1) // 2 for car in cars)
+        self.pairs, self.reals = max(car.pairs for car in cars), max(car.reals for car in cars)
         self.plates, inputs = m, 2 * (d + m)
         self.states = 2 * self.pairs + self.reals + 2 * (d + m)
         made = [[damper_lane(damper) for damper in own] for own in laws]
         most = max(len(nodes) for own in made for _, _, nodes in own)
-        sizes = {"real": self.reals * (2 + inputs + d), "slip": d * m, "gain": d * d, "ramp": d * d}
+        sizes = {"real": self.reals * (1 + inputs + d), "slip": d * m, "gain": d * d, "ramp": d * d}
         sizes |= {
             "law": 3 * d * most,
             "limit": d,
@@ -82,15 +82,19 @@ class LaneTable:
         }
         sizes |= {"stuck": d, "stick": d, "room": d * (4 + 4 * most) + TILE}
         # The pairs come first.
-        ends = np.cumsum([self.pairs * (4 + 2 * inputs + 2 * d), *sizes.values()]).tolist()
+        ends = np.cumsum([self.pairs * (2 + 2 * inputs + 2 * d), *sizes.values()]).tolist()
         self.place = {name: slice(*ends[k : k + 2]) for k, name in enumerate(sizes)} | {"pair": slice(0, ends[0])}
         begins = {name: self.place[name].start for name in sizes}
         self.rows = Rows(pairs=self.pairs, reals=self.reals, pieces=most - 1, **begins)
-        self.table = aligned(ends[-1])
+        self.table, self.begin = aligned(ends[-1]), aligned(self.states - m)
+        self.begin[-m:] = start[1][:, None]
         record = np.zeros((d, LANES), dtype=RECORD)
         for lane, (car, own) in enumerate(zip(self.cars, made, strict=True)):
-            pairs, reals = car.poles(*start)
+            pairs, reals = car.rows()
             record[:, lane] = [one for one, _, _ in own]
+            here, there = car.start(*start)
+            self.begin[: len(here), lane] = here
+            self.begin[2 * self.pairs :, lane][: len(there)] = there
             # The last node again makes a piece of no length.
             law = [nodes[np.minimum(np.arange(most), len(nodes) - 1)] for _, _, nodes in own]
             values = dict(zip(("slip", "gain", "ramp"), car.gains, strict=True))
@@ -103,24 +107,24 @@ class LaneTable:
         varying = any(damper.friction_law != "coulomb" for own in dampers for damper in own)
         self.laws = record if varying else record[:0]
 
-    def tiles(self, weights: Sequence[tuple[Vector, Vector, Vector]], part: slice, each: int = TILE) -> Table:
-        """Weights of outputs of each car, TILE rows together.
+    def tiles(self, weights: Sequence[Vector]) -> Table:
+        """Weights of outputs, TILE of them together.
 
         Args:
-            weights: of all outputs of each car, as of `CarFactors.weights`.
-            part: which of them.
-            each: how many of them share a tile.
+            weights: of each car, as of `CarFactors.weights`.
 
         Returns:
             (tiles, states and heights, TILE) as the rows of a table (..., LANES).
         """
-        states, number = self.states, -(-(part.stop - part.start) // each)
+        states, number, end = self.states, -(-len(weights[0]) // TILE), 2 * self.pairs + self.reals
         table = aligned(number * states * TILE)
-        view, first = table.reshape(number, states, TILE, LANES), 2 * self.pairs
+        view = table.reshape(number, states, TILE, LANES)
+        wide = np.zeros((number * TILE, states))
         for lane, car in enumerate(self.cars):
-            pairs, reals, direct = (one[part] for one in weights[min(lane, len(weights) - 1)])
-            wide = np.zeros((number * each, states))
-            wide[: len(pairs), : pairs.shape[1]], wide[: len(pairs), first : first + car.reals] = pairs, reals
-            wide[: len(pairs), first + self.reals :] = direct
-            view[:, :, :each, lane] = wide.reshape(number, each, states).transpose(0, 2, 1)
+            # Poles that others have and this one has not.
+            wide[:] = 0.0
+            own, (p, q) = weights[min(lane, len(weights) - 1)], (2 * car.pairs, car.reals)
+            wide[: len(own), :p], wide[: len(own), end:] = own[:, :p], own[:, p + q :]
+            wide[: len(own), 2 * self.pairs : 2 * self.pairs + q] = own[:, p : p + q]
+            view[..., lane] = wide.reshape(number, TILE, states).transpose(0, 2, 1)
         return table
