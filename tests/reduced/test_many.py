@@ -14,6 +14,7 @@ from tests.reduced.test_quarter_car import damper, matrices
 from vehicle.car import Car
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.parameters.semi_active import SemiActiveDamper
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.reduced.many import COARSE_STEP, simulate_many
 from vehicle.reduced.pole_model import pole_model
@@ -100,6 +101,37 @@ def test_a_car_moves_as_it_does_alone(company, together, name, monkeypatch):
             # A force jumps, and the others only where it does.
             assert difference <= largest * np.std(alone[channel]), (channel, step)
         assert found.recording(0).statistics.warnings == alone.statistics.warnings
+
+
+def test_cars_that_are_run_alone_among_others(car):
+    """One with controlled dampers, and one whose dampers move each other by a tenth, as tied by a lever."""
+    control = SemiActiveDamper(
+        law="skyhook",
+        minimum_damping=500.0,
+        maximum_damping=4000.0,
+        skyhook_damping=3000.0,
+        groundhook_damping=0.0,
+        skyhook_share=1.0,
+        control_period=1e-3,
+    )
+    signal = Signal(time=ROAD.time[:301], displacement={"fr": ROAD.displacement["fr"][:301]})
+    plain, load = dampers(car, "coulomb"), car.model.static.tyre_load
+    controlled = [dataclasses.replace(law, control=control) for law in plain]
+    tied = dataclasses.replace(car.poles, force=car.poles.force + 0.1 * car.poles.force[:, ::-1])
+    models, laws = [car.poles, car.poles, tied, car.poles], [plain, controlled, plain, dampers(car, "stribeck")]
+    found = run_many(models, laws, signal, [load] * 4)
+    for place in (1, 2):
+        alone = simulate_reduced(
+            models[place], signal, dampers=laws[place], record_rate=1000.0, tyre_load=load, channels=CHANNELS
+        )
+        assert found.statistics[place].timestep == alone.statistics.timestep < COARSE_STEP
+        for name in CHANNELS:
+            np.testing.assert_array_equal(found.channels[name][place], alone[name], err_msg=name)
+    others = run_many(models[::3], laws[::3], signal, [load] * 2)
+    for own, place in enumerate((0, 3)):
+        assert found.statistics[place].timestep == COARSE_STEP
+        for name in CHANNELS:
+            np.testing.assert_array_equal(found.channels[name][place], others.channels[name][own], err_msg=name)
 
 
 def test_set_valued_friction_under_a_sine():

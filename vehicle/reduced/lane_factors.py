@@ -28,7 +28,11 @@ Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 DELAY = 5e-4
-"""Error of a response, over its size, that may come from all poles that are not marched."""
+"""Error of a response at the end of the band, over its RMS in it, that may come from all poles that are not marched.
+
+What a fast pole leaves out grows with the frequency, so the RMS of an output of a road with white z' lacks about
+DELAY/sqrt(3), 0.03 %, at most: a fifth of what is asked of comfort. The number is chosen. 100 varied cars do not tell:
+from 5e-5 to 5e-3 their comfort moves by less than 0.002 %, and six real poles of 14 and two pairs of 39 are saved."""
 
 STEPS_A_PERIOD = 20
 """Of the highest frequency that a step resolves: 100 Hz at 0.5 ms."""
@@ -37,7 +41,11 @@ LINES = np.array([0.2, 0.4, 0.7, 1.0])
 """Frequencies of that band whose mean square is the size of a response."""
 
 LOOSEST = 0.01
-"""Largest effect of the other dampers on one, over its own, with which two turns solve a step in single precision."""
+"""Largest effect rho of the other dampers on one, over its own, in all.
+
+No law answers by more than what arrives. So a turn leaves at most rho of the largest error of a force, which was at
+first its change in the step: two turns leave rho^2, and rho^3 with two dampers, where the second sees the first: 1e-6,
+the round-off of sums in single precision. The dampers of the Focus, at its four corners too, stay below 1e-3."""
 
 SLOWEST = 1e-2
 """Slowest pole [rad/s] that can be marched as a difference from rest."""
@@ -141,7 +149,9 @@ def car_factors(
     s = np.concatenate([one.poles[one.marched] for one in own])[:, None]
     inputs = np.concatenate([one.both[one.marched] for one in own])
     residue, force = inputs[:, :m], inputs[:, m:]
-    m0, m1, m2 = (h * factorial(j) * phi for j, phi in enumerate(phi_functions(s * h, 3)))
+    m0, m1, m2 = (
+        h * factorial(j) * phi for j, phi in enumerate(phi_functions(np.asarray(s * h, dtype=np.complex128), 3))
+    )
     decay, ahead = np.exp(s * h), residue * (3.0 * m2 - 2.0 * m1)
     direct = np.hstack([force * m0, force * (m1 - 0.5 * m0), ahead])
     begin = residue * (m0 - 4.0 * m1 + 3.0 * m2) + decay * ahead

@@ -35,7 +35,7 @@ def part(function: Callable[..., Any]) -> Any:
 
 
 TURNS = 2
-"""Turns among the dampers: the error is the third power of their coupling, which is `LOOSEST` at most."""
+"""Turns among the dampers: `vehicle.reduced.lane_factors.LOOSEST` says what they leave."""
 
 
 @part
