@@ -60,6 +60,15 @@ def test_tasks_take_about_a_second(pace, engine, size):
     assert sum(sizes) == 3000 and sizes[-1] <= FILL
 
 
+def test_tasks_fill_a_vector_unit_with_cars_that_each_bring_all_their_inputs():
+    roads = [ShortRoad(seed=seed) for seed in range(3)]
+    cases = grid({"damper.viscous": range(100)}, roads, engine="reduced")
+    executor = Paced(0.2 * TASK_S)
+    worked({f"{number} {case.label}": case for number, case in enumerate(cases)}, executor)
+    for task in executor.tasks[: 2 * PER_WORKER]:
+        assert len(task) == 3 * FILL and len({label.partition(", ")[2] for label in task}) == FILL
+
+
 def test_few_cases_are_shared_by_all_workers():
     executor = Paced()
     worked(many(6), executor)
