@@ -12,7 +12,7 @@ from scenarios.tuning.__main__ import main as tuning
 from vehicle.car import Car
 from vehicle.commands.compare import main as compare
 from vehicle.commands.compare import measured_beside
-from vehicle.commands.input_options import record_choice
+from vehicle.commands.input_options import drives_on_road, record_choice
 from vehicle.commands.shaker import main as shaker
 from vehicle.commands.shaker import parser as shaker_options
 from vehicle.comparison.comparison import comparison_of
@@ -188,6 +188,10 @@ def test_a_unit_is_of_the_input_or_of_what_was_measured(tmp_path):
         found = measured_beside(options, known, choice.units)
         assert found is not None and found.record is not None
         assert found.record.channels["knuckle_fr_acc_z"] == pytest.approx(factor * wave)
+    road = ["--road", "C", "--unit", "knuckle_fr_acc_z=g", "--measured", str(tmp_path / "hub.csv")]
+    assert drives_on_road(shaker_options().parse_args(road))
+    with pytest.raises(ConfigurationError, match="--unit: belongs to --input"):
+        drives_on_road(shaker_options().parse_args(road[:4]))
     options = shaker_options().parse_args([*words, "--unit", "knuckle_fr=g"])
     with pytest.raises(
         ConfigurationError, match=r"--unit knuckle_fr=\.\.\.: not one of the compared channels: knuckle_fr"

@@ -106,7 +106,8 @@ def drives_on_road(options: argparse.Namespace) -> bool:
                 f"{words} beside --input: give one of them; --road alone accepts levels beyond a shaker"
             )
         for name, place in INPUT_CHOICES.items():
-            if getattr(options, place, None):
+            measured = name == "unit" and getattr(options, "measured", None) is not None
+            if getattr(options, place, None) and not measured:
                 raise ConfigurationError(f"--{name}: belongs to --input; {words} drives all wheels of the car")
         return True
     if not options.input:
