@@ -10,7 +10,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.excitation.random_road import random_road
 from vehicle.reduced import plate_samples, run
 from vehicle.simulation import acceleration
-from vehicle.simulation.judgement import require_memory
+from vehicle.simulation.judgement import require_samples
 
 pytest.importorskip("numba", reason="the reduced engine needs it")
 
@@ -44,8 +44,8 @@ def test_a_recording_that_does_not_fit_is_refused(monkeypatch):
     with pytest.raises(
         ConfigurationError, match=r"^solver\.record_rate: 10 channels of 2e\+04 samples need 0\.0032 GB"
     ):
-        require_memory(20_000, 10)
-    require_memory(10_000, 10)
+        require_samples(20_000, 10)
+    require_samples(10_000, 10)
     car = Car.load()
     with pytest.raises(ConfigurationError, match=r"solver\.record_rate: .* GB; lower the rate"):
         car.run(random_road(rms=5e-4, seed=2, duration=6.0), engine="reduced")

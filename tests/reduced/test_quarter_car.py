@@ -6,12 +6,13 @@ import dataclasses
 
 import numpy as np
 import pytest
+import scipy
 
 from scenarios.quarter_car.in_mujoco import friction_of_the_rows
 from tests.linear.plain_matrices import plain_matrices
 from vehicle.analysis.slip import slip_share
 from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.laws.friction import Clamped
 from vehicle.laws.stribeck import Stribeck
 from vehicle.lumped.drive import Sampled
@@ -27,7 +28,7 @@ CAR = load_quarter_car()
 ROAD = random_road(rms=2e-3, seed=2006, duration=8.0, lower_band_edge=0.5, upper_band_edge=50.0)
 
 
-def matrices():
+def matrices(tyre_damping=0.0):
     """Two quarter cars beside each other; coordinates body, wheel, damper over wheel, for the right and the left."""
     side = {
         "mass": np.diag([CAR.body.mass, CAR.wheel.mass, 0.0]),
@@ -49,14 +50,14 @@ def matrices():
         outputs[f"suspension_mount_{wheel}_acc_z"] = np.eye(6)[first]
     return plain_matrices(
         mass=both["mass"],
-        damping=np.zeros((6, 6)),
+        damping=tyre_damping * wheels.T @ wheels,
         stiffness=both["stiffness"],
         dampers=np.array([2, 5]),
         viscous=np.full(2, CAR.damper.damping),
         plate_stiffness=CAR.wheel.tyre_stiffness * wheels,
-        plate_damping=np.zeros((2, 6)),
+        plate_damping=tyre_damping * wheels,
         tyre_stiffness=np.full(2, CAR.wheel.tyre_stiffness),
-        tyre_damping=np.zeros(2),
+        tyre_damping=np.full(2, tyre_damping),
         outputs=outputs,
         body_rows={"body": np.zeros((6, 6))},
         body_masses={"body": np.eye(6)},
@@ -172,3 +173,47 @@ def test_stribeck_against_the_stiff_solver():
         {"knuckle_fr_acc_z": solved.acceleration("wheel"), "suspension_mount_fr_acc_z": solved.acceleration("body")},
         {"knuckle_fr_acc_z": 1e-2, "suspension_mount_fr_acc_z": 5e-3},
     )
+
+
+def test_a_plate_that_stands_away_from_zero_when_the_run_begins():
+    # It does not jump: M y'' + C y' + K y = k z0 from rest, without the impulse c z0 of a jump on the wheel.
+    height, damping = 5e-3, 400.0
+    model = matrices(damping)
+    system, n = model.system, 6
+    forced = np.linalg.solve(system.mass, np.hstack([-system.stiffness, -system.damping, system.input_stiffness[:, :1]]))
+    state = np.zeros((2 * n + 1, 2 * n + 1))
+    state[:n, n : 2 * n], state[n : 2 * n] = np.eye(n), forced
+    time, step = uniform_time(samples=200, timestep=1e-3), scipy.linalg.expm(1e-3 * state)
+    states = [np.append(np.zeros(2 * n), height)]
+    for _ in time[1:]:
+        states.append(step @ states[-1])
+    wheel, rate = np.array(states)[:, [1, n + 1]].T
+    run = simulate_reduced(
+        pole_model(model),
+        Signal(time=time, displacement={"fr": np.full(time.size, height)}),
+        dampers=[damper(coulomb_friction=0.0)] * 2,
+        record_rate=1000.0,
+        tyre_load={"fr": 1e6, "fl": 1e6},
+        channels=["tyre_fr_force_z"],
+    )
+    expected = 1e6 + CAR.wheel.tyre_stiffness * (height - wheel) - damping * rate
+    # Everything is linear: exact to the round-off of the load.
+    np.testing.assert_allclose(run["tyre_fr_force_z"], expected, rtol=0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("rate", [125.0, 1000.0])
+def test_a_short_lift_off_is_seen_at_any_recording_rate(rate):
+    # A hole of 60 ms, of which a sample in 128 ms knows nothing.
+    time = uniform_time(samples=401, timestep=1e-3)
+    inside = (time > 0.15) & (time < 0.21)
+    hole = np.where(inside, -5e-3 * (1.0 - np.cos(2.0 * np.pi * (time - 0.15) / 0.06)), 0.0)
+    run = simulate_reduced(
+        pole_model(matrices()),
+        Signal(time=time, displacement={"fr": hole}),
+        dampers=[damper()] * 2,
+        record_rate=rate,
+        tyre_load={"fr": 1e3, "fl": 1e6},
+        channels=["tyre_fr_force_z"],
+    )
+    assert min(run["tyre_fr_force_z"]) < 0.0
+    assert any("tyre fr would lift off" in warning for warning in run.statistics.warnings)

@@ -37,6 +37,12 @@ def test_item_36_a_lost_state_stops_with_time_and_joint(car, monkeypatch, tmp_pa
     assert list(tmp_path.iterdir()) == [], "no MUJOCO_LOG.TXT"
 
 
+def test_a_signal_shorter_than_a_recorded_interval_is_refused(car):
+    short = Signal(time=uniform_time(samples=32, timestep=1e-5), displacement={"fr": np.zeros(32)})
+    with pytest.raises(ConfigurationError, match=r"signal ends after 0\.31 of an interval between two recorded samples"):
+        car.run(short)
+
+
 def test_an_exception_in_the_middle_of_a_run_leaves_no_callbacks(car):
     def stop(fraction):
         raise KeyboardInterrupt

@@ -32,7 +32,7 @@ from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced
 from vehicle.simulation.car_model import CarModel, build_model
-from vehicle.simulation.judgement import require_finite, require_memory
+from vehicle.simulation.judgement import require_finite, require_samples
 from vehicle.simulation.run import Progress, simulate
 from vehicle.simulation.static_trim import StaticTrim
 
@@ -236,7 +236,7 @@ class Car:
         names = known if channels is None else channels
         more = [name for name in names if name not in known]
         loads = [name for name in more if name in self.vehicle.load_channels]
-        require_memory(signal.duration * self.vehicle.solver.record_rate, len(names))
+        require_samples(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
         if engine == "auto" and not has_compiler():
             reason = "numba, which the reduced engine needs, is not installed"

@@ -185,7 +185,10 @@ def _bends(rows: Rows, jacobian: Vector) -> tuple[Bend, ...]:
         else:
             row = jacobian[e.springs.rows[element]] if kind == 1 else np.eye(rows.model.nv)[e.dampers.dofs[element]]
             name = ("", "spring", "stop of damper")[kind] + f" {element + 1}"
-        edges = np.concatenate([[-np.inf], curve_of(t, index).knots, [np.inf]])
+        curve = curve_of(t, index)
+        # A point on the line through its neighbours is no corner.
+        corners = curve.knots[np.abs(np.diff(curve.slopes)) > 1e-9 * np.max(curve.slopes)]
+        edges = np.concatenate([[-np.inf], corners, [np.inf]])
         piece = int(np.searchsorted(edges[1:-1], at))
         plate = list(e.tyres).index(element) if kind == 0 and axis == 2 and element in e.tyres else -1
         found.append(Bend(name=name, row=row, plate=plate, low=edges[piece] - at, high=edges[piece + 1] - at))

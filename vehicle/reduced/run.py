@@ -74,6 +74,7 @@ def simulate_reduced(
     run = _Run(model, step_factors(model, step), dampers, signal.wheels)
     # No step at all: compiling is no part of the time of the run.
     run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
+    run.begin(plates[:1][0])
     started = clock.perf_counter()
     tyres = {f"tyre_{wheel}_force_z" for wheel in system.inputs}
     linear = [name for name in names if name in system.outputs or name in tyres]
@@ -82,7 +83,7 @@ def simulate_reduced(
         outputs += load_outputs(model, chosen)
         linear += chosen.names
     readout = Readout(outputs, run.factors, model.pairs, run.columns)
-    watch = ValidityWatch(model, run.factors, run.columns, tyre_load)
+    watch = ValidityWatch(model, run.factors, run.columns, tyre_load, interval)
     table = np.empty((len(linear), samples + AHEAD))
     table[:, 0] = readout.at(run.state()[None], plates[:1], run.before[:1, : run.count])[:, 0] if linear else 0.0
     channel = {name: row[:samples] for name, row in zip(linear, table, strict=True)}
@@ -166,6 +167,11 @@ class _Run:
     def state(self) -> Vector:
         """eta of the pairs, real and imaginary, and of the real poles; (2 p + q,)."""
         return np.concatenate([self.pair[0], self.pair[1], self.real])
+
+    def begin(self, plates: Vector) -> None:
+        """A car that has not yet moved, xi = 0, over plates that may stand anywhere: (z, z') of the driven ones, (m,)."""
+        eta, pairs = 0.0 - self.factors.ahead[:, self.columns] @ plates, self.pairs
+        self.pair, self.real = np.stack([eta[:pairs].real, eta[:pairs].imag]), eta[pairs:].real.copy()
 
     def advance(self, march: March, piece: Vector, every: int, sample: int, states: Vector) -> None:
         """Take the steps between the rows of `piece`; the first sample they end at is `sample`."""

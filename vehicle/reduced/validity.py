@@ -29,6 +29,9 @@ one is 5 % off, and comfort still below 0.1 %."""
 LOOK_EVERY = 16
 """Samples between two looks: 16 ms at 1 kHz, a tenth of the period of the fastest rigid-body mode."""
 
+LONGEST_LOOK = 0.016
+"""Longest time between two looks [s]: where samples are further apart than at 1 kHz, fewer are passed over."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Validity:
@@ -131,11 +134,18 @@ class ValidityWatch:
         factors: of the step.
         columns: driven columns, as for `Readout`.
         tyre_load: static tyre loads [N] by wheel.
+        interval: between two samples [s].
     """
 
     def __init__(
-        self, model: PoleModel, factors: StepFactors, columns: Sequence[int], tyre_load: Mapping[str, float]
+        self,
+        model: PoleModel,
+        factors: StepFactors,
+        columns: Sequence[int],
+        tyre_load: Mapping[str, float],
+        interval: float,
     ) -> None:
+        self.every = max(min(LOOK_EVERY, int(LONGEST_LOOK / interval + 1e-9)), 1)
         self.matrices, self.bodies = model.matrices, tuple(model.matrices.body_rows)
         self.rotations, self.tyres, self.stretches = (
             Readout(outputs, factors, model.pairs, columns)
@@ -147,7 +157,7 @@ class ValidityWatch:
 
     def look(self, states: Vector, plates: Vector, before: Vector) -> None:
         """Take a block of samples into account; arguments as of `Readout.at`."""
-        seen = slice(None, None, LOOK_EVERY)
+        seen = slice(None, None, self.every)
         turns = self.rotations.at(states[seen], plates[seen], before[seen]).reshape(len(self.bodies), 3, -1)
         self.angle = np.maximum(self.angle, np.sqrt(np.max(np.sum(turns**2, axis=1), axis=1)))
         loads = self.tyres.at(states[seen], plates[seen], before[seen]) + self.static[:, None]

@@ -26,14 +26,19 @@ BALANCED_RATE = 100.0
 samples at 1 kHz and of 1e-3 at this rate."""
 
 
-def require_memory(samples: float, channels: int) -> None:
-    """Refuse a run whose recording would not fit into this machine, before it begins.
+def require_samples(samples: float, channels: int) -> None:
+    """Refuse a run whose recording would be a single sample, or would not fit into this machine, before it begins.
 
     Memory: every sample of every channel, and as much again while it is evaluated, 16 bytes; half the machine at most.
 
     Raises:
         ConfigurationError: naming what is needed and what there is.
     """
+    if samples < 1.0 - 1e-6:
+        raise ConfigurationError(
+            f"solver.record_rate: the signal ends after {samples:.2g} of an interval between two recorded samples, "
+            "needed is 1; give a longer signal"
+        )
     needed, there = 16.0 * samples * channels, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > 0.5 * there:
         raise ConfigurationError(

@@ -20,7 +20,7 @@ from vehicle.parameters.vehicle import Vehicle
 from vehicle.reduced.lane_rows import LANES
 from vehicle.reduced.many import COARSE_STEP, ManyRuns, simulate_many
 from vehicle.reduced.march import has_compiler
-from vehicle.simulation.judgement import require_finite, require_memory
+from vehicle.simulation.judgement import require_finite, require_samples
 from vehicle.simulation.recording import Recording
 from vehicle.sweeps.case import Case, signal_of
 from vehicle.sweeps.measure import BatchMeasure, Measure
@@ -146,7 +146,7 @@ def _require(vehicle: Vehicle, signal: Signal, measure: BatchMeasure) -> None:
     """Refuse what `Car.run` refuses."""
     vehicle.require_channels(measure.channels, vehicle.channels)
     vehicle.require_wheels(signal.wheels)
-    require_memory(signal.duration * vehicle.solver.record_rate, len(measure.channels))
+    require_samples(signal.duration * vehicle.solver.record_rate, len(measure.channels))
 
 
 def kind(car: Car) -> Hashable:
