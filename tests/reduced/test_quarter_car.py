@@ -180,7 +180,9 @@ def test_a_plate_that_stands_away_from_zero_when_the_run_begins():
     height, damping = 5e-3, 400.0
     model = matrices(damping)
     system, n = model.system, 6
-    forced = np.linalg.solve(system.mass, np.hstack([-system.stiffness, -system.damping, system.input_stiffness[:, :1]]))
+    forced = np.linalg.solve(
+        system.mass, np.hstack([-system.stiffness, -system.damping, system.input_stiffness[:, :1]])
+    )
     state = np.zeros((2 * n + 1, 2 * n + 1))
     state[:n, n : 2 * n], state[n : 2 * n] = np.eye(n), forced
     time, step = uniform_time(samples=200, timestep=1e-3), scipy.linalg.expm(1e-3 * state)

@@ -39,7 +39,9 @@ def test_item_36_a_lost_state_stops_with_time_and_joint(car, monkeypatch, tmp_pa
 
 def test_a_signal_shorter_than_a_recorded_interval_is_refused(car):
     short = Signal(time=uniform_time(samples=32, timestep=1e-5), displacement={"fr": np.zeros(32)})
-    with pytest.raises(ConfigurationError, match=r"signal ends after 0\.31 of an interval between two recorded samples"):
+    with pytest.raises(
+        ConfigurationError, match=r"signal ends after 0\.31 of an interval between two recorded samples"
+    ):
         car.run(short)
 
 

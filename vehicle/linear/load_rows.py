@@ -21,7 +21,7 @@ import numpy.typing as npt
 from vehicle.linear.matrices import CarMatrices
 from vehicle.simulation.callbacks import installed
 from vehicle.simulation.car_model import CarModel
-from vehicle.simulation.loads import LoadPlaces
+from vehicle.simulation.loads import LoadPlaces, spring_coordinates
 from vehicle.simulation.rows import Rows
 
 Vector = npt.NDArray[np.float64]
@@ -112,7 +112,8 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
             found[f"{name}_force_{letter}"] = float(static[axis]), {key: term[axis] for key, term in terms.items()}
     for (name, row), stiffness in zip(places.springs, rows.layout.springs.stiffness, strict=True):
         found[f"{name}_force"] = float(preload[row]), {"displacement": -stiffness * jacobian[row]}
-    for (name, spring, damping, unstrained), (place, dof) in zip(places.joints, places.coordinates, strict=True):
+    coordinates = spring_coordinates(car, model)
+    for (name, spring, damping, unstrained), (place, dof) in zip(places.joints, coordinates, strict=True):
         unit = np.eye(model.nv)[dof]
         strain = float(model.qpos0[place]) - unstrained
         found[name] = -spring * strain, {"displacement": -spring * unit, "velocity": -damping * unit}

@@ -169,7 +169,7 @@ class _Run:
         return np.concatenate([self.pair[0], self.pair[1], self.real])
 
     def begin(self, plates: Vector) -> None:
-        """A car that has not yet moved, xi = 0, over plates that may stand anywhere: (z, z') of the driven ones, (m,)."""
+        """A car that has not yet moved, xi = 0, over plates that stand anywhere: (z, z') of the driven ones, (m,)."""
         eta, pairs = 0.0 - self.factors.ahead[:, self.columns] @ plates, self.pairs
         self.pair, self.real = np.stack([eta[:pairs].real, eta[:pairs].imag]), eta[pairs:].real.copy()
 

@@ -66,6 +66,9 @@ def require_finite(recording: Recording) -> None:
 def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
     """Sentences about the energy balance of a run.
 
+    What is missing counts against the work of the plates or what was dissipated, whichever is more: plates that end
+    lower than they began take back the work of lifting the car, and the sum may be next to nothing.
+
     Args:
         energies: the balance.
         rate: of the samples that it was summed from [Hz].
@@ -77,15 +80,15 @@ def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
         SimulationError: more than `RESIDUAL_FAILED` of the work is missing.
     """
     missing = abs(energies.work_in - energies.dissipated - energies.stored)
-    if missing <= ENERGY_ROUND_OFF or energies.residual <= RESIDUAL_WARNED:
+    work, lost = abs(energies.work_in), energies.dissipated
+    residual = missing / max(work, lost, ENERGY_ROUND_OFF)
+    if missing <= ENERGY_ROUND_OFF or residual <= RESIDUAL_WARNED:
         return ()
-    said = (
-        f"energy residual {energies.residual:.2g}: of {energies.work_in:.3g} J put in by the plates {missing:.3g} J "
-        "are unaccounted for"
-    )
+    whole = f"{lost:.3g} J dissipated" if lost > work else f"{energies.work_in:.3g} J put in by the plates"
+    said = f"energy residual {residual:.2g}: of {whole} {missing:.3g} J are unaccounted for"
     if rate < BALANCED_RATE:
         return (f"{said}; it is summed from samples at {rate:g} Hz, too few to judge the run by",)
-    if energies.residual > RESIDUAL_FAILED:
+    if residual > RESIDUAL_FAILED:
         raise SimulationError(
             f"{said}, allowed are {RESIDUAL_FAILED:g}: the integration does not hold the laws of this car. Reduce "
             "solver.timestep, or check the parameters that you changed"

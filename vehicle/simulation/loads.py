@@ -35,7 +35,6 @@ class LoadPlaces:
         oblique: first row of those whose rows follow directions of their own, and P of these.
         springs: name and row of each main spring.
         joints: channel, stiffness, damping [N/m or N m/rad, and s of these] and unstrained place of each joint spring.
-        coordinates: place and velocity coordinate of each of these joints; (j, 2).
         wheels: channel, id of the part, the wheel centre in the frame of the part, its height above the origin of the
             trimmed body in the design position [m].
         bodies: ids of the bodies whose frames `channels` needs: the trimmed body, carriers, parts of wheels; (b,).
@@ -54,18 +53,14 @@ class LoadPlaces:
         own_rows = rows.layout.bushings.rows
         self.oblique = {int(own_rows[index, 0]): way for index, way in rows.directions.items()}
         self.springs = [(spring.name, first[spring.name]) for spring in own.springs]
-        self.joints, coordinates = [], []
+        self.joints = []
         for spring in own.joint_springs:
-            joint = model.joint(spring.joint)
-            dof, place = int(joint.dofadr[0]), int(joint.qposadr[0])
             generated = car.model.joint(spring.joint)  # where a run may hold fewer modal coordinates
             ends = f"{spring.joint}_torque", f"{spring.joint}_spring_force"
             # As generated: the damping of a prepared model is weighted for its step.
             stiffness, damping = (own(car.model)[generated.dofadr[0]] for own in (joint_springs, joint_dampers))
             unstrained = float(car.model.qpos_spring[generated.qposadr[0]])
-            self.joints.append((ends[joint.type[0] == mujoco.mjtJoint.mjJNT_SLIDE], stiffness, damping, unstrained))
-            coordinates.append((place, dof))
-        self.coordinates: Indices = np.array(coordinates, dtype=np.int64).reshape(-1, 2)
+            self.joints.append((ends[generated.type[0] == mujoco.mjtJoint.mjJNT_SLIDE], stiffness, damping, unstrained))
         self.wheels = []
         for wheel in own.wheels:
             part = int(model.body(wheel.part).id)
@@ -105,6 +100,12 @@ class LoadPlaces:
             apart = np.einsum("nji,nj->ni", body[:, 3:].reshape(-1, 3, 3), centre - body[:, :3])
             found[name] = apart[:, 2] - height
         return {name: found[name] for name in self.names}
+
+
+def spring_coordinates(car: CarModel, model: mujoco.MjModel) -> Indices:
+    """Place and velocity coordinate of each joint with a spring in the model of a run; (j, 2)."""
+    joints = [model.joint(spring.joint) for spring in car.vehicle.composition.joint_springs]
+    return np.array([(joint.qposadr[0], joint.dofadr[0]) for joint in joints], dtype=np.int64).reshape(-1, 2)
 
 
 def equality_rows(model: mujoco.MjModel) -> dict[str, int]:

@@ -13,7 +13,7 @@ from vehicle.names import AXES, channel_units
 from vehicle.simulation.acceleration import AHEAD, acceleration
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.layout import numeric
-from vehicle.simulation.loads import LoadPlaces
+from vehicle.simulation.loads import LoadPlaces, spring_coordinates
 from vehicle.simulation.plate_arrays import PlateArrays
 from vehicle.simulation.recording import Energies, Recording, Statistics
 from vehicle.simulation.rows import Rows, joint_dampers
@@ -66,7 +66,7 @@ class Recorder:
         loads = [name for name in requested if name not in self.settings]
         self.loads = LoadPlaces(car, rows, loads) if loads else None
         bodies = np.zeros(0, dtype=np.int64) if self.loads is None else self.loads.bodies
-        joints = np.zeros((0, 2), dtype=np.int64) if self.loads is None else self.loads.coordinates
+        joints = spring_coordinates(car, model)
         self.sites = np.array([model.site(f"place/{place}").id for place in self.places], dtype=np.int64)
         self.buffers = Samples(
             places=np.zeros((CHUNK, 3 * len(self.sites))),
@@ -280,6 +280,7 @@ class Recorder:
         loss = loss + np.sum(damper_force * b.damper_velocity, axis=1)
         modal_damping = e.space.damping if e.space.damping.size else joint_dampers(self.model)[e.modes.velocities]
         loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
+        loss = loss + b.springs[:, 1::2] ** 2 @ joint_dampers(self.model)[self.sources.springs[:, 1]]
         self._add_work(power_in, loss, every)
         self.done += count
         self.filled = 0

@@ -24,8 +24,8 @@ class Plates(NamedTuple):
 class Sources(NamedTuple):
     """What is read after a step: views of mjData and of the state of the rows, and which sites and dampers.
 
-    `bodies` are those whose frames the loads need, `springs` places and velocity coordinates of joints with a spring;
-    both are empty in a run without loads.
+    `bodies` are those whose frames the loads need, none in a run without loads, `springs` places and velocity
+    coordinates of joints with a spring.
     """
 
     position: Vector
