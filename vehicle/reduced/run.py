@@ -74,7 +74,7 @@ def simulate_reduced(
     run = _Run(model, step_factors(model, step), dampers, signal.wheels)
     # No step at all: compiling is no part of the time of the run.
     run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
-    run.begin(plates[:1][0])
+    run.begin(plates[:1][0, ::2])
     started = clock.perf_counter()
     tyres = {f"tyre_{wheel}_force_z" for wheel in system.inputs}
     linear = [name for name in names if name in system.outputs or name in tyres]
@@ -168,9 +168,13 @@ class _Run:
         """eta of the pairs, real and imaginary, and of the real poles; (2 p + q,)."""
         return np.concatenate([self.pair[0], self.pair[1], self.real])
 
-    def begin(self, plates: Vector) -> None:
-        """A car that has not yet moved, xi = 0, over plates that stand anywhere: (z, z') of the driven ones, (m,)."""
-        eta, pairs = 0.0 - self.factors.ahead[:, self.columns] @ plates, self.pairs
+    def begin(self, heights: Vector) -> None:
+        """Start a car that has not moved yet, xi = 0, over plates that stand anywhere.
+
+        Args:
+            heights: z of the driven plates [m]; (w,). Their first velocity changes xi by c1 z', of second order in h.
+        """
+        eta, pairs = 0.0 - self.factors.ahead[:, self.columns[::2]] @ heights, self.pairs
         self.pair, self.real = np.stack([eta[:pairs].real, eta[:pairs].imag]), eta[pairs:].real.copy()
 
     def advance(self, march: March, piece: Vector, every: int, sample: int, states: Vector) -> None:
