@@ -40,6 +40,9 @@ MOST_POINTS = 250_000
 CELLS = 2000
 """Of a characteristic, across its width and its height: finer than a dot of a page."""
 
+DOTS_AT_ONCE = 2**18
+"""Dots of a long record that are looked at together."""
+
 LEGEND_COLUMNS = 2
 LEGEND_ROOM = 0.22
 """Share of the height of a panel kept free for each row of its legend."""
@@ -210,8 +213,15 @@ def distinct(x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) -> tuple[np
     Returns:
         One point of each occupied cell of the cloud's range, both (m,).
     """
-    column, row = (np.rint((place - place.min()) / (np.ptp(place) or 1.0) * CELLS).astype(np.int64) for place in (x, y))
-    _, kept = np.unique(column * (CELLS + 1) + row, return_index=True)
+    spans = [(float(place.min()), float(np.ptp(place)) or 1.0) for place in (x, y)]
+    cells = kept = np.zeros(0, dtype=np.int64)
+    for first in range(0, x.size, DOTS_AT_ONCE):
+        column, row = (
+            np.rint((place[first : first + DOTS_AT_ONCE] - low) / span * CELLS).astype(np.int64)
+            for place, (low, span) in zip((x, y), spans, strict=True)
+        )
+        cells, at = np.unique(np.concatenate([cells, column * (CELLS + 1) + row]), return_index=True)
+        kept = np.concatenate([kept, np.arange(first, first + column.size)])[at]
     return x[kept], y[kept]
 
 

@@ -29,7 +29,7 @@ samples at 1 kHz and of 1e-3 at this rate."""
 def require_samples(samples: float, channels: int) -> None:
     """Refuse a run whose recording would be a single sample, or would not fit into this machine, before it begins.
 
-    Memory: every sample of every channel, and as much again while it is evaluated, 16 bytes; half the machine at most.
+    Memory: every sample of every channel, 8 bytes; what is computed from them goes by blocks. Half the machine at most.
 
     Raises:
         ConfigurationError: naming what is needed and what there is.
@@ -39,7 +39,7 @@ def require_samples(samples: float, channels: int) -> None:
             f"solver.record_rate: the signal ends after {samples:.2g} of an interval between two recorded samples, "
             "needed is 1; give a longer signal"
         )
-    needed, there = 16.0 * samples * channels, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    needed, there = 8.0 * samples * channels, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > 0.5 * there:
         raise ConfigurationError(
             f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB, allowed is "
