@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from vehicle.reduced.lane_rows import PAST, TILE, Reading
-from vehicle.reduced.lane_step import part
+from vehicle.reduced.lane_step import part, section
 from vehicle.reduced.validity import LOOK_EVERY
 from vehicle.reduced.vector import alike, larger, load, smaller, spread, store
 from vehicle.simulation.acceleration import AHEAD
@@ -99,7 +99,7 @@ def keep(y: Any, row: int, values: Any) -> None:
     store(y, row + 2, values[2])
 
 
-@part
+@section
 def fill(
     tiles: Any,
     x: Any,
@@ -142,7 +142,7 @@ def turned(values: Any, most: Any) -> Any:
     return larger(values[0] * values[0] + values[1] * values[1] + values[2] * values[2], most)
 
 
-@part
+@section
 def watch(
     reading: Reading,
     x: Any,
@@ -183,7 +183,7 @@ def watch(
             store(peaks, low + 1, larger(value, load(peaks, low + 1)))
 
 
-@part
+@section
 def channels(
     reading: Reading,
     y: Any,

@@ -34,6 +34,11 @@ def part(function: Callable[..., Any]) -> Any:
     return numba.njit(no_cpython_wrapper=True, forceinline=True, _nrt=False, **EXACT)(function)
 
 
+def section(function: Callable[..., Any]) -> Any:
+    """A function that is called once for many samples: compiled once, by itself."""
+    return numba.njit(no_cpython_wrapper=True, _nrt=False, **EXACT)(function)
+
+
 TURNS = 2
 """Turns among the dampers: `vehicle.reduced.lane_factors.LOOSEST` says what they leave."""
 

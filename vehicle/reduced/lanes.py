@@ -11,7 +11,7 @@ from typing import Any
 from vehicle.compiler import numba_module, stamp
 from vehicle.reduced.lane_reading import channels, fill, watch
 from vehicle.reduced.lane_rows import ELEMENT, INNER, PAST, TILE, Reading, Rows
-from vehicle.reduced.lane_step import EXACT, advance, part
+from vehicle.reduced.lane_step import EXACT, advance, section
 from vehicle.reduced.validity import LOOK_EVERY
 from vehicle.reduced.vector import alike, load, loads, store
 from vehicle.simulation.acceleration import AHEAD
@@ -22,7 +22,7 @@ _TILE = (0.0,) * TILE
 """As long as a tile."""
 
 
-@part
+@section
 def march(
     t: Any,
     r: Rows,
@@ -73,21 +73,23 @@ def march(
     done, step = 0, 0
     while done < heights.shape[0]:
         size = min(INNER, heights.shape[0] - done)
-        for sample in range(size):
-            before, at = sample * states, (sample + 1) * states
+        # One loop over all steps, so that the compiler holds a step once.
+        for k in range(size * every):
+            sample, phase = k // every, k % every
+            at = (sample + 1) * states
+            advance(t, r, x, at - states if phase == 0 else at, at, rates, laws, step, inputs, dampers)
+            step += 1
             row = (PAST + sample) * width + speeds
-            for phase in range(every):
-                advance(t, r, x, before, at, rates, laws, step, inputs, dampers)
-                before = at
-                step += 1
-                if phase == 0:
-                    for i in range(count):
-                        force = row - width + count + i
-                        store(y, force, load(y, force) - half * load(t, r.inputs + i))
+            if phase == 0:
+                for i in range(count):
+                    force = row - width + count + i
+                    store(y, force, load(y, force) - half * load(t, r.inputs + i))
+            if phase < every - 1:
+                continue
             for i in range(2 * count):
                 store(x, at + poles + i, load(t, r.inputs + i))
-            for k in range(plates):
-                store(x, at + poles + 2 * count + k, alike(rates[step, k]))
+            for i in range(plates):
+                store(x, at + poles + 2 * count + i, alike(rates[step, i]))
             for i in range(count):
                 # The force of a step belongs to its middle: at a sample it is the mean of the steps on both sides.
                 speed = load(t, r.velocity + i)
