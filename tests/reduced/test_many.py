@@ -126,7 +126,9 @@ def test_cars_that_are_run_alone_among_others(car):
         )
         assert found.statistics[place].timestep == alone.statistics.timestep < COARSE_STEP
         for name in CHANNELS:
-            np.testing.assert_array_equal(found.channels[name][place], alone[name], err_msg=name)
+            # Round-off of products of matrices, which may differ by a last digit from one call to the next.
+            bound = 1e-9 * np.max(np.abs(alone[name]))
+            np.testing.assert_allclose(found.channels[name][place], alone[name], rtol=0.0, atol=bound, err_msg=name)
     others = run_many(models[::3], laws[::3], signal, [load] * 2)
     for own, place in enumerate((0, 3)):
         assert found.statistics[place].timestep == COARSE_STEP
