@@ -14,7 +14,6 @@ from tests.reduced.test_quarter_car import damper, matrices
 from vehicle.car import Car
 from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.parameters.semi_active import SemiActiveDamper
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.reduced.many import COARSE_STEP, simulate_many
 from vehicle.reduced.pole_model import pole_model
@@ -104,23 +103,14 @@ def test_a_car_moves_as_it_does_alone(company, together, name, monkeypatch):
 
 
 def test_cars_that_are_run_alone_among_others(car):
-    """One with controlled dampers, and one whose dampers move each other by a tenth, as tied by a lever."""
-    control = SemiActiveDamper(
-        law="skyhook",
-        minimum_damping=500.0,
-        maximum_damping=4000.0,
-        skyhook_damping=3000.0,
-        groundhook_damping=0.0,
-        skyhook_share=1.0,
-        control_period=1e-3,
-    )
+    """One whose dampers move each other by a tenth, as tied by a lever."""
     signal = Signal(time=ROAD.time[:301], displacement={"fr": ROAD.displacement["fr"][:301]})
     plain, load = dampers(car, "coulomb"), car.model.static.tyre_load
-    controlled = [dataclasses.replace(law, control=control) for law in plain]
-    tied = dataclasses.replace(car.poles, force=car.poles.force + 0.1 * car.poles.force[:, ::-1])
-    models, laws = [car.poles, car.poles, tied, car.poles], [plain, controlled, plain, dampers(car, "stribeck")]
-    found = run_many(models, laws, signal, [load] * 4)
-    for place in (1, 2):
+    force, slip = car.poles.force, car.poles.slip
+    tied = dataclasses.replace(car.poles, force=force + 0.1 * force[:, ::-1], slip=slip + 0.1 * slip[::-1])
+    models, laws = [car.poles, tied, car.poles], [plain, plain, dampers(car, "stribeck")]
+    found = run_many(models, laws, signal, [load] * 3)
+    for place in (1,):
         alone = simulate_reduced(
             models[place], signal, dampers=laws[place], record_rate=1000.0, tyre_load=load, channels=CHANNELS
         )
@@ -128,9 +118,10 @@ def test_cars_that_are_run_alone_among_others(car):
         for name in CHANNELS:
             # Round-off of products of matrices, which may differ by a last digit from one call to the next.
             bound = 1e-9 * np.max(np.abs(alone[name]))
+            assert np.isfinite(bound), (place, name)
             np.testing.assert_allclose(found.channels[name][place], alone[name], rtol=0.0, atol=bound, err_msg=name)
-    others = run_many(models[::3], laws[::3], signal, [load] * 2)
-    for own, place in enumerate((0, 3)):
+    others = run_many(models[::2], laws[::2], signal, [load] * 2)
+    for own, place in enumerate((0, 2)):
         assert found.statistics[place].timestep == COARSE_STEP
         for name in CHANNELS:
             np.testing.assert_array_equal(found.channels[name][place], others.channels[name][own], err_msg=name)
