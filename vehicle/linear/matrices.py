@@ -37,6 +37,7 @@ class Bend:
         row: its displacement over the velocity coordinates; (n,).
         plate: input that it is on, -1 where there is none.
         low, high: ends of the piece of the curve on which the car stands [m].
+        steeper: slope of the steepest piece less that of this one [N/m].
     """
 
     name: str
@@ -44,6 +45,7 @@ class Bend:
     plate: int
     low: float
     high: float
+    steeper: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -191,7 +193,9 @@ def _bends(rows: Rows, jacobian: Vector) -> tuple[Bend, ...]:
         edges = np.concatenate([[-np.inf], corners, [np.inf]])
         piece = int(np.searchsorted(edges[1:-1], at))
         plate = list(e.tyres).index(element) if kind == 0 and axis == 2 and element in e.tyres else -1
-        found.append(Bend(name=name, row=row, plate=plate, low=edges[piece] - at, high=edges[piece + 1] - at))
+        steeper = float(np.max(curve.slopes) - curve.slope(at))
+        low, high = edges[piece] - at, edges[piece + 1] - at
+        found.append(Bend(name=name, row=row, plate=plate, low=low, high=high, steeper=steeper))
     return tuple(found)
 
 
