@@ -16,7 +16,7 @@ from vehicle.reduced.lane_rows import ELEMENT, INNER, LANES, PAST, TILE, Reading
 from vehicle.reduced.lane_tables import LaneTable, Table, damper_lane
 from vehicle.reduced.plate_samples import plate_samples
 from vehicle.reduced.pole_model import PoleModel
-from vehicle.reduced.validity import Validity, bend_outputs, left_pieces, turning_bodies
+from vehicle.reduced.validity import Validity, bend_outputs, left_pieces, samples_of_a_look, turning_bodies
 from vehicle.simulation.acceleration import AHEAD, WEIGHTS
 
 Vector = npt.NDArray[np.float64]
@@ -101,6 +101,7 @@ class Group:
             levels=lanes.tiles([car.weights_of(one) for car, one in zip(self.factors, linear, strict=True)]),
             turns=lanes.tiles(turns),
             loads=len(tyres),
+            every=samples_of_a_look(self.interval),
             always=bool(bends) or any(name in tyres for name in channels),
             wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
             rest=rest,

@@ -12,7 +12,6 @@ from typing import Any
 
 from vehicle.reduced.lane_rows import PAST, TILE, Reading
 from vehicle.reduced.lane_step import part, section
-from vehicle.reduced.validity import LOOK_EVERY
 from vehicle.reduced.vector import alike, larger, load, smaller, spread, store
 from vehicle.simulation.acceleration import AHEAD
 
@@ -162,21 +161,21 @@ def watch(
     Args:
         reading: what is read.
         x, states, heights, done, zero, size, y, width: as of `fill`.
-        look: first sample that is looked at, one of LOOK_EVERY.
+        look: first sample that is looked at.
         first: first level in a sample of the outputs, which end with the next multiple of a tile.
         peaks: as of `vehicle.reduced.lanes.march`; changed in place.
     """
     weights = (states + heights.shape[1] // 2) * TILE
     bodies, levels = reading.turns.shape[0] // weights, reading.levels.shape[0] // weights * TILE
-    for sample in range(look, size, TOGETHER * LOOK_EVERY):
-        samples = together(sample, LOOK_EVERY, size)
+    for sample in range(look, size, TOGETHER * reading.every):
+        samples = together(sample, reading.every, size)
         for body in range(bodies):
             found = read(reading.turns, body * weights, x, states, samples, heights, done, False, zero)
             most = turned(found[1], turned(found[0], load(peaks, body)))
             store(peaks, body, turned(found[3], turned(found[2], most)))
-    for sample in range(0 if reading.always else look, size, 1 if reading.always else LOOK_EVERY):
-        # Tyre loads come first, and are looked at now and then.
-        looking = (sample - look) % LOOK_EVERY == 0
+    for sample in range(0 if reading.always else look, size, 1 if reading.always else reading.every):
+        # Tyre loads come first, and are looked at with the rotations.
+        looking = (sample - look) % reading.every == 0
         for k in range(0 if looking else reading.loads, levels):
             value, low = load(y, (PAST + sample) * width + first + k), bodies + 2 * k
             store(peaks, low, smaller(value, load(peaks, low)))

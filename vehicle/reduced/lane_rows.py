@@ -74,7 +74,8 @@ class Reading(NamedTuple):
         positions, levels: tiles of places, of which accelerations are made, and of forces and displacements.
         turns: a tile of rotations for each body.
         loads: number of the levels that are tyre loads, which come first.
-        always: whether levels are needed at every sample; else now and then.
+        every: samples from one look at rotations and tyre loads to the next.
+        always: whether levels are needed at every sample; else at those looks.
         wanted: row of a sample that each channel is made of, positions first; -1 of one that is not made here.
         rest: what is added to it; (channels, LANES).
         weights: of the differences of positions, for `acceleration`; (2 AHEAD,).
@@ -84,6 +85,7 @@ class Reading(NamedTuple):
     levels: Any
     turns: Any
     loads: int
+    every: int
     always: bool
     wanted: Any
     rest: Any

@@ -12,7 +12,6 @@ from vehicle.compiler import numba_module, stamp
 from vehicle.reduced.lane_reading import channels, fill, watch
 from vehicle.reduced.lane_rows import ELEMENT, INNER, PAST, TILE, Reading, Rows
 from vehicle.reduced.lane_step import EXACT, advance, section
-from vehicle.reduced.validity import LOOK_EVERY
 from vehicle.reduced.vector import alike, load, loads, store
 from vehicle.simulation.acceleration import AHEAD
 
@@ -95,9 +94,9 @@ def march(
                 speed = load(t, r.velocity + i)
                 store(y, row + i, speed)
                 store(y, row + count + i, load(t, r.viscous + i) * speed - half * load(t, r.inputs + i))
-        look = (1 - first - done) % LOOK_EVERY
+        look = (1 - first - done) % reading.every
         fill(reading.positions, x, states, heights, done, True, zero, 0, 1, size, y, width, 0)
-        begin, stride = (0, 1) if reading.always else (look, LOOK_EVERY)
+        begin, stride = (0, 1) if reading.always else (look, reading.every)
         fill(reading.levels, x, states, heights, done, False, zero, begin, stride, size, y, width, positions)
         watch(reading, x, states, heights, done, zero, look, size, y, width, positions, peaks)
         for k in range(states):

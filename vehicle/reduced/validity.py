@@ -33,6 +33,11 @@ LONGEST_LOOK = 0.016
 """Longest time between two looks [s]: where samples are further apart than at 1 kHz, fewer are passed over."""
 
 
+def samples_of_a_look(interval: float) -> int:
+    """From one sample that is looked at to the next, samples being `interval` [s] apart."""
+    return max(min(LOOK_EVERY, int(LONGEST_LOOK / interval + 1e-9)), 1)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Validity:
     """What a run has shown of the limits of the matrices.
@@ -145,7 +150,7 @@ class ValidityWatch:
         tyre_load: Mapping[str, float],
         interval: float,
     ) -> None:
-        self.every = max(min(LOOK_EVERY, int(LONGEST_LOOK / interval + 1e-9)), 1)
+        self.every = samples_of_a_look(interval)
         self.matrices, self.bodies = model.matrices, tuple(model.matrices.body_rows)
         self.rotations, self.tyres, self.stretches = (
             Readout(outputs, factors, model.pairs, columns)
