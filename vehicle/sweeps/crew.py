@@ -139,8 +139,11 @@ class Crew:
             even = len(waiting) / at_once  # so that all workers end together
             size = max(int(min(paced, even, LARGEST)), 1)
             if first.engine != "mujoco" and paced > 2.0:
-                fill = FILL * _of_one_car(waiting, todo)
-                size = min(fill * -(-size // fill), LARGEST, -(-PER_WORKER * len(waiting) // at_once))
+                inputs = _of_one_car(waiting, todo)
+                fill = FILL * inputs
+                # One car alone fills nothing; a task of very many inputs would keep its rows too late.
+                if inputs < len(waiting) and fill <= LARGEST:
+                    size = min(fill * -(-size // fill), LARGEST, -(-PER_WORKER * len(waiting) // at_once))
         task: list[str] = []
         while waiting and len(task) < size:
             case = todo[waiting[0]]
