@@ -88,8 +88,8 @@ def ride_table(stiff: float) -> dict[str, Any]:
         "izz": MOMENTS["izz"] + BODY * COG**2,
     }
     body = {"mass": BODY, "cog": [COG, 0.0, HEIGHT]}
-    body |= {"ixx_improved": about["ixx"], "iyy": about["iyy"], "izz": about["izz"], "ixy": 0.0, "iyz": 0.0}
-    body |= {"izx": BODY * COG * HEIGHT, "flexible": False, "attachment_flexibility": False}
+    body["inertia"] = {"about": "origin", **about, "izx": BODY * COG * HEIGHT}
+    body |= {"flexible": False, "attachment_flexibility": False}
     return {
         "name": "ride",
         "gravity": 0.0,
@@ -207,14 +207,15 @@ def test_left_and_right_exchanged():
     other["hardpoints"] = {key: flip(point) for key, point in other["hardpoints"].items()}
     other["engine"]["hardpoints"] = {key: flip(point) for key, point in other["engine"]["hardpoints"].items()}
     for key in ("ixy", "iyz"):
-        other["body"][key] = -other["body"][key]
+        other["body"]["inertia"][key] = -other["body"]["inertia"][key]
     same_answers(table, other, {"fr": "fl", "fl": "fr", "rr": "rl", "rl": "rr"})
 
 
 def rigid_road() -> dict[str, Any]:
     """The car on the road with a rigid body of its improved inertia, which needs no repair."""
     table = read_table(ROAD_CAR)
-    table["body"] |= {"flexible": False, "attachment_flexibility": False, "inertia_variant": "improved"}
+    table["body"] |= {"flexible": False, "attachment_flexibility": False}
+    table["body"]["inertia"]["ixx"] = 1200.0
     del table["body"]["superelement"]
     for name in ("rear_support_right", "rear_support_left"):
         del table["hardpoints"][name]  # nodes of the flexible body

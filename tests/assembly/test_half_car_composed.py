@@ -73,13 +73,13 @@ def composed() -> dict[str, Any]:
         **{f"{name}_spring": {"stiffness": one.stiffness, "damping": one.damping} for name, one in limbs.items()},
     }
     far = body.mass * (COG**2 + HEIGHT**2)
-    about = {"ixx_improved": 900.0, "iyy": body.pitch_inertia + far, "izz": 900.0 + body.mass * COG**2}
-    about |= {"ixy": 0.0, "iyz": 0.0, "izx": body.mass * COG * HEIGHT}
+    about = {"about": "origin", "ixx": 900.0, "iyy": body.pitch_inertia + far, "izz": 900.0 + body.mass * COG**2}
+    about["izx"] = body.mass * COG * HEIGHT
     return {
         "name": "half_car",
         "gravity": 0.0,
         "body": {"mass": body.mass, "cog": [COG, 0.0, HEIGHT], "flexible": False, "attachment_flexibility": False}
-        | about,
+        | {"inertia": about},
         "front": axle(COG - body.front_arm, CAR.front),
         "rear": axle(COG + body.rear_arm, CAR.rear),
         "seat": seat,

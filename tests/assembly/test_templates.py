@@ -102,8 +102,8 @@ def table() -> dict[str, Any]:
         "bushings": {"cushion": {"stiffness": [1e5, 1e5, 4e4], "damping": [500.0] * 3, "rotational_stiffness": 0.0}},
         "occupant_spring": {"stiffness": OCCUPANT * w**2, "damping": 2.0 * 0.475 * w * OCCUPANT},
     }
-    body = {"mass": 1100.0, "cog": [1.9, 0.0, 0.9], "ixx_improved": 1350.0, "iyy": 6900.0, "izz": 5900.0}
-    body |= {"ixy": 0.0, "izx": 1881.0, "iyz": 0.0, "flexible": False, "attachment_flexibility": False}
+    body = {"mass": 1100.0, "cog": [1.9, 0.0, 0.9], "flexible": False, "attachment_flexibility": False}
+    body["inertia"] = {"about": "origin", "ixx": 1350.0, "iyy": 6900.0, "izz": 5900.0, "izx": 1881.0}
     return {
         "name": "other",
         "gravity": 9.81,

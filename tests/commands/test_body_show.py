@@ -18,7 +18,7 @@ from vehicle.output.run_files import summarise
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.rendering.body_plot import plot_body
 
-STORED, IMPROVED = "body.superelement=trimmed_body.toml", "body.inertia_variant=improved"
+STORED, IMPROVED = "body.superelement=trimmed_body.toml", "body.inertia.ixx=1200"
 
 
 def rows_of(path):
@@ -50,9 +50,10 @@ def test_tables_and_files(car, tmp_path, capsys):
     assert (folder / "shapes.png").read_bytes()[:4] == b"\x89PNG"
 
 
-def test_json_is_the_model_in_numbers(car, capsys):
+def test_json_is_the_model_in_numbers(capsys):
     assert main(["show", "--json", "--set", STORED, "--set", IMPROVED, "--set", "body.mass=823"]) == 0
-    found, body = json.loads(capsys.readouterr().out), car.trimmed_body
+    # The stored file: a frame that is computed has the round-off of the library at hand.
+    found, body = json.loads(capsys.readouterr().out), Car.load(overrides=[STORED]).trimmed_body
     assert (found["mass_kg"], found["vehicle"]["mass_kg"]) == (pytest.approx(body.mass), 823.0)
     assert found["inertia_kgm2"] == pytest.approx(body.inertia) and len(found["notices"]) == 1
     assert [one["frequency_hz"] for one in found["modes"]] == body.frequencies.tolist()

@@ -13,6 +13,7 @@ from vehicle.excitation.random_road import random_road
 from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
 from vehicle.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.flexbody.node_masses import NodeProperties
 from vehicle.flexbody.symmetry import parity
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.vehicle import load_vehicle
@@ -87,21 +88,23 @@ def test_a_body_moved_as_a_whole_has_the_same_modes(tmp_path):
     def moved(i, j):  # parallel axes, term by term: integrals of x_i x_j about the origin
         return body.mass * (new[i] * new[j] - old[i] * old[j])
 
-    changed = dataclasses.replace(
-        body,
-        cog=tuple(new),
-        ixx_improved=body.ixx_improved + moved(1, 1) + moved(2, 2),
-        iyy=body.iyy + moved(0, 0) + moved(2, 2),
-        izz=body.izz + moved(0, 0) + moved(1, 1),
-        izx=body.izx + moved(0, 2),
+    own = body.inertia
+    inertia = dataclasses.replace(
+        own,
+        ixx=own.ixx + moved(1, 1) + moved(2, 2),
+        iyy=own.iyy + moved(0, 0) + moved(2, 2),
+        izz=own.izz + moved(0, 0) + moved(1, 1),
+        izx=own.izx + moved(0, 2),
     )
+    changed = dataclasses.replace(body, cog=tuple(new), inertia=inertia)
     points = {name: shifted(point) for name, point in vehicle.points.items()}
     nodes = {
         name: node if node.place is None else dataclasses.replace(node, place=shifted(node.place))
         for name, node in design.nodes.items()
     }
-    one = body_frame(design, vehicle.points, body).superelement()
-    other = body_frame(dataclasses.replace(design, nodes=nodes), points, changed).superelement()
+    here, there = (NodeProperties.of_body(each, design.least_ixx) for each in (body, changed))
+    one = body_frame(design, vehicle.points, here).superelement()
+    other = body_frame(dataclasses.replace(design, nodes=nodes), points, there).superelement()
     np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-7)  # round-off, as of another library
     np.testing.assert_allclose(np.asarray(other.node_mass), np.asarray(one.node_mass), rtol=1e-8)
     np.testing.assert_allclose(other.shapes, one.shapes, atol=1e-6)
@@ -120,13 +123,14 @@ def test_both_engines_run_a_moved_hardpoint_and_agree():
 
 def test_the_same_points_and_masses_give_the_same_bytes_and_one_body():
     design, vehicle = read_design(BODY_DESIGN), load_vehicle()
-    one, two = (body_frame(design, vehicle.points, vehicle.body).superelement() for _ in range(2))
+    properties = NodeProperties.of_body(vehicle.body, design.least_ixx)
+    one, two = (body_frame(design, vehicle.points, properties).superelement() for _ in range(2))
     for name in ("positions", "node_mass", "frequencies", "shapes"):
         assert getattr(one, name).tobytes() == getattr(two, name).tobytes()
     here = Car.load().trimmed_body
-    blind = ["damper.coulomb_friction=60", "body.ixy=80", "body.frequency_scale=1.1", "body.inertia_variant=improved"]
+    blind = ["damper.coulomb_friction=60", "body.inertia.ixy=80", "body.frequency_scale=1.1", "body.inertia.ixx=1200"]
     assert Car.load(None, blind).trimmed_body is here
-    for seen in ("body.mass=812", "body.ixx_improved=1201", "hardpoints.seat.z=0.86"):
+    for seen in ("body.mass=812", "body.inertia.ixx=1201", "hardpoints.seat.z=0.86"):
         assert Car.load(None, [seen]).trimmed_body is not here
 
 

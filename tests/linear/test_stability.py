@@ -24,7 +24,7 @@ ROAD = random_road(rms=1e-4, seed=1, duration=1.0)
 FALLING = [
     "bushings.arm_rear.stiffness=[1e4, 1e4, 1e4]",
     "bushings.suspension_mount.stiffness=[1e4, 1e4, 1e5]",
-    "body.inertia_variant=improved",
+    "body.inertia.ixx=1200",
     "gravity=20",
 ]
 """Within every range, and yet: soft arms and mounts under twice the weight, and the wheels run away."""

@@ -95,7 +95,7 @@ def test_every_setting_of_the_studies_is_accepted_at_the_default_step():
         "damper.viscous_law=degressive",
         *(f"body.frequency_scale={value}" for value in (0.8, 1.25)),
         "body.flexible=false",
-        "body.inertia_variant=improved",
+        "body.inertia.ixx=1200",
         "bushings.hydromount.stiffness.z=6e5",
     ]
     for setting in ends:

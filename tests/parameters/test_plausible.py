@@ -69,8 +69,8 @@ ABSURD = {
     ),
     "height of it in mm": ("body.cog.z=1011", "body.cog.z: found 1011 m, allowed are 0.4 to 1.85 m ("),
     "inertia without its thousands": (
-        "body.iyy=5.268",
-        "body.iyy: found 5.268 kg m2, allowed are 32.52 to 17621.6 kg m2 (about the origin; radius of gyration ",
+        "body.inertia.iyy=5.268",
+        "body.inertia.iyy: found 5.268 kg m2, allowed are 32.52 to 17621.6 kg m2 (about the origin; radius of ",
     ),
     "gravity of 500": ("gravity=500", "gravity: found 500.0 m/s2, must be at most 30.0 (9.81 on Earth; "),
     "stiffness of 1e12": (
@@ -123,21 +123,25 @@ IMPOSSIBLE = {
     "a car that tips forward": (
         # Rigid: no masses at the nodes of the design have this centre of gravity and inertia.
         [
-            *("body.cog.x=0.8", "body.inertia_variant=improved", "body.iyy=3000", "body.izx=700", "body.izz=2000"),
+            *("body.cog.x=0.8", "body.inertia.ixx=1200", "body.inertia.iyy=3000", "body.inertia.izx=700"),
+            *("body.inertia.izz=2000", "body.inertia.ixy=82.03"),
             "body.flexible=false",
         ],
         r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m, with which rear support right would carry -\d+ N and the car "
         r"would tip off it; it must lie between the points where the car stands on the ground",
     ),
     "inertia with a turned sign": (
-        ["body.izx=-1800"],
-        r"body\.ixx_published \(1000\), .*body\.izx \(-1800\), .*: with body\.mass \(813 kg\) at body\.cog .* the "
-        r"principal moments about the centre of gravity are -3097, 656\.7 and 4081 kg m2\. Of a real body "
+        ["body.inertia.izx=-1800"],
+        r"body\.inertia: ixx 1000, .*izx -1800, .* kg m2 about the origin: with body\.mass \(813 kg\) at body\.cog .* "
+        r"the principal moments about the centre of gravity are -3097, 656\.7 and 4081 kg m2\. Of a real body "
         r"none is negative, and the two smaller add up to the largest at least \(-2440 >= 4081\?\)\. The nearest "
         r"physical tensor differs by 3\.26e\+03 kg m2, allowed are 81\.6 \(2% of the largest\); check signs and digits",
     ),
-    "inertia of 1e30": (["body.izx=1e30"], r"body\.ixx_published \(1000\), .*differs by 1e\+30 kg m2"),
-    "mass against inertia": (["body.mass=3000"], r"body\.ixx_published \(1000\), .*with body\.mass \(3000 kg\).*"),
+    "inertia of 1e30": (["body.inertia.izx=1e30"], r"body\.inertia: ixx 1000, .*differs by 1e\+30 kg m2"),
+    "mass against inertia": (
+        ["body.mass=3000", *(f"body.inertia.{key}" for key in ("ixx=1000", "iyy=5268", "izz=4600", "izx=1800"))],
+        r"body\.inertia: ixx 1000, .*with body\.mass \(3000 kg\).*",
+    ),
 }
 
 
@@ -151,12 +155,10 @@ def test_impossible_cars_are_refused_when_they_are_built(case):
 
 ROAD_VEHICLES = {
     "a light body": [
-        *("body.mass=300", "body.inertia_variant=improved", "body.ixx_improved=443", "body.iyy=1944", "body.izz=1697"),
-        *("body.izx=664", "body.ixy=30", "body.iyz=-18", "main_spring.stiffness=12000"),
+        *("body.mass=300", "body.inertia.ixx=443", "main_spring.stiffness=12000"),
     ],
     "a heavy one": [
-        *("body.mass=1600", "body.inertia_variant=improved", "body.ixx_improved=2362", "body.iyy=10367"),
-        *("body.izz=9053", "body.izx=3542", "body.ixy=161", "body.iyz=-98", "main_spring.stiffness=60000"),
+        *("body.mass=1600", "main_spring.stiffness=60000"),
     ],
     "on the moon": ["gravity=1.62"],
     "weightless": ["gravity=0"],
@@ -183,14 +185,14 @@ def test_a_body_of_rubber_is_refused(car):
 
 
 def test_parameters_without_effect_are_said():
-    changes = ["damper.stribeck_velocity=0.05", "damper.viscous=2000", "body.ixx_improved=1100"]
+    changes = ["damper.stribeck_velocity=0.05", "damper.viscous=2000", "body.frequency_scale=1.1"]
     assert idle_parameters(load_vehicle(None, changes), changes) == (
         "damper.stribeck_velocity=0.05: without effect; it belongs to front.damper.friction_law = stribeck",
     )
-    # The frame of a flexible body has the improved Ixx in any case; attachments of a rigid body give way too.
-    changes = ["body.flexible=false", "body.ixx_improved=1100", "body.attachment_flexibility=false"]
+    # Attachments of a rigid body give way too.
+    changes = ["body.flexible=false", "body.frequency_scale=1.1", "body.attachment_flexibility=false"]
     assert idle_parameters(load_vehicle(None, changes), changes) == (
-        "body.ixx_improved=1100: without effect; it belongs to body.inertia_variant = improved",
+        "body.frequency_scale=1.1: without effect; it belongs to body.flexible = true",
     )
     changes = ["damper.friction_law=stribeck", "damper.coulomb_friction=65", "damper.stribeck_velocity=0.05"]
     assert idle_parameters(load_vehicle(None, changes), changes) == ()

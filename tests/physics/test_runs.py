@@ -100,7 +100,7 @@ def mirror_symmetric():
     return load_vehicle(
         None,
         [
-            *("body.flexible=false", "body.ixy=0", "body.iyz=0", "body.attachment_flexibility=false"),
+            *("body.flexible=false", "body.inertia.ixy=0", "body.inertia.iyz=0", "body.attachment_flexibility=false"),
             *("hardpoints.hydromount.y=0", "hardpoints.linear_mount=[0.7, 0.0, 1.02]", "hardpoints.seat_rail.y=0"),
         ],
     )

@@ -82,7 +82,7 @@ def test_left_and_right_carry_nearly_the_same(car):
 
 
 @pytest.mark.parametrize(
-    "settings", [[], ["body.flexible=false"], ["body.attachment_flexibility=false"], ["body.inertia_variant=improved"]]
+    "settings", [[], ["body.flexible=false"], ["body.attachment_flexibility=false"], ["body.inertia.ixx=1200"]]
 )
 def test_without_input_nothing_moves(settings):
     run = Car.load(None, settings).run(at_rest(1.0))

@@ -41,7 +41,7 @@ def test_settings(setting, piece, shaker, short_signal, tmp_path):
 
 @pytest.mark.parametrize("engine", ["reduced", "mujoco"])
 def test_an_inertia_that_no_number_holds(engine, shaker, short_signal):
-    outcome = shaker("--input", "short.csv", "--engine", engine, "--set", "body.izx=1e30")
+    outcome = shaker("--input", "short.csv", "--engine", engine, "--set", "body.inertia.izx=1e30")
     assert outcome.code in (2, 4) and outcome.err.count("\n") == 1 and FAULT not in outcome.err
 
 

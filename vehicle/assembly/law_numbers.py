@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.assembly.connections import element_law
+from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement
 from vehicle.laws import semi_active
 from vehicle.laws.damper import actuator_parameters, damper_curve, pack
@@ -94,6 +95,12 @@ def mode_numbers(body: TrimmedBody, superelement: Superelement) -> Numbers:
     return {f"joint/mode_{n}": np.array([w**2, 2.0 * ratio * w]) for n, (w, ratio) in enumerate(pairs, start=1)}
 
 
+def body_numbers(body: TrimmedBody, superelement: Superelement) -> Numbers:
+    """Mass and inertia of the trimmed body about its CoG, in the order of `mass_numbers`, and its modes."""
+    own = rigid_body(body)
+    return {"mass/body": np.array([own.mass, *own.full_inertia]), **mode_numbers(body, superelement)}
+
+
 def mass_numbers(part: PlacedPart) -> Numbers:
     """Mass, and Ixx, Iyy, Izz, Ixy, Ixz, Iyz of a part as MuJoCo takes them: with negative products."""
     numbers, products = part.numbers, np.array([part.side, 1.0, part.side]) * part.numbers.products
@@ -118,7 +125,7 @@ def element_numbers(
     elements: list[list[Any]] = []
     for one in (vehicle, like[0] if like else vehicle):
         car, own = one.composition, list[Any]([one.body])
-        makers = [lambda part: mode_numbers(part, body)]
+        makers = [lambda part: body_numbers(part, body)]
         for chosen, make in (
             (car.parts, mass_numbers),
             (car.joint_springs, joint_numbers),

@@ -49,14 +49,18 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
     Raises:
         DataError: the superelement lacks a node where something acts on the body.
     """
+    masses = fixed_masses(vehicle, trimmed_body)
+    return assemble_on(vehicle, with_attached_masses(trimmed_body, masses) if masses else trimmed_body)
+
+
+def fixed_masses(vehicle: Vehicle, trimmed_body: Superelement) -> dict[str, float]:
+    """Return the masses [kg] of the parts fixed to a flexible body, by node; arguments and errors as `assemble`."""
     nodes = attached_nodes(trimmed_body, vehicle.composition.attachments())
-    superelement, masses = trimmed_body, dict[str, float]()
+    masses = dict[str, float]()
     for part in vehicle.composition.parts if vehicle.body.flexible else ():
         if part.seat is not None:
             masses[nodes[part.seat]] = masses.get(nodes[part.seat], 0.0) + part.numbers.mass
-    if masses:
-        superelement = with_attached_masses(trimmed_body, masses)
-    return assemble_on(vehicle, superelement)
+    return masses
 
 
 def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -24,10 +24,11 @@ from vehicle.linear.step_error import accurate_step, require_accurate_step
 from vehicle.linear.varied import Terms, VariedCar
 from vehicle.names import ENGINES
 from vehicle.notebook.cards import car_card
-from vehicle.parameters.paths import override
+from vehicle.parameters.optional_keys import optional_paths
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.varied import Family
 from vehicle.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
+from vehicle.parameters.whole_body import varied_table
 from vehicle.reduced.march import has_compiler
 from vehicle.reduced.pole_model import PoleModel, pole_model
 from vehicle.reduced.run import simulate_reduced
@@ -53,8 +54,7 @@ class Car:
         self._checked: set[str] = set()
         self._stepped: Car | None = None
         self._base: Car | None = None
-        own = self.vehicle
-        self._family = Family(own, folder or Path(), lambda more: vehicle_of(override(own.table, more), folder))
+        self._family = Family(self.vehicle, folder or Path(), self._anew)
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
@@ -92,11 +92,17 @@ class Car:
             ConfigurationError: a name or a value is wrong.
         """
         more = list(overrides)
-        car = Car(self._family.vehicle_of(more), folder=self.folder)
+        car = Car(self._family.vehicle_of(more, self.overrides), folder=self.folder)
         car.overrides = (*self.overrides, *more)
         car.origin = {**self.origin, "overrides": list(car.overrides)}
         car._base = self
         return car
+
+    def _anew(self, overrides: Iterable[str]) -> Vehicle:
+        """This car with other values, composed anew from its table."""
+        own, folder = self.vehicle.table, self.folder
+        optional = partial(optional_paths, own, folder or Path())
+        return vehicle_of(varied_table(own, list(overrides), optional, self.overrides), folder)
 
     def __repr__(self) -> str:
         """One line."""

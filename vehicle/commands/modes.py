@@ -122,7 +122,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     found = car.modes(damper)
     return {
         "damper": damper,
-        "inertia_variant": car.vehicle.body.inertia_variant,
+        "inertia_about": car.vehicle.body.inertia.about,
         "modes": [
             {
                 "frequency_hz": mode.frequency,
@@ -145,7 +145,7 @@ def report(found: dict[str, Any]) -> str:
     """The table as text."""
     width = max((len(mode["description"]) for mode in found["modes"]), default=0)
     lines = [
-        f"assembled car, dampers {found['damper']}, inertia {found['inertia_variant']}",
+        f"assembled car, dampers {found['damper']}, inertia of the body about its {found['inertia_about']}",
         f"{'Hz':>8} {'damping':>8}  {'description':<{width}} energy",
     ]
     for mode in found["modes"]:

@@ -3,17 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError
+from vehicle.flexbody.beam import FloatArray
+from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.modes import fix_signs
 from vehicle.flexbody.superelement import Superelement
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Attached:
+    """A body with what is attached to it.
+
+    Attributes:
+        body: the body with its new modes.
+        elastic: old elastic modes in each new mode X, shape (modes, modes).
+        rigid: mass-normalised rigid motions of the body alone in each new mode Y, shape (6, modes): Phi X - R Y.
+    """
+
+    body: Superelement
+    elastic: FloatArray
+    rigid: FloatArray
+
+
 def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]) -> Superelement:
+    """Return the body with point masses; see `attached`, whose body it is."""
+    return attached(superelement, masses).body
+
+
+def attached(superelement: Superelement, masses: Mapping[str, float]) -> Attached:
     """The body with point masses fixed rigidly to its nodes, inside the space of its rigid-body and elastic modes.
 
     With T = [R | Phi], T' M T = 1 of the body alone, a mass m at node n adds m T_n' T_n. Rigid coordinates have no
@@ -26,8 +48,8 @@ def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]
         masses: node name -> mass to add [kg], not negative.
 
     Returns:
-        A superelement with the new mass properties, frequencies, damping ratios and mode shapes. A new mode keeps the
-        name of the old one that it is mostly made of.
+        The body with new mass properties, frequencies, damping ratios and mode shapes, and what its modes are made of.
+        A new mode keeps the name of the old one that it is mostly made of.
 
     Raises:
         DataError: no node of this name.
@@ -42,10 +64,32 @@ def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]
             )
     where = np.array([superelement.node_index(node) for node in masses], dtype=int)
     added = np.array(list(masses.values()), dtype=float)
+    places = superelement.positions
+    rigid, _ = superelement.rigid.rigid_motions(places)
+    both = np.concatenate([rigid[:, where], superelement.shapes[:, where]])  # (6 + modes, masses, 3)
+    own, node_mass = superelement.rigid.with_points(added, places[where]), superelement.node_mass
+    found = with_added_mass(superelement, np.einsum("ank,bnk,n->ab", both, both, added), own)
+    if node_mass is None:
+        return found
+    node_mass = node_mass.copy()
+    np.add.at(node_mass, where, added)
+    return replace(found, body=replace(found.body, node_mass=node_mass, mass_properties=None))
+
+
+def with_added_mass(superelement: Superelement, added: FloatArray, properties: MassProperties) -> Attached:
+    """Solve for the modes of a body whose mass matrix grows; equations as of `attached`.
+
+    Args:
+        superelement: the body.
+        added: what is added to T' M T = 1 [1], shape (6 + modes, 6 + modes).
+        properties: mass, CoG and inertia with what is added.
+
+    Returns:
+        The body with these mass properties, in place of masses of its nodes, and what its modes are made of.
+    """
     count, places = len(superelement.frequencies), superelement.positions
     rigid, turns = superelement.rigid.rigid_motions(places)
-    both = np.concatenate([rigid[:, where], superelement.shapes[:, where]])  # (6 + modes, masses, 3)
-    total = np.eye(6 + count) + np.einsum("ank,bnk,n->ab", both, both, added)
+    total = np.eye(6 + count) + added
     follow = np.linalg.solve(total[:6, :6], total[:6, 6:])  # (6, modes)
     omega = 2.0 * np.pi * superelement.frequencies
     squared, mix = scipy.linalg.eigh(np.diag(omega**2), total[6:, 6:] - total[6:, :6] @ follow)
@@ -57,14 +101,10 @@ def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]
     new_omega = np.sqrt(squared)
     damping = np.einsum("im,i,im->m", mix, 2.0 * superelement.damping_ratio * omega, mix)
     mostly = np.abs(mix).argmax(axis=0)
-    node_mass, own = superelement.node_mass, superelement.mass_properties
-    if node_mass is not None:
-        node_mass = node_mass.copy()
-        np.add.at(node_mass, where, added)
-    return replace(
+    body = replace(
         superelement,
-        node_mass=node_mass,
-        mass_properties=None if own is None else own.with_points(added, places[where]),
+        node_mass=None,
+        mass_properties=properties,
         frequencies=new_omega / (2.0 * np.pi),
         damping_ratio=damping / (2.0 * new_omega),
         shapes=signed,
@@ -72,3 +112,4 @@ def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]
         mode_names=tuple(superelement.mode_names[i] for i in mostly),
         derived=True,
     )
+    return Attached(body=body, elastic=mix * sign.T, rigid=(sign * rest).T)

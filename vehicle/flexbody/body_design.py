@@ -98,6 +98,9 @@ class BodyDesign:
     shear_modulus: float = quantity("N/m2", "shear modulus", above=0.0)
     node_rotations: bool = False
     """true: the model knows the rotations of its nodes, which elements with a rotational stiffness then act on"""
+    least_ixx: float = quantity(
+        "kg m2", "least Ixx about the CoG that the node masses are fitted to", at_least=0.0, default=0.0
+    )
     nodes: Mapping[str, DesignNode]
     members: Mapping[str, MemberGroup]
 

@@ -12,9 +12,10 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import FloatArray, frame_stiffness
 from vehicle.flexbody.body_design import BodyDesign
 from vehicle.flexbody.carried_nodes import with_carried_nodes
+from vehicle.flexbody.loads import BodyLoad, load_mass, loaded_properties
 from vehicle.flexbody.mode_names import mode_names
 from vehicle.flexbody.modes import condense_rotations, free_free_modes
-from vehicle.flexbody.node_masses import body_masses
+from vehicle.flexbody.node_masses import NodeProperties
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.hardpoints import COINCIDENT_M, Point
@@ -32,6 +33,8 @@ class BodyFrame:
     """what no factor scales [N/m, N, N m], shape (6 n, 6 n)"""
     group_stiffness: Mapping[str, FloatArray]
     """member group -> stiffness at factor 1, shape (6 n, 6 n)"""
+    loads: tuple[BodyLoad, ...] = ()
+    """loads on it"""
 
     @property
     def node_mass(self) -> FloatArray:
@@ -50,7 +53,9 @@ class BodyFrame:
             Frequencies [Hz], shape (count,); mass-normalised shapes [kg^-1/2], shape (count, n, 3).
         """
         condensed, _ = condense_rotations(self._stiffness(factors))
-        return free_free_modes(condensed, self.node_mass, self.skeleton.positions, count)
+        rest = self.skeleton
+        added = load_mass(rest.positions, self.loads, rest.hardpoint_tolerance) if self.loads else None
+        return free_free_modes(condensed, self.node_mass, rest.positions, count, added)
 
     def _stiffness(self, factors: Mapping[str, float]) -> FloatArray:
         """Stiffness of all members [N/m, N, N m], shape (6 n, 6 n)."""
@@ -70,8 +75,11 @@ class BodyFrame:
             _, recovery = condense_rotations(self._stiffness(factors))
             turns = (recovery @ shapes.reshape(count, -1).T).reshape(-1, 6, count)[:, 3:]
             rotations = {node: turn.T for node, turn in zip(rest.nodes, turns, strict=True)}
+        loaded = loaded_properties(rest.rigid, self.loads) if self.loads else None
         return replace(
             rest,
+            node_mass=None if self.loads else rest.node_mass,
+            mass_properties=loaded,
             frequencies=frequencies,
             damping_ratio=np.full(count, self.design.damping_ratio),
             shapes=shapes,
@@ -115,13 +123,13 @@ def skeleton(design: BodyDesign, points: Mapping[str, Point]) -> Superelement:
     )
 
 
-def body_frame(design: BodyDesign, points: Mapping[str, Point], body: TrimmedBody) -> BodyFrame:
+def body_frame(design: BodyDesign, points: Mapping[str, Point], properties: NodeProperties) -> BodyFrame:
     """The frame of a design on the hardpoints of a car, with its mass, centre of gravity and inertia.
 
     Args:
         design: of the body.
         points: interface and output points of the car.
-        body: mass properties of the car.
+        properties: mass properties of the car.
 
     Returns:
         The frame.
@@ -158,13 +166,17 @@ def body_frame(design: BodyDesign, points: Mapping[str, Point], body: TrimmedBod
             fixed += frame_stiffness(positions, [(a, b, stays) for a, b in ends])
     freedom = np.array([design.nodes[name].freedom for name, made in placed.items() for _ in made])
     assert rest.node_mass is not None
-    masses = body_masses(rest.node_mass, freedom, positions, body)
+    masses = properties.masses(rest.node_mass, freedom, positions)
     loaded = replace(rest, node_mass=masses)
     return BodyFrame(design=design, skeleton=loaded, fixed_stiffness=fixed, group_stiffness=groups)
 
 
 def design_superelement(
-    design: BodyDesign, points: Mapping[str, Point], attachments: Mapping[str, Point], body: TrimmedBody
+    design: BodyDesign,
+    points: Mapping[str, Point],
+    attachments: Mapping[str, Point],
+    body: TrimmedBody,
+    loads: tuple[BodyLoad, ...] = (),
 ) -> Superelement:
     """The modal superelement of a design on a car, computed once for the same points and masses.
 
@@ -173,28 +185,35 @@ def design_superelement(
         points: of the car.
         attachments: those at which something acts on the body, or is measured: it has a node at each.
         body: mass properties of the car.
+        loads: on the body.
+
+    Returns:
+        The body; with loads, that with its masses times `body.model_factor`.
 
     Raises:
         ConfigurationError: as of `body_frame`.
     """
-    # A sweep of what the frame does not know asks for the same body thousands of times: that is left out of the key.
-    known = replace(
-        body,
-        inertia_variant="improved",
-        ixx_published=body.ixx_improved,
-        ixy=0.0,
-        iyz=0.0,
-        attachment_flexibility=True,
-        frequency_scale=1.0,
-        modes_up_to=None,
-        modes={},
-    )
-    return _built(design, tuple(points.items()), tuple(attachments.items()), known)
+    properties = NodeProperties.of_body(body, design.least_ixx)
+    places = tuple(points.items()), tuple(attachments.items())
+    if not loads:
+        return _built(design, *places, properties)
+    return _built(design, *places, properties, loads, body.model_factor)
 
 
 Places = tuple[tuple[str, Point], ...]
 
 
 @lru_cache(maxsize=32)
-def _built(design: BodyDesign, points: Places, attachments: Places, body: TrimmedBody) -> Superelement:
-    return with_carried_nodes(body_frame(design, dict(points), body).superelement(), dict(attachments))
+def _built(
+    design: BodyDesign,
+    points: Places,
+    attachments: Places,
+    properties: NodeProperties,
+    loads: tuple[BodyLoad, ...] = (),
+    factor: float = 1.0,
+) -> Superelement:
+    frame = body_frame(design, dict(points), properties)
+    if loads:
+        heavier = replace(frame.skeleton, node_mass=factor * frame.node_mass)
+        frame = replace(frame, skeleton=heavier, loads=loads)
+    return with_carried_nodes(frame.superelement(), dict(attachments))

@@ -12,6 +12,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import BodyDesign, read_design
 from vehicle.flexbody.body_frame import design_superelement, skeleton
+from vehicle.flexbody.loads import body_loads, with_loads
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, attached_nodes
 from vehicle.flexbody.superelement_file import read_superelement
@@ -54,16 +55,28 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
     status = file.stat()
     source = _read_once(file, status.st_mtime_ns, status.st_size)
     if isinstance(source, Superelement):
-        return _with_changed_modes(_up_to(source, vehicle), vehicle) if body.flexible else source.without_modes()
+        return _as_in(vehicle, source) if body.flexible else source.without_modes()
     try:
         if not body.flexible:
             return skeleton(source, points)
         rigid_body(body)  # says better what is wrong with an inertia
-        built = design_superelement(source, points, vehicle.composition.attachments(), body)
-        return _with_changed_modes(_up_to(built, vehicle), vehicle)
+        attachments, loads = vehicle.composition.attachments(), body_loads(vehicle)
+        built = design_superelement(source, points, attachments, body, loads)
+        return _with_changed_modes(_up_to(built, vehicle), vehicle) if loads else _as_in(vehicle, built)
     except ConfigurationError as error:
         text = str(error)
         raise ConfigurationError(text if text.startswith("body.") else f"{file.name}: {text}") from None
+
+
+def _as_in(vehicle: Vehicle, model: Superelement) -> Superelement:
+    """Return a body with the mass, the loads and the modes that the vehicle gives it.
+
+    `modes_up_to` is a frequency before the mass is scaled, so that the mass does not change the number of modes; of a
+    body with loads it is one with the loads, which are in the space of all its modes.
+    """
+    factor, loads = vehicle.body.model_factor, body_loads(vehicle)
+    kept = _up_to(with_loads(model.scaled(factor), loads), vehicle) if loads else _up_to(model, vehicle).scaled(factor)
+    return _with_changed_modes(kept, vehicle)
 
 
 def _up_to(model: Superelement, vehicle: Vehicle) -> Superelement:

@@ -7,8 +7,12 @@ the relative difference of the masses, and of the distance of the centres over t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from vehicle.flexbody.loads import BodyLoad, loaded_properties
+from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.body import TrimmedBody
 
@@ -22,35 +26,37 @@ place along and across it to millimetres; the height, about 1 m, follows from a 
 (ISO 10392:2011, scope)."""
 
 
-def mass_difference(model: Superelement, body: TrimmedBody) -> list[str]:
+def mass_difference(model: Superelement, body: TrimmedBody, loads: Sequence[BodyLoad] = ()) -> list[str]:
     """A sentence where model and vehicle file differ by more than weighing and tilting can be wrong; else nothing.
 
     Args:
         model: body model without what is fixed to it.
         body: of the vehicle file.
+        loads: on the body, which are in the model.
     """
     if not (body.flexible and len(model.frequencies)):
         return []
-    relative = abs(model.mass / body.mass - 1.0)
-    apart = float(np.linalg.norm(model.cog - np.array(body.cog)))
+    given = MassProperties(mass=body.mass, cog=np.array(body.cog), inertia=np.eye(3))
+    given = loaded_properties(given, loads)
+    relative = abs(model.mass / given.mass - 1.0)
+    apart = float(np.linalg.norm(model.cog - given.cog))
     if relative <= MASS_DIFFERENCE and apart <= COG_DISTANCE:
         return []
     place = ", ".join(f"{value:z.3f}" for value in model.cog)
     return [
         f"body model {model.name}: {model.mass:.1f} kg with the CoG at [{place}] m; the vehicle file has "
-        f"{body.mass:.1f} kg and a CoG {1e3 * apart:.0f} mm away. More than {100 * MASS_DIFFERENCE:g} % or "
+        f"{given.mass:.1f} kg and a CoG {1e3 * apart:.0f} mm away. More than {100 * MASS_DIFFERENCE:g} % or "
         f"{1e3 * COG_DISTANCE:g} mm is not one body: rigid motions take the vehicle file, modes the model, and their "
         "inertia coupling is left out. `python -m vehicle body show` prints the table [body] of the model"
     ]
 
 
 def vehicle_lines(model: Superelement) -> list[str]:
-    """Mass properties of a body model as a vehicle file has them: about the origin, products as integrals."""
-    cog, mass = np.asarray(model.cog), model.mass
-    tensor = model.inertia + mass * (cog @ cog * np.eye(3) - np.outer(cog, cog))
-    moments = {"ixx_improved": (0, 0, 1.0), "iyy": (1, 1, 1.0), "izz": (2, 2, 1.0)}
-    moments |= {"ixy": (0, 1, -1.0), "izx": (2, 0, -1.0), "iyz": (1, 2, -1.0)}
-    numbers = {"mass": f"{mass:.6g}", "cog": f"[{', '.join(f'{value:.5g}' for value in cog)}]"}
-    numbers |= {"inertia_variant": '"improved"'}
-    numbers |= {name: f"{sign * tensor[i, j]:z.6g}" for name, (i, j, sign) in moments.items()}
-    return [f"{name} = {value}" for name, value in numbers.items()]
+    """Mass properties of a body model as a vehicle file has them: inertia about the CoG, products as integrals."""
+    places = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
+    moments = [f"{name} = {(1.0 if i == j else -1.0) * model.inertia[i, j]:z.6g}" for name, (i, j) in places.items()]
+    return [
+        f"mass = {model.mass:.6g}",
+        f"cog = [{', '.join(f'{value:.5g}' for value in model.cog)}]",
+        f"inertia = {{ {', '.join(moments)} }}",
+    ]

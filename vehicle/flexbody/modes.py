@@ -59,7 +59,7 @@ def rigid_shapes(positions: FloatArray, center: FloatArray) -> FloatArray:
 
 
 def free_free_modes(
-    stiffness: FloatArray, node_mass: FloatArray, positions: FloatArray, count: int
+    stiffness: FloatArray, node_mass: FloatArray, positions: FloatArray, count: int, added: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """Lowest elastic modes of the unsupported structure, mass-normalised and orthogonal to the rigid-body modes.
 
@@ -71,19 +71,26 @@ def free_free_modes(
         node_mass: lumped masses [kg], all positive, shape (n,).
         positions: node positions [m], shape (n, 3).
         count: number of elastic modes wanted.
+        added: mass matrix beside the lumped masses [kg], shape (3 n, 3 n).
 
     Returns:
         Frequencies [Hz], shape (count,); shapes [kg^-1/2], shape (count, n, 3), signs by `fix_signs`.
     """
     root = np.sqrt(np.repeat(node_mass, 3))
     center = node_mass @ positions / node_mass.sum()
-    rigid = rigid_shapes(positions, center).reshape(6, -1) * root  # mass-weighted
+    rigid = rigid_shapes(positions, center).reshape(6, -1)
+    if added is None:
+        rigid, dynamic = rigid * root, stiffness / np.outer(root, root)  # mass-weighted
+    else:
+        lower = np.linalg.cholesky(np.diag(root**2) + added)
+        half = scipy.linalg.solve_triangular(lower, stiffness, lower=True)
+        rigid, dynamic = rigid @ lower, scipy.linalg.solve_triangular(lower, half.T, lower=True)
     basis, _ = np.linalg.qr(rigid.T)  # (3 n, 6)
-    dynamic = stiffness / np.outer(root, root)
     away = np.eye(len(root)) - basis @ basis.T
     dynamic = away @ dynamic @ away + 10.0 * np.trace(dynamic) * (basis @ basis.T)
     values, vectors = scipy.linalg.eigh(dynamic, subset_by_index=(0, count - 1))
-    shapes = (vectors / root[:, None]).T.reshape(count, -1, 3)
+    plain = vectors / root[:, None] if added is None else scipy.linalg.solve_triangular(lower.T, vectors)
+    shapes = plain.T.reshape(count, -1, 3)
     return np.sqrt(values) / (2.0 * np.pi), fix_signs(shapes)
 
 

@@ -8,19 +8,25 @@ The masses are those of a body that is symmetric about y = 0, with its products 
 zero whatever the vehicle file says (published: 82 and -50 kg m2). The thesis measured the rigid-body properties
 separately from the modes and published no mode shape. Lumped at 43 nodes those products need one side of the car some
 tens of kilograms heavier at the bottom and lighter at the top, and the modes of such a body are lopsided as no car's
-are. And their Ixx is `ixx_improved` in both variants: no set of positive masses has the published 1000 kg m2, which
-breaks the triangle inequality; 1200 is what the thesis itself suggests. The rigid inertia of the complete car keeps
-the published products, and the Ixx of its variant.
+are. A body design may give the least Ixx about the centre of gravity that its nodes are fitted to (`least_ixx`): no set
+of positive masses has the published 1000 kg m2, which breaks the triangle inequality; 1200 is what the thesis itself
+suggests. The rigid inertia of the complete car keeps the products and the Ixx of the vehicle file.
+
+A body whose mass is varied alone (`body.model_mass`) has the node masses of the body before that, times a factor.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.beam import FloatArray
-from vehicle.flexbody.inertia import about_cog, inertia_tensor, second_moments
+from vehicle.flexbody.inertia import inertia_tensor, second_moments
+from vehicle.flexbody.rigid_body import cog_inertia
 from vehicle.parameters.body import TrimmedBody
+from vehicle.parameters.hardpoints import Point
 
 _MAX_STEPS = 50
 """Newton steps at most; they converge quadratically, so that more would not help."""
@@ -92,30 +98,50 @@ def matched_masses(
     )
 
 
-def body_masses(guess: FloatArray, freedom: FloatArray, positions: FloatArray, body: TrimmedBody) -> FloatArray:
-    """Node masses of the trimmed body of a vehicle: the guess matched to its mass properties, made symmetric.
+class NodeProperties(NamedTuple):
+    """Mass [kg], CoG [m] and moments about it [kg m2] that the node masses of a frame have together."""
 
-    Args:
-        guess: prior masses [kg], shape (n,).
-        freedom: weight of each node's relative change [1], shape (n,).
-        positions: node positions [m], shape (n, 3).
-        body: mass properties of the vehicle.
+    mass: float
+    cog: Point
+    ixx: float
+    iyy: float
+    izz: float
+    izx: float
 
-    Returns:
-        Masses [kg], shape (n,).
+    @classmethod
+    def of_body(cls, body: TrimmedBody, least_ixx: float) -> NodeProperties:
+        """Return the mass properties of a trimmed body before its mass was varied alone, made symmetric.
 
-    Raises:
-        ConfigurationError: as of `matched_masses`, with the parameters of the vehicle.
-    """
-    origin = inertia_tensor(ixx=body.ixx_improved, iyy=body.iyy, izz=body.izz, ixy=0.0, izx=body.izx, iyz=0.0)
-    cog = np.array(body.cog)
-    inertia = about_cog(origin, body.mass, cog)
-    inertia[1, [0, 2]] = inertia[[0, 2], 1] = 0.0
-    try:
-        return matched_masses(guess, freedom, positions, mass=body.mass, cog=cog, inertia_about_cog=inertia)
-    except ConfigurationError as error:
-        raise ConfigurationError(
-            f"body.mass ({body.mass:g}), body.cog {list(body.cog)}, body.ixx_improved ({body.ixx_improved:g}), "
-            f"body.iyy ({body.iyy:g}), body.izz ({body.izz:g}), body.izx ({body.izx:g}): {error} Or take a rigid body "
-            "(body.flexible = false) or another body.superelement"
-        ) from None
+        Args:
+            body: mass properties of the vehicle.
+            least_ixx: the least Ixx about the CoG [kg m2].
+        """
+        model = body.of_model
+        tensor = cog_inertia(model)
+        xx, yy, zz, zx = (float(tensor[place]) for place in ((0, 0), (1, 1), (2, 2), (2, 0)))
+        return cls(mass=model.mass, cog=model.cog, ixx=max(xx, least_ixx), iyy=yy, izz=zz, izx=-zx)
+
+    def masses(self, guess: FloatArray, freedom: FloatArray, positions: FloatArray) -> FloatArray:
+        """Return node masses: the guess matched to these properties.
+
+        Args:
+            guess: prior masses [kg], shape (n,).
+            freedom: weight of each node's relative change [1], shape (n,).
+            positions: node positions [m], shape (n, 3).
+
+        Returns:
+            Masses [kg], shape (n,).
+
+        Raises:
+            ConfigurationError: see `matched_masses`, with the parameters of the vehicle.
+        """
+        mass, cog, xx, yy, zz, zx = self
+        inertia = inertia_tensor(ixx=xx, iyy=yy, izz=zz, ixy=0.0, izx=zx, iyz=0.0)
+        try:
+            return matched_masses(guess, freedom, positions, mass=mass, cog=np.array(cog), inertia_about_cog=inertia)
+        except ConfigurationError as error:
+            raise ConfigurationError(
+                f"body.mass ({mass:g}), body.cog {list(cog)}, body.inertia about the CoG (Ixx {xx:g}, Iyy {yy:g}, Izz "
+                f"{zz:g}, Izx {zx:g}): {error} Or take a rigid body (body.flexible = false) or another "
+                "body.superelement"
+            ) from None

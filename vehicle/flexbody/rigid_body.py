@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.inertia import about_cog, inertia_tensor, nearest_physical
-from vehicle.parameters.body import TrimmedBody
+from vehicle.parameters.body import MOMENTS, TrimmedBody
 
 Vector = npt.NDArray[np.float64]
 
@@ -37,11 +37,18 @@ class RigidBody:
         return np.array([tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]])
 
 
+def cog_inertia(body: TrimmedBody) -> Vector:
+    """Inertia tensor of a trimmed body about its CoG as given [kg m2], products negative; shape (3, 3)."""
+    own = body.inertia
+    tensor = inertia_tensor(ixx=own.ixx, iyy=own.iyy, izz=own.izz, ixy=own.ixy, izx=own.izx, iyz=own.iyz)
+    return tensor if own.about == "cog" else about_cog(tensor, body.mass, body.cog)
+
+
 def rigid_body(body: TrimmedBody) -> RigidBody:
-    """Tensor about the CoG of the chosen variant, repaired to the nearest physical one where it is not.
+    """Mass properties of a trimmed body about its CoG, the tensor repaired to the nearest physical one where it is not.
 
     Args:
-        body: parameters; their tensor is about the origin of the vehicle frame.
+        body: parameters.
 
     Returns:
         Mass properties that MuJoCo accepts, and a sentence about the repair.
@@ -49,22 +56,21 @@ def rigid_body(body: TrimmedBody) -> RigidBody:
     Raises:
         ConfigurationError: the tensor is farther from a physical one than `LARGEST_REPAIR`.
     """
-    origin = inertia_tensor(ixx=body.ixx, iyy=body.iyy, izz=body.izz, ixy=body.ixy, izx=body.izx, iyz=body.iyz)
-    given = about_cog(origin, body.mass, body.cog)
+    given, own = cog_inertia(body), body.inertia
     low, middle, high = (float(moment) for moment in np.linalg.eigvalsh(given))
     # Where the smallest moment exceeds the sum of the others, all are negative and no tensor of a body is near.
     near = middle + high > low
     change = float(np.abs(nearest_physical(given).change).max()) if near else np.inf
     if not change <= LARGEST_REPAIR * high:
+        values = ", ".join(f"{name} {getattr(own, name):g}" for name in MOMENTS)
         raise ConfigurationError(
-            f"body.ixx_{body.inertia_variant} ({body.ixx:g}), body.iyy ({body.iyy:g}), body.izz ({body.izz:g}), "
-            f"body.ixy ({body.ixy:g}), body.izx ({body.izx:g}), body.iyz ({body.iyz:g} kg m2): with body.mass "
+            f"body.inertia: {values} kg m2 about the {'CoG' if own.about == 'cog' else 'origin'}: with body.mass "
             f"({body.mass:g} kg) at body.cog {list(body.cog)} the principal moments about the centre of gravity are "
             f"{low:.4g}, {middle:.4g} and {high:.4g} kg m2. Of a real body none is negative, and the two smaller add "
             f"up to the largest at least ({low + middle:.4g} >= {high:.4g}?). The nearest physical tensor differs by "
             f"{change:.3g} kg m2, allowed are {LARGEST_REPAIR * high:.3g} ({LARGEST_REPAIR:.0%} of the largest); "
-            "check signs and digits; the values are integrals about the origin of the vehicle frame, so they change "
-            "with mass and centre of gravity"
+            "check signs and digits, and body.inertia.about (cog or origin): about the origin the moments hold m r2 of "
+            "the centre of gravity"
         )
     physical = nearest_physical(given)
     return RigidBody(

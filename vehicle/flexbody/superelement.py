@@ -143,6 +143,30 @@ class Superelement:
             derived=True,
         )
 
+    def scaled(self, factor: float) -> Superelement:
+        """Return the body with all its masses times a factor and its stiffness as it is.
+
+        (K - w^2 f M) phi = 0 has the shapes of M, so that w goes with f^-1/2, and so do mass-normalised shapes.
+        Residual flexibility is static and stays; each damping ratio stays.
+
+        Args:
+            factor: f [1].
+        """
+        if factor == 1.0:
+            return self
+        root, own = factor**-0.5, self.mass_properties
+        return replace(
+            self,
+            node_mass=None if self.node_mass is None else factor * self.node_mass,
+            mass_properties=None
+            if own is None
+            else MassProperties(mass=factor * own.mass, cog=own.cog, inertia=factor * own.inertia),
+            frequencies=root * self.frequencies,
+            shapes=root * self.shapes,
+            rotations={node: root * turns for node, turns in self.rotations.items()},
+            derived=True,
+        )
+
     def up_to(self, frequency: float, kept: Collection[str]) -> Superelement:
         """The body with its modes up to a frequency; the others as residual flexibility of the nodes that are used.
 

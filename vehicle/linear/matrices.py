@@ -274,7 +274,7 @@ def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[s
 def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
     found = {}
     for body in range(1, model.nbody):
-        if model.body_mass[body] > 0.0 and not model.body(body).name.startswith("mode_"):
+        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
             rows = np.zeros((6, model.nv))
             mujoco.mj_jacBodyCom(model, data, rows[:3], rows[3:], body)
             found[model.body(body).name] = rows
@@ -284,7 +284,7 @@ def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
 def _body_masses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
     found = {}
     for body in range(1, model.nbody):
-        if model.body_mass[body] > 0.0 and not model.body(body).name.startswith("mode_"):
+        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
             matrix = np.zeros((6, 6))
             matrix[:3, :3] = model.body_mass[body] * np.eye(3)
             frame = data.ximat[body].reshape(3, 3)

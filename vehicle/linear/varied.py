@@ -7,7 +7,8 @@ Where the places stay, so do the rows J, the shapes of all outputs, and how forc
 
 p_i being the preloads, H_i = -dg_i/du of the generalised force g_i of the preload i = 1, and G_b = dJ_bz'/du of the
 centre of gravity of part b. K is that of the other car plus the difference of this sum: what the sum misses would show
-in the other car itself, and it is compared there.
+in the other car itself, and it is compared there. A trimmed body of another mass or CoG has other modal coordinates and
+another origin, on which all of this is carried over (`vehicle.linear.body_change`).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -24,12 +25,13 @@ import scipy
 
 from vehicle.assembly.law_numbers import TURNING, WIDTH, Numbers, element_numbers
 from vehicle.flexbody.superelement import Superelement
+from vehicle.linear.body_change import BodyChange, body_change, same_body
 from vehicle.linear.matrices import DIFFERENCE_STEP, CarMatrices, differences, law_matrices
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.simulation.standing import require_body_modes, require_standing
-from vehicle.simulation.static_trim import StaticTrim, at_rest, settle, static_loads, unsolved
+from vehicle.simulation.static_trim import AtRest, StaticTrim, at_rest, settle, static_loads, unsolved
 from vehicle.simulation.tables import curve_of
 
 Vector = npt.NDArray[np.float64]
@@ -67,7 +69,8 @@ class Terms:
         self.numbers = element_numbers(car.vehicle, car.superelement)
         self.rest = at_rest(self.rows)
         turning, self.by_preload = _turning_forces(standing)
-        self.sum = self._stiffness(standing, joint_springs(model), car.static.preload)
+        same = BodyChange(trimmed=trimmed_body, body=car.superelement)
+        self.sum = self._stiffness(standing, joint_springs(model), car.static.preload, self.rest, same)
         difference = self.sum + turning - matrices.system.stiffness
         scale = float(np.max(np.abs(matrices.system.stiffness)))
         self.complete = bool(np.max(np.abs(difference)) <= AGREEMENT * scale)
@@ -102,37 +105,55 @@ class Terms:
         """
         if not self.complete or not same_places(vehicle, self.car.vehicle):
             return None
-        every = element_numbers(vehicle, self.car.superelement, (self.car.vehicle, self.numbers))
+        change = body_change(vehicle, self.car, self.trimmed_body)
+        require_body_modes(vehicle, change.trimmed)
+        every = element_numbers(vehicle, change.body, (self.car.vehicle, self.numbers))
         if not all(map(_same_kinds, every, self.numbers)):
             return None
         numbers = {name: own for one in every for name, own in one.items()}
-        require_body_modes(vehicle, self.trimmed_body)
         rows = self.rows.with_laws(numbers)
         springs, dampers = joint_springs(rows.model), joint_dampers(rows.model).copy()
         for name, (stiffness, damping) in _fields(numbers, "joint/"):
             dof = rows.model.joint(name).dofadr[0]
             springs[dof], dampers[dof] = stiffness, damping
-        masses, mass, weight, turning = self._masses(every)
-        settled = settle(rows, replace(self.rest, weight=weight), springs)
+        moved, parts = change.columns, self._masses(every, change)
+        rest = AtRest(jacobian=moved(self.rest.jacobian), turned=moved(self.rest.turned), weight=parts.weight)
+        settled = settle(rows, rest, springs)
         if _on_a_corner(rows):
             return None
-        preload, count = settled.preload, len(self.rest.jacobian)
-        left = unsolved(rows.layout, weight) - springs * settled.displacement + self.rest.jacobian.T @ preload[:count]
-        left += np.einsum("nij,ni->j", self.rest.turned, preload[count:].reshape(-1, 3))
+        preload, count = settled.preload, len(rest.jacobian)
+        left = unsolved(rows.layout, rest.weight) - springs * settled.displacement + rest.jacobian.T @ preload[:count]
+        left += np.einsum("nij,ni->j", rest.turned, preload[count:].reshape(-1, 3))
         static = static_loads(rows, settled, left)
         require_standing(vehicle, rows, static)
-        laws = law_matrices(rows, self.rest.jacobian, dampers)
-        stiffness = self.matrices.system.stiffness + turning + self._stiffness(rows, springs, preload) - self.sum
-        system = replace(self.matrices.system, mass=mass, stiffness=stiffness, **laws.system)
-        return VariedCar(matrices=replace(self.matrices, system=system, body_masses=masses, **laws.car), static=static)
+        laws, known = law_matrices(rows, rest.jacobian, dampers), self.matrices.system
+        stiffness = parts.turning + self._stiffness(rows, springs, preload, rest, change)
+        system = replace(
+            known,
+            mass=parts.mass,
+            stiffness=stiffness,
+            constraints=rest.jacobian[rows.layout.joints.ravel()],
+            outputs=known.outputs if change.same else {name: moved(row) for name, row in known.outputs.items()},
+            **laws.system,
+        )
+        matrices = replace(
+            self.matrices,
+            system=system,
+            sensors=moved(self.matrices.sensors),
+            body_rows=parts.rows,
+            body_masses=parts.masses,
+            **laws.car,
+        )
+        return VariedCar(matrices=matrices, static=static)
 
-    def _stiffness(self, rows: Rows, springs: Vector, preload: Vector) -> Vector:
+    def _stiffness(self, rows: Rows, springs: Vector, preload: Vector, rest: AtRest, change: BodyChange) -> Vector:
         """K of laws and preloads; (n, n)."""
-        e, j = rows.layout, self.rest.jacobian
+        e, j = rows.layout, rest.jacobian
         diagonal = np.zeros(e.row_count)
         diagonal[e.bushings.rows], diagonal[e.springs.rows] = e.bushings.stiffness, e.springs.stiffness
-        found: Vector = j.T @ (diagonal[:, None] * j) + (self.by_preload @ preload).reshape(j.shape[1], -1)
-        turned = self.rest.turned.reshape(-1, j.shape[1])
+        found: Vector = j.T @ (diagonal[:, None] * j)
+        found += change.both((self.by_preload @ preload).reshape(j.shape[1], -1))
+        turned = rest.turned.reshape(-1, j.shape[1])
         found += turned.T @ (np.repeat(e.rotations.stiffness, 3)[:, None] * turned)
         found[np.diag_indices(len(found))] += springs
         for index in np.flatnonzero(e.tables.kinds == 2).tolist():
@@ -141,19 +162,38 @@ class Terms:
             found[dof, dof] += (ends[1] - ends[0]) / (2.0 * DIFFERENCE_STEP)
         return found
 
-    def _masses(self, every: list[Numbers]) -> tuple[dict[str, Vector], Vector, Vector, Vector]:
-        """Masses of the parts, M, weight on the coordinates, and what K has of the change of the weight."""
-        masses, mass = dict(self.matrices.body_masses), self.matrices.system.mass
-        weight, turning = self.rest.weight, np.zeros_like(mass)
+    def _masses(self, every: list[Numbers], change: BodyChange) -> _Masses:
+        """What the masses of the parts make of a car."""
+        masses, system = dict(self.matrices.body_masses), self.matrices.system
+        mass, weight, turning = system.mass, self.rest.weight, system.stiffness - self.sum
+        gravity, body_rows = float(self.car.model.opt.gravity[2]), self.matrices.body_rows
+        if change.shift.any():
+            # The trimmed body is taken out before its origin moves, and comes back at the new one.
+            own, rows = masses["body"], body_rows["body"]
+            mass, weight = mass - rows.T @ own @ rows, weight - gravity * own[0, 0] * rows[2]
+            mass, turning, weight = change.frames(mass), change.frames(turning), weight @ change.move
+            body_rows = {name: one if name == "body" else one @ change.move for name, one in body_rows.items()}
+            mass, weight = mass + rows.T @ own @ rows, weight + gravity * own[0, 0] * rows[2]
         for one, other in zip(every, self.numbers, strict=True):
             for name, own in _fields({} if one is other else one, "mass/"):
-                before, rows = masses[name], self.matrices.body_rows[name]
+                before, rows = masses[name], body_rows[name]
                 masses[name] = _mass_matrix(own)
                 more = masses[name] - before
                 mass = mass + rows.T @ more @ rows
-                weight = weight + float(self.car.model.opt.gravity[2]) * more[0, 0] * rows[2]
-                turning = turning + more[0, 0] * self.weight_terms[name]
-        return masses, mass, weight, turning
+                weight = weight + gravity * more[0, 0] * rows[2]
+                turning = turning + more[0, 0] * change.frames(self.weight_terms[name])
+        turning = turning + change.frames(gravity * masses["body"][0, 0] * change.hanging)
+        return _Masses(masses=masses, rows=body_rows, mass=mass, weight=weight, turning=turning)
+
+
+class _Masses(NamedTuple):
+    """Masses of the parts and their rows, M, weight on the coordinates, and what K has of the weight."""
+
+    masses: dict[str, Vector]
+    rows: dict[str, Vector]
+    mass: Vector
+    weight: Vector
+    turning: Vector
 
 
 def same_places(vehicle: Vehicle, other: Vehicle) -> bool:
@@ -165,12 +205,14 @@ def same_places(vehicle: Vehicle, other: Vehicle) -> bool:
         known.wheels,
     ):
         return False
-    if vehicle.body is not body and vehicle.body != replace(body, frequency_scale=vehicle.body.frequency_scale):
+    if not same_body(vehicle.body, body):
         return False
-    for one, like in zip(car.parts, known.parts, strict=False):
-        # What is fixed to a flexible body changes its modes.
-        if one.seat is not None and one.numbers != like.numbers:
-            return False
+    if vehicle.body.flexible:
+        # What is fixed to a flexible body changes its modes; a load is in the body model, which is scaled whole.
+        scaled = vehicle.body.model_factor != body.model_factor
+        for one, like in zip(car.parts, known.parts, strict=False):
+            if one.parent == "body" and (one.numbers != like.numbers or (scaled and one.seat is None)):
+                return False
     return (
         _alike(car.parts, known.parts, "numbers")
         and _alike(car.connections, known.connections, "law")

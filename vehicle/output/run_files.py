@@ -16,6 +16,7 @@ from vehicle.analysis.spectra import power_spectral_density
 from vehicle.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.errors import DataError, SimulationError
 from vehicle.excitation.signal import Signal
+from vehicle.flexbody.loads import body_loads
 from vehicle.flexbody.mass_difference import mass_difference
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.output.folder import write_json, write_text, write_whole
@@ -23,6 +24,7 @@ from vehicle.output.own_files import write_own_files
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.toml_file import write_text as vehicle_text
+from vehicle.parameters.whole_body import body_notices
 from vehicle.records.formats import FORMATS
 from vehicle.records.frf import write_frf
 from vehicle.records.measured import Measured
@@ -214,8 +216,9 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
     idle = idle_parameters(run.car.vehicle, run.car.overrides)
     notices = [
         *([body.report] if body.repaired else []),
-        *mass_difference(run.car.trimmed_body, run.car.vehicle.body),
+        *mass_difference(run.car.trimmed_body, run.car.vehicle.body, body_loads(run.car.vehicle)),
         *idle,
+        *body_notices(run.car.vehicle, run.car.overrides),
         *run.signal.notices,
         *([said] if said else []),
         *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
@@ -227,7 +230,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
         "vehicle": {
             "name": run.car.vehicle.name,
             **run.car.origin,
-            "inertia_variant": run.car.vehicle.body.inertia_variant,
+            "inertia_about": run.car.vehicle.body.inertia.about,
             "inertia": body.report,
             "superelement": run.car.model.superelement.provenance,
         },

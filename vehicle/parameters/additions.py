@@ -1,20 +1,25 @@
-"""What a vehicle file adds to its templates: points, connections between any two parts, and recorded places."""
+"""What a vehicle file adds to its templates: points, connections between any two parts, recorded places, and loads."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.axes import Axes, axes_along
-from vehicle.parameters.composition import PlacedConnection, PlacedOutput
+from vehicle.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
 from vehicle.parameters.elements import Bushing, Hydromount
 from vehicle.parameters.hardpoints import Point, require_apart, require_point
+from vehicle.parameters.loads import Load
 from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.toml_file import build, convert, nearest
 
 LAW = {"moving", "carrier", "at", "ground", "axes"}
 """Keys of a connection of the vehicle file that are not of its law."""
+
+LOAD = ("mass", "at", "on", "inertia", "products")
+"""Keys of a load."""
 
 
 def own_point(path: str, value: Any) -> Point:
@@ -121,3 +126,51 @@ def further_output(name: str, value: Any, names: set[str], points: Mapping[str, 
             raise ConfigurationError(f"{path}.{key}: unknown parameter; needed are on and at")
     at, point = _place(path, table, points)
     return PlacedOutput(name=name, on=_known(path, table, "on", names), at=at, point=point)
+
+
+def new_loads(overrides: Iterable[str]) -> list[str]:
+    """Return the paths of overrides that are keys of a load, which a file need not have."""
+    texts = [text.partition("=")[0].strip() for text in overrides]
+    return [text for text in texts if re.fullmatch(rf"load\.[A-Za-z0-9_-]+\.({'|'.join(LOAD)})", text)]
+
+
+def load_numbers(path: str, table: Mapping[str, Any]) -> Load:
+    """Return the mass properties of a load.
+
+    Args:
+        path: of its table, shown in messages.
+        table: the table.
+
+    Raises:
+        ConfigurationError: a wrong number.
+    """
+    return build(Load, {key: value for key, value in table.items() if key not in ("on", "at")}, path)
+
+
+def placed_load(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedPart:
+    """Return a load of the vehicle file as a part that is fixed to what carries it.
+
+    Args:
+        name: of its table.
+        value: the table.
+        names: of the parts that can carry a load.
+        points: of the car by name [m].
+
+    Raises:
+        ConfigurationError: a name that leads nowhere, or a wrong number.
+    """
+    path = f"load.{name}"
+    table = convert(dict, value, path)
+    at, _ = _place(path, table, points)
+    return PlacedPart(
+        name=f"load_{name}",
+        parent=_known(path, {"on": "body", **table}, "on", names),
+        cog=at,
+        numbers=load_numbers(path, table),
+        side=1.0,
+        shape="none",
+        points={},
+        joints=(),
+        seat=None,
+        path=path,
+    )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.hardpoints import Point
@@ -11,6 +12,15 @@ from vehicle.parameters.quantity import Validated, quantity, validate
 
 MOST_MODES = 999
 """Modes whose numbers may be given one by one: two of their digits more than any body model of a whole car has used."""
+
+MOMENTS = ("ixx", "iyy", "izz", "ixy", "izx", "iyz")
+"""Names of the moments and products of inertia."""
+
+DIGITS = 14
+"""Digits of a moment over a factor: numbers of a vehicle file come back to the bit, and their frame is in the cache."""
+
+EARLIER_KEYS = ("inertia_variant", "ixx_published", "ixx_improved", "iyy", "izz", "ixy", "izx", "iyz")
+"""Keys of [body] in vehicle files before [body.inertia]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,8 +46,26 @@ class BodyMode(Validated):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class BodyInertia(Validated):
+    """Moments and products of inertia of the trimmed body in axes parallel to the vehicle frame; products as integrals.
+
+    About the origin Izx > 0 because m x z is; a body that is symmetric about y = 0 has Ixy = Iyz = 0 about its CoG.
+    """
+
+    about: str = quantity(
+        "-", "point of reference: cog, or origin of the vehicle frame", choices=("cog", "origin"), default="cog"
+    )
+    ixx: float = quantity("kg m2", "integral of y2 + z2", above=0.0)
+    iyy: float = quantity("kg m2", "integral of x2 + z2", above=0.0)
+    izz: float = quantity("kg m2", "integral of x2 + y2", above=0.0)
+    ixy: float = quantity("kg m2", "integral of x y", default=0.0)
+    izx: float = quantity("kg m2", "integral of z x", default=0.0)
+    iyz: float = quantity("kg m2", "integral of y z", default=0.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class TrimmedBody:
-    """Mass properties about the origin of the vehicle frame; products as integrals (Izx > 0 because m x z is)."""
+    """Mass, centre of gravity and inertia of the trimmed body, and its elastic model."""
 
     mass: float = quantity(
         "kg",
@@ -48,14 +76,7 @@ class TrimmedBody:
         why="without engine and axles the body of a micro car has 200 kg, that of a loaded van 3000 kg",
     )
     cog: Point = quantity("m", "centre of gravity", length=3)
-    inertia_variant: str = quantity("-", "which Ixx is used", choices=("published", "improved"), default="improved")
-    ixx_published: float | None = quantity("kg m2", "integral of y2 + z2, as published", above=0.0, default=None)
-    ixx_improved: float = quantity("kg m2", "integral of y2 + z2, improved", above=0.0)
-    iyy: float = quantity("kg m2", "integral of x2 + z2", above=0.0)
-    izz: float = quantity("kg m2", "integral of x2 + y2", above=0.0)
-    ixy: float = quantity("kg m2", "integral of x y")
-    izx: float = quantity("kg m2", "integral of z x")
-    iyz: float = quantity("kg m2", "integral of y z")
+    inertia: BodyInertia
     superelement: str | None = quantity(
         "-", "body design or modal superelement: file beside the vehicle file, or of the package", default=None
     )
@@ -72,7 +93,13 @@ class TrimmedBody:
         why="a body 400 times as stiff is rigid: flexible = false",
         default=1.0,
     )
-    # The cache of built bodies, which asks for a hash, leaves the changes of modes out.
+    model_mass: float | None = quantity(
+        "kg",
+        "mass of the body that the elastic model is of; its masses are scaled by mass / model_mass. None: as it is",
+        above=0.0,
+        default=None,
+    )
+    # The hash leaves the changes of modes out, which are a mapping.
     modes: Mapping[str, BodyMode] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
@@ -82,8 +109,6 @@ class TrimmedBody:
                 raise ConfigurationError(
                     f"TrimmedBody.modes.{number}: needed is the number of a mode from 1, as body.modes.3"
                 )
-        if self.inertia_variant == "published" and self.ixx_published is None:
-            raise ConfigurationError("TrimmedBody.ixx_published: missing; inertia_variant = published needs it")
         if self.flexible and self.superelement is None:
             raise ConfigurationError(
                 "TrimmedBody.superelement: missing; a flexible body needs a body design or a modal superelement, as "
@@ -97,7 +122,37 @@ class TrimmedBody:
             )
 
     @property
-    def ixx(self) -> float:
-        """Ixx of the chosen variant [kg m2]."""
-        given = self.ixx_published if self.inertia_variant == "published" else None
-        return self.ixx_improved if given is None else given
+    def model_factor(self) -> float:
+        """Factor on all masses of the elastic model [1]: frequencies and mass-normalised shapes go with its root."""
+        return 1.0 if self.model_mass is None else self.mass / self.model_mass
+
+    @property
+    def of_model(self) -> TrimmedBody:
+        """The body that the elastic model is of, before its mass was varied alone; moments to `DIGITS` digits."""
+        if self.model_mass is None:
+            return self
+        moments = {name: float(f"{getattr(self.inertia, name) / self.model_factor:.{DIGITS}g}") for name in MOMENTS}
+        return replace(self, mass=self.model_mass, inertia=replace(self.inertia, **moments), model_mass=None)
+
+
+def require_inertia_table(body: Mapping[str, Any]) -> None:
+    """Refuse the moments of earlier vehicle files, which were keys of [body].
+
+    Args:
+        body: table [body] of a vehicle file.
+
+    Raises:
+        ConfigurationError: naming the keys and the table to write instead.
+    """
+    if not (old := [key for key in body if key in EARLIER_KEYS]):
+        return
+    variant = body.get("inertia_variant", "improved")
+    ixx = body.get("ixx_published" if variant == "published" else "ixx_improved")
+    moments = {"ixx": ixx, **{key: body.get(key) for key in MOMENTS[1:]}}
+    table = ", ".join(
+        ['about = "origin"', *(f"{key} = {value}" for key, value in moments.items() if value is not None)]
+    )
+    raise ConfigurationError(
+        f"body: found {', '.join(old)}; moments of inertia are a table of their own. Write inertia = {{ {table} }} in "
+        "[body], or the moments about the centre of gravity without `about`"
+    )

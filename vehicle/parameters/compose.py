@@ -10,7 +10,7 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.names import SIDE_SIGN
 from vehicle.parameters import topology
-from vehicle.parameters.additions import further_connection, further_output, law_kind, own_point
+from vehicle.parameters.additions import further_connection, further_output, law_kind, own_point, placed_load
 from vehicle.parameters.axes import axes_along
 from vehicle.parameters.composition import (
     Composition,
@@ -28,10 +28,14 @@ from vehicle.parameters.freedoms import freedoms
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
 from vehicle.parameters.instances import instances
+from vehicle.parameters.loads import Load
 from vehicle.parameters.parts import Part
 from vehicle.parameters.references import require_aliases, require_points, require_ports, require_sound, require_taken
 from vehicle.parameters.springs import placed_spring, spring_kind
 from vehicle.parameters.toml_file import convert
+
+KEPT_TABLES = ("hardpoints", "connection", "outputs", "alias", "load")
+"""Tables of a vehicle file that are no instance and hold tables or points by name."""
 
 Elements = list[tuple[Instance, Any, str | None]]
 
@@ -50,7 +54,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         ConfigurationError: a name that leads nowhere, numbers that are missing or wrong, a part that nothing holds, a
             loop of joints; the message names table and template.
     """
-    given = {key: convert(dict, table.get(key, {}), key) for key in ("hardpoints", "connection", "outputs", "alias")}
+    given = {key: convert(dict, table.get(key, {}), key) for key in KEPT_TABLES}
     own = {name: own_point(f"hardpoints.{name}", value) for name, value in given["hardpoints"].items()}
     car = instances(table, folders, own)
     points = dict(itertools.chain.from_iterable(map(_points, car.values())))
@@ -71,8 +75,10 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     between, on_joints = ([one for one in springs if isinstance(one[0], kind)] for kind in (PlacedSpring, JointSpring))
     dampers = _made(placed_damper, _elements(car, "damper"))
     added = [further_output(name, one, names, points) for name, one in given["outputs"].items()]
+    held = {"body", *(one.name for one, _ in parts if one.seat is None)}
+    loads = [placed_load(name, one, held, points) for name, one in given["load"].items()]
     composed = Composition(
-        parts=tuple(one for one, _ in parts),
+        parts=(*(one for one, _ in parts), *loads),
         connections=tuple(connections),
         springs=tuple(one for one, _ in between),
         joint_springs=tuple(one for one, _ in on_joints),
@@ -261,6 +267,7 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
 def kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
     """Class of each table of numbers, by its path in the vehicle file."""
     found: dict[str, type] = {f"connection.{name}": law_kind(one) for name, one in table.get("connection", {}).items()}
+    found |= {f"load.{name}": Load for name in table.get("load", {})}
     for i in car.values():
         found |= {f"{i.name}.parts.{name}": Part for name in i.template.parts}
         for one in i.template.connection:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from vehicle.parameters.axes import Axes
 from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
 from vehicle.parameters.hardpoints import Point
+from vehicle.parameters.loads import Load
 from vehicle.parameters.parts import Part
 
 
@@ -30,7 +31,7 @@ class PlacedPart:
         name: as "knuckle_fr".
         parent: name of the part that it is on; "world", or "body" for the trimmed body.
         cog: centre of gravity [m].
-        numbers: mass and inertia, as of the right side.
+        numbers: mass and inertia, as of the right side; of a load on a part, those of the load.
         side: +1, or -1 where it is mirrored: its products xy and yz turn.
         shape: role of its shape.
         points: what it hangs on, by name without the side [m].
@@ -42,7 +43,7 @@ class PlacedPart:
     name: str
     parent: str
     cog: Point
-    numbers: Part
+    numbers: Part | Load
     side: float
     shape: str
     points: Mapping[str, Point]
@@ -171,6 +172,11 @@ class Composition:
     kinds: Mapping[str, type] = field(default_factory=dict)
     meanings: Mapping[str, str] = field(default_factory=dict)
     sources: Mapping[str, tuple[Source, ...]] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def loads(self) -> tuple[PlacedPart, ...]:
+        """Parts that are loads of the vehicle file."""
+        return tuple(one for one in self.parts if isinstance(one.numbers, Load))
 
     def attachments(self) -> dict[str, Point]:
         """Points at which something acts on the trimmed body, or is measured on it, by name [m]."""

@@ -18,16 +18,8 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
         vehicle: the car.
         overrides: texts "path=value" that it was made with.
     """
-    body = vehicle.body
-    off: dict[str, tuple[bool, str]] = {
-        # The frame of a flexible body has this Ixx in both variants.
-        "body.ixx_improved": (
-            body.inertia_variant != "improved" and not body.flexible,
-            "body.inertia_variant = improved",
-        ),
-        "body.ixx_published": (body.inertia_variant != "published", "body.inertia_variant = published"),
-        "body.frequency_scale": (not body.flexible, "body.flexible = true"),
-    }
+    rigid = not vehicle.body.flexible
+    off = {f"body.{name}": (rigid, "body.flexible = true") for name in ("frequency_scale", "model_mass")}
     for damper in vehicle.composition.dampers:
         law, path = damper.law, damper.path
         off[f"{path}.stribeck_"] = (law.friction_law == "coulomb", f"{path}.friction_law = stribeck")

@@ -14,7 +14,7 @@ from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.template import read_template
 from vehicle.parameters.toml_file import convert, nearest
 
-KEPT = ("name", "gravity", "body", "solver", "hardpoints", "outputs", "connection", "alias")
+KEPT = ("name", "gravity", "body", "solver", "hardpoints", "outputs", "connection", "load", "alias")
 """Keys of a vehicle file that are no instance."""
 
 

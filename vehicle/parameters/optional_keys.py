@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.names import SIDE_SIGN
-from vehicle.parameters.body import MOST_MODES, BodyMode, TrimmedBody
+from vehicle.parameters.body import MOST_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.parameters.compose import kinds
 from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
 from vehicle.parameters.instances import instances
@@ -30,6 +30,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
         ["solver.timestep", *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes")],
         kinds(car, table),
     )
+    own += [f"body.inertia.{key}" for key in _keys(BodyInertia, everything=False)]
     # An ideal joint becomes a bushing by numbers.
     places = [f"{i.name}.bushings.{one.name}" for i in car.values() for one in i.template.connection]
     ideal = dict.fromkeys((path for path in places if path not in given), Bushing)

@@ -90,7 +90,7 @@ def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> Non
     """
     if "superelement" in table["body"]:
         return
-    users = (*table.get("outputs", {}).values(), *table.get("connection", {}).values())
+    users = [one for key in ("outputs", "connection", "load") for one in table.get(key, {}).values()]
     used = {one.get("at") for one in users if isinstance(one.get("at"), str)}
     tables = [side for i in car.values() for side in (i.numbers, *(i.numbers.get(word, {}) for word in SIDE_SIGN))]
     used |= {value for one in tables for value in one.get("hardpoints", {}).values() if isinstance(value, str)}

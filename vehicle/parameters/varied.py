@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, SIDE_SIGN
+from vehicle.parameters.additions import load_numbers
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
+from vehicle.parameters.loads import Load
 from vehicle.parameters.optional_keys import optional_paths
 from vehicle.parameters.paths import meant, parsed_value, value_at
 from vehicle.parameters.plausible import require_body, require_parts
 from vehicle.parameters.toml_file import build, type_hints
 from vehicle.parameters.vehicle import Solver, Vehicle
+from vehicle.parameters.whole_body import body_moves, followers
 
 WHOLE: dict[str, type] = {"body": TrimmedBody, "solver": Solver}
 """Tables that are one element each."""
@@ -36,22 +41,23 @@ class Family:
         self.vehicle, self.folder, self._whole = vehicle, folder, whole
         self._places: dict[str, list[tuple[str, str]] | None] = {}
 
-    def vehicle_of(self, overrides: Iterable[str]) -> Vehicle:
+    def vehicle_of(self, overrides: Sequence[str], before: Sequence[str] = ()) -> Vehicle:
         """The vehicle with other values.
 
         Args:
             overrides: texts "path=value".
+            before: those that this one was made with, which say what does not follow mass and CoG of the body.
 
         Raises:
             ConfigurationError: a name or a value is wrong.
         """
         # What is wrong is said where the whole is read.
         with contextlib.suppress(ConfigurationError):
-            if (found := self._vehicle_of(overrides)) is not None:
+            if (found := self._vehicle_of(overrides, before)) is not None:
                 return found
         return self._whole(overrides)
 
-    def _vehicle_of(self, overrides: Iterable[str]) -> Vehicle | None:
+    def _vehicle_of(self, overrides: Sequence[str], before: Sequence[str]) -> Vehicle | None:
         """The vehicle, None where more than single numbers of elements change."""
         table, moved = dict(self.vehicle.table), dict[str, None]()
         fresh: set[int] = {id(table)}
@@ -68,6 +74,12 @@ class Family:
                     return None
                 _put(table, path, value, fresh)
                 moved[owner] = None
+        if body_moves(self.vehicle.table, table):
+            optional = partial(optional_paths, table, self.folder)
+            known = [meant(table, text.partition("=")[0].strip(), optional) for text in before]
+            here = [path for text in overrides for path, _ in self._places[text.partition("=")[0].strip()] or ()]
+            for path, value in followers(self.vehicle.table["body"], table["body"], {*chain(*known), *here}).items():
+                _put(table, path, value, fresh)
         return self._recomposed(table, moved)
 
     def _numbers(self, given: str) -> list[tuple[str, str]] | None:
@@ -110,6 +122,15 @@ class Family:
                 own[index] = source.make(instances[name], source.entry, source.side)
                 left.discard(one.path)
                 changed[kind] = tuple(own)
+        for index, one in enumerate(car.parts):
+            if one.path in left and isinstance(one.numbers, Load):
+                loads = changed.setdefault("parts", list(car.parts))
+                changed["parts"] = (
+                    *loads[:index],
+                    replace(one, numbers=load_numbers(one.path, value_at(table, one.path))),
+                    *loads[index + 1 :],
+                )
+                left.discard(one.path)
         if left:
             return None
         vehicle = replace(self.vehicle, table=table, composition=replace(car, **changed), **found)

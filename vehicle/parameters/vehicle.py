@@ -9,19 +9,20 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, CORNERS, acceleration_channels, wheel_channels
+from vehicle.parameters.additions import new_loads
 from vehicle.parameters.base_car import vehicle_table
-from vehicle.parameters.body import TrimmedBody
+from vehicle.parameters.body import TrimmedBody, require_inertia_table
 from vehicle.parameters.compose import compose
 from vehicle.parameters.composition import Composition
 from vehicle.parameters.curves import with_curve_files
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.optional_keys import optional_paths
-from vehicle.parameters.paths import override
 from vehicle.parameters.plausible import require_plausible
 from vehicle.parameters.quantity import field_quantity, quantity, validate
 from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.parameters.toml_file import build, convert
+from vehicle.parameters.whole_body import varied_table
 
 FIRST_STEP = 1e-3
 """Step that is tried first where none is given [s]: it does for steel and rubber of a car up to 100 Hz."""
@@ -192,7 +193,7 @@ class Vehicle:
             if sideless in kinds:
                 return field_quantity(kinds[sideless], inner)
         words = path.removesuffix(".x").removesuffix(".y").removesuffix(".z").split(".")
-        if "hardpoints" in words[-2:-1] or (words[0] in ("outputs", "connection") and words[-1] == "at"):
+        if "hardpoints" in words[-2:-1] or (words[0] in ("outputs", "connection", "load") and words[-1] == "at"):
             meaning = self.composition.meanings.get(".".join(words), "point of the car")
             return {"unit": "m", "meaning": meaning, "length": len(AXES)}
         return field_quantity(Head, path)
@@ -216,7 +217,8 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
             raise ConfigurationError(f"{key}: missing; every vehicle file has it")
     table = with_curve_files(table, folder or Path())
     head = build(Head, {key: table[key] for key in ("name", "gravity")})
-    body = build(TrimmedBody, convert(dict, table["body"], "body"), "body")
+    require_inertia_table(convert(dict, table["body"], "body"))
+    body = build(TrimmedBody, table["body"], "body")
     solver = build(Solver, convert(dict, table["solver"], "solver"), "solver")
     folders = () if folder is None else (folder, folder / "templates")
     vehicle = Vehicle(
@@ -242,7 +244,8 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
         ConfigurationError: the file or an override is wrong.
     """
     table = vehicle_table(file)
-    return override(table, overrides, lambda: optional_paths(table, file.parent))
+    texts = list(overrides)
+    return varied_table(table, texts, lambda: [*optional_paths(table, file.parent), *new_loads(texts)])
 
 
 def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Vehicle:

@@ -7,12 +7,14 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import side_of
-from vehicle.parameters.shipped import VEHICLES
+from vehicle.parameters.base_car import vehicle_table
+from vehicle.parameters.shipped import CARS, vehicle_file
 from vehicle.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.report.finished_run import FinishedRun
 
-DEFAULT = "focus"
-"""The car that others are compared with which have no shipped namesake."""
+LARGEST_SHARE = 0.5
+"""Largest share of other or further parameters in a car that was made from a shipped one: a car with more of them is a
+car of its own. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
 
 
 def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, object]]:
@@ -24,10 +26,24 @@ def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, o
             yield path + key, value
 
 
-def default_of(vehicle: Vehicle) -> Vehicle:
-    """The shipped car of the same name, else the default one."""
-    name = vehicle.name if (VEHICLES / vehicle.name / "vehicle.toml").is_file() else DEFAULT
-    return load_vehicle(VEHICLES / name / "vehicle.toml")
+def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
+    """Return the shipped car that a car was made from: its namesake, else the one with the fewest other parameters.
+
+    Args:
+        vehicle: the car.
+
+    Returns:
+        The shipped car; None where every shipped car differs in more than `LARGEST_SHARE` of the parameters.
+    """
+    if vehicle.name in CARS:
+        return load_vehicle(vehicle_file(vehicle.name))
+    own, found = dict(flattened(vehicle.table)), dict[str, float]()
+    for name in CARS:
+        other = dict(flattened(vehicle_table(vehicle_file(name))))
+        paths = {*own, *other}
+        found[name] = sum(own.get(path) != other.get(path) for path in paths) / len(paths)
+    nearest = min(found, key=lambda name: found[name])
+    return load_vehicle(vehicle_file(nearest)) if found[nearest] <= LARGEST_SHARE else None
 
 
 def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list[str]]]:

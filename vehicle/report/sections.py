@@ -14,7 +14,7 @@ from vehicle.names import side_of
 from vehicle.parameters.shipped import VEHICLES
 from vehicle.rendering.plots import plot_time
 from vehicle.report.comfort_class import reactions
-from vehicle.report.comparison import changed_parameters, default_of
+from vehicle.report.comparison import changed_parameters, shipped_origin
 from vehicle.report.drawings import drawing
 from vehicle.report.findings import findings
 from vehicle.report.finished_run import FinishedRun
@@ -91,7 +91,10 @@ def what_was_run(run: FinishedRun) -> Markup:
     ]
     about = (("Car", car), ("Signal", signal), ("Engine", engine))
     parts = [tag("div", *(table((title, ""), rows, words=2) for title, rows in about), class_="columns")]
-    default = default_of(vehicle)
+    default = shipped_origin(vehicle)
+    if default is None:
+        parts.append(tag("p", "The car is made from no shipped car."))
+        return joined(parts)
     rows = [(path, unit, *values) for path, unit, values in changed_parameters([default, vehicle])]
     if rows:
         heads = ("parameter", "unit", f"shipped car {default.name}", "this run")

@@ -35,8 +35,9 @@ def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
     """The design with section factors that were fitted on this car."""
     from vehicle.flexbody.body_frame import body_frame
     from vehicle.flexbody.fit import STAGES, fit_factors
+    from vehicle.flexbody.node_masses import NodeProperties
 
-    frame = body_frame(design, vehicle.points, vehicle.body)
+    frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
     factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
     for group in design.fitted_groups:
         print(f"members.{group}.factor = {factors[group]:.5g}")

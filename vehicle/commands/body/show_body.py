@@ -56,13 +56,14 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
     """What a model is: mass properties against the vehicle, modes, participation of attachments, residuals."""
+    from vehicle.flexbody.loads import body_loads
     from vehicle.flexbody.mass_difference import mass_difference, vehicle_lines
 
     lines = [f"{model.name}: {len(model.nodes)} nodes, {len(model.frequencies)} modes", f"  {model.provenance}"]
     lines += mass_lines(model, vehicle)
     if not model.frequencies.size:
         return [*lines, "rigid"]
-    if notices := mass_difference(model, vehicle.body):
+    if notices := mass_difference(model, vehicle.body, body_loads(vehicle)):
         lines += [*notices, "[body] of this model:", *(f"  {line}" for line in vehicle_lines(model))]
     lines += mode_lines(model)
     try:

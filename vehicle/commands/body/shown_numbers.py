@@ -25,6 +25,7 @@ def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], ba
     """
     import numpy as np
 
+    from vehicle.flexbody.loads import body_loads
     from vehicle.flexbody.mass_difference import mass_difference
     from vehicle.flexbody.rigid_body import rigid_body
 
@@ -39,7 +40,7 @@ def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], ba
         "nodes": len(model.nodes),
         **mass_of(model),
         "vehicle": mass_of(rigid_body(vehicle.body)),
-        "notices": list(mass_difference(model, vehicle.body)),
+        "notices": list(mass_difference(model, vehicle.body, body_loads(vehicle))),
         "modes": [
             {"frequency_hz": float(frequency), "damping_ratio": float(ratio), "name": name}
             for frequency, ratio, name in modes
