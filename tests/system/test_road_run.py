@@ -83,15 +83,16 @@ def test_a_sweep_drives_over_a_road(tmp_path, monkeypatch):
     ("arguments", "message"),
     [
         ([], "needed is either --input FILE, or a road: --road C --speed 80"),
-        (["--road"], "needed is either --input FILE, or a road"),
+        ([], "needed is either --input FILE, or a road"),
+        (["--road"], "--road: names no road; give a class of ISO 8608, A to H, or FILE.csv; levels beyond"),
         (["--road", "C"], "a road needs --speed KM/H"),
         (["--road", "Z", "--speed", "80"], "road class 'Z': allowed are A, B"),
         (["--road", "none.csv", "--speed", "80"], "--road none.csv: no class of ISO 8608 (A to H), and no file"),
         (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C beside --input: give one of them"),
-        (["--road", "C", "--speed", "80", "--wheel", "front_left"], "--wheel: belongs to --input; --road C drives all"),
+        (["--road", "C", "--speed", "80", "--wheel", "front_left"], "--wheel: belongs to --input; a road drives all"),
         (["--road", "C", "--speed", "80", "--remove-mean"], "--remove-mean: belongs to --input"),
         (["--input", "low.csv", "--speed", "80"], "--speed: belongs to a road, as --road C --speed 80"),
-        (["--input", "low.csv", "--road", "--seed", "2"], "--seed: belongs to a road"),
+        (["--input", "low.csv", "--any-level", "--seed", "2"], "--seed: belongs to a class of ISO 8608"),
     ],
 )
 def test_refusals(shaker, tmp_path, arguments, message):

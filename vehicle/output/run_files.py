@@ -58,7 +58,7 @@ def require_plates(signal: Signal) -> None:
     try:
         common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], FRF_BAND)
     except DependentInputsError as error:
-        raise DataError(f"{error}; or give --road for a run without FRFs") from None
+        raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
 
 
 def write_run(
