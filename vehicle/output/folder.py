@@ -7,7 +7,7 @@ import json
 import os
 import shutil
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -169,8 +169,10 @@ def check_file(
             raise ConfigurationError(f"{option} {path}: exists; give --force to replace it, or another name")
         refuse_foreign_file(path, option)
     above = next(folder for folder in path.absolute().parents if folder.exists())
-    if not above.is_dir() or not os.access(above, os.W_OK):
-        raise OutputError(f"{option} {path}: {above} is no folder that can be written; choose another one")
+    if not above.is_dir():
+        raise ConfigurationError(f"{option} {path}: {above.name} is a file, no folder; give another name")
+    if not os.access(above, os.W_OK):
+        raise OutputError(f"{option} {path}: {above} cannot be written; choose another folder")
 
 
 def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
@@ -233,9 +235,9 @@ def folder_lock(folder: Path) -> Iterator[None]:
         yield
         return
     path = folder.parent / f".{folder.name}.lock"
+    made = [parent for parent in path.parents if not parent.exists()]
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+        descriptor = _opened(path)
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written: {error.strerror}; choose another --output") from None
     try:
@@ -259,6 +261,18 @@ def folder_lock(folder: Path) -> Iterator[None]:
             path.unlink(missing_ok=True)
     finally:
         os.close(descriptor)
+        with suppress(OSError):  # a folder that is in use by now
+            for parent in made:
+                parent.rmdir()
+
+
+def _opened(path: Path) -> int:
+    """Open a lock file, whose folder another process may remove in between."""
+    for _ in range(5):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(FileNotFoundError):
+            return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+    return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:

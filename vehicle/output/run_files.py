@@ -19,10 +19,9 @@ from vehicle.excitation.signal import Signal
 from vehicle.flexbody.mass_difference import mass_difference
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.output.folder import write_json, write_text, write_whole
-from vehicle.output.own_files import write_own_files
+from vehicle.output.own_files import parameters_text, write_own_files
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.parameters.idle import idle_parameters
-from vehicle.parameters.toml_file import write_text as vehicle_text
 from vehicle.records.formats import FORMATS
 from vehicle.records.frf import write_frf
 from vehicle.records.measured import Measured
@@ -105,7 +104,7 @@ def write_run(
         write_whole(folder / "psd.csv", lambda path: _write_psd(path, run))
     files["time_plot"] = "time.png"
     header = f"parameters of this run, as used\nframe: {FRAME}"
-    write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
+    write_text(folder / "vehicle.toml", parameters_text(run.car, header))
     files |= write_own_files(folder, run.car)
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME

@@ -57,7 +57,10 @@ class TrimmedBody:
     izx: float = quantity("kg m2", "integral of z x")
     iyz: float = quantity("kg m2", "integral of y z")
     superelement: str | None = quantity(
-        "-", "body design or modal superelement: file beside the vehicle file, or of the package", default=None
+        "-",
+        "body design or modal superelement: file beside the vehicle file, or of the package; with --set any path",
+        is_file=True,
+        default=None,
     )
     flexible: bool = True
     attachment_flexibility: bool = True
