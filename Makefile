@@ -27,7 +27,7 @@ check: setup
 	$(BIN)/mypy
 
 mjcf: setup
-	$(BIN)/python -m vehicle.mjcf
+	$(BIN)/python -m vehicle.mjcf --force
 
 benchmark: setup
 	$(BIN)/python -m tests.benchmarks.speed

@@ -19,10 +19,11 @@ from scenarios.claims import markdown
 from scenarios.comfort_runs import chosen_engine
 from scenarios.study import study_parser
 from vehicle.commands.command_line import ProgressLine, parse_and_run
-from vehicle.commands.options import VEHICLE_HELP, engine_option
+from vehicle.commands.destination import prepared_folder_of
+from vehicle.commands.options import VEHICLE_HELP, engine_option, resume_options
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.output.folder import prepare_folder, write_json, write_text
+from vehicle.output.folder import write_json, write_text
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.shipped import vehicle_file
@@ -91,8 +92,7 @@ def parser() -> argparse.ArgumentParser:
     found.add_argument("--seed", type=int, default=2006, help="seed of the sample; 2006 by default")
     engine_option(found, "auto")
     found.add_argument("--executor", metavar="WHERE", help="dask://host:port, or module:factory")
-    found.add_argument("--resume", action="store_true", help="go on in that folder; finished runs are kept")
-    found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")
+    resume_options(found)
     return found
 
 
@@ -131,7 +131,7 @@ def _job(options: argparse.Namespace) -> None:
     )
     engine = chosen_engine(options.engine)
     cases = table_cases([one.path for one in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle)
-    folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=ROWS)
+    folder = prepared_folder_of(options, options.home, rows=ROWS)
     started = clock.perf_counter()
     table = sweep(
         cases,

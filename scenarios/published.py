@@ -19,10 +19,12 @@ from scenarios.claims import LEGEND, claim_table, headline, markdown
 from scenarios.comfort_sensitivity.claims import PUBLISHED_SLIP as PUBLISHED_ROAD_SLIP
 from scenarios.levels import PUBLISHED_SLIP, SLIP_TOLERANCE
 from scenarios.study import main_of
-from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.options import jobs_option, message_options, output_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import DataError, SimulationError
-from vehicle.output.folder import prepare_folder, write_text
+from vehicle.output.folder import write_text
 
 CAR_SCENARIOS = ("levels", "inertia", "bump", "stribeck", "comfort_sensitivity", "tornado", "tuning")
 LUMPED_SCENARIOS = ("quarter_car",)
@@ -64,8 +66,7 @@ def parser() -> Parser:
     found = Parser(
         prog="python -m scenarios.published", description="Every published result of the complete car beside ours."
     )
-    where = f"that of the table; {HOME} by default, where it is renewed, or {QUICK_HOME} with --quick"
-    output_options(found, None, default=where)
+    output_options(found, f"{HOME}, or {QUICK_HOME} with --quick,")
     found.add_argument(
         "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the scenarios' own results"
     )
@@ -83,7 +84,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _job(options: argparse.Namespace) -> None:
     home = QUICK_HOME if options.quick else HOME
-    folder = prepare_folder(options.output or home, force=options.force or options.output is None)
+    folder = prepared_folder_of(options, home)
     started = clock.perf_counter()
     results, seconds = {}, {}
     for number, name in enumerate(SCENARIOS, start=1):

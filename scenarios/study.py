@@ -16,9 +16,10 @@ from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
-from vehicle.commands.command_line import Parser, parse_and_run
+from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.options import engine_option, jobs_option, message_options, output_options, vehicle_options
-from vehicle.output.folder import prepare_folder
+from vehicle.commands.parser import Parser
 
 STUDIES = {
     "levels": "Low, mid and high random input: FRFs, slip shares, wheel mode.",
@@ -44,7 +45,7 @@ QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full stu
 
 Subject = TypeVar("Subject")
 
-AddOptions = Callable[[argparse.ArgumentParser], None]
+AddOptions = Callable[[Parser], None]
 
 
 def main_of(name: str) -> Callable[[list[str] | None], int]:
@@ -56,7 +57,7 @@ def main_of(name: str) -> Callable[[list[str] | None], int]:
     return command
 
 
-def study_parser(name: str, *, quick: str, jobs: str = "") -> argparse.ArgumentParser:
+def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
     """Parser with the options every study has.
 
     Args:
@@ -65,7 +66,9 @@ def study_parser(name: str, *, quick: str, jobs: str = "") -> argparse.ArgumentP
         jobs: a remark on --jobs.
     """
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
-    output_options(parser, Path("runs") / name)
+    home = Path("runs") / name
+    output_options(parser, str(home))
+    parser.set_defaults(home=home)
     parser.add_argument("--quick", action="store_true", help=quick)
     jobs_option(parser, note=jobs)
     message_options(parser)
@@ -82,7 +85,7 @@ class Study(Generic[Subject]):
         study: computes, draws into the folder and returns the findings, or the line to print if there are none.
     """
 
-    parser: argparse.ArgumentParser
+    parser: Parser
     load: Callable[[argparse.Namespace], Subject]
     study: Callable[[Subject, Path, argparse.Namespace], Findings | str]
 
@@ -99,7 +102,7 @@ class Study(Generic[Subject]):
         def job(options: argparse.Namespace) -> None:
             started = clock.perf_counter()
             subject = self.load(options)
-            folder = prepare_folder(options.output, force=options.force)
+            folder = prepared_folder_of(options, options.home)
             found = self.study(subject, folder, options)
             line = found if isinstance(found, str) else found.write(folder)
             print(f"{folder}: {line}; {clock.perf_counter() - started:.0f} s")

@@ -133,7 +133,7 @@ Case = Callable[[random.Random], tuple[Callable[[list[str]], int], list[str]]]
 
 
 def _signal(rng: random.Random) -> tuple[Callable[[list[str]], int], list[str]]:
-    options = rng.choice([[], ["--road"], ["--interpolate"], ["--resample", "500"], ["--remove-mean"]])
+    options = rng.choice([[], ["--any-level"], ["--interpolate"], ["--resample", "500"], ["--remove-mean"]])
     file = write("signal.csv", mutated(SIGNAL, rng), rng)
     return shaker.main, ["--input", file, "--engine", "reduced", "--output", "out", *options]
 

@@ -41,7 +41,7 @@ from vehicle.car import Car, Run
 from vehicle.commands.command_line import ProgressLine
 from vehicle.commands.compare import mapping_options
 from vehicle.commands.input_options import record_options
-from vehicle.errors import ConfigurationError
+from vehicle.commands.parser import Parser
 from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range
 from vehicle.tuning.fit import Target, fit
@@ -189,7 +189,7 @@ def _draw(folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequ
     correlation_figure(folder / "correlation.png", result)
 
 
-def add_options(found: argparse.ArgumentParser) -> None:
+def add_options(found: Parser) -> None:
     """Options of this study alone."""
     found.add_argument(
         "--frf",
@@ -200,14 +200,6 @@ def add_options(found: argparse.ArgumentParser) -> None:
         help="own FRFs, or accelerations beside the plate, in any format of `inspect`; repeatable",
     )
     found.add_argument(
-        "--level",
-        action="append",
-        default=[],
-        metavar="low|FILE.csv",
-        help="one for each --frf: low takes the linear car with stuck dampers; else the displacement signal that the "
-        "FRFs were measured with",
-    )
-    found.add_argument(
         "--record",
         type=Path,
         action="append",
@@ -215,28 +207,43 @@ def add_options(found: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="own time histories, of a bump or of anything else, in any format of `inspect`; repeatable",
     )
-    found.add_argument(
+    own = found.scoped_group(
+        "own data", needs="--frf or --record", active=lambda options: bool(options.frf or options.record)
+    )
+    responses = found.scoped_group("own FRFs", needs="--frf", active=lambda options: bool(options.frf))
+    records = found.scoped_group("own time histories", needs="--record", active=lambda options: bool(options.record))
+    responses.add_argument(
+        "--level",
+        action="append",
+        default=[],
+        metavar="low|FILE.csv",
+        help="one for each --frf: low takes the linear car with stuck dampers; else the displacement signal that the "
+        "FRFs were measured with",
+    )
+    records.add_argument(
         "--signal",
         action="append",
         default=[],
         metavar="FILE",
         help="one for each --record: the displacement of the plate, which begins with the record",
     )
-    found.add_argument("--delay", type=float, default=0.0, metavar="S", help="the records began this long after it [s]")
-    found.add_argument("--stretch", metavar="FROM:TO", help="part of the signals that counts for --record [s]")
-    found.add_argument(
+    records.add_argument(
+        "--delay", type=float, default=0.0, metavar="S", help="the records began this long after it [s]"
+    )
+    records.add_argument("--stretch", metavar="FROM:TO", help="part of the signals that counts for --record [s]")
+    records.add_argument(
         "--lowpass", type=float, default=100.0, metavar="HZ", help="records are compared below it; %(default)g Hz"
     )
-    mapping_options(found)
-    record_options(found, "", channel=False)
-    found.add_argument(
+    mapping_options(own)
+    record_options(own, "", channel=False)
+    own.add_argument(
         "--fit",
         action="append",
         default=[],
         metavar=TEXT,
         help="parameter, its bounds and where the fit begins; those of source 1 by default; may be repeated",
     )
-    found.add_argument(
+    own.add_argument(
         "--channel",
         action="append",
         default=[],
@@ -244,13 +251,15 @@ def add_options(found: argparse.ArgumentParser) -> None:
         help=f"channel that counts; by default {', '.join(CHANNELS)} of FRFs, all but the plates of records; may be "
         "repeated",
     )
-    found.add_argument(
+    responses.add_argument(
         "--band", default=f"{BAND[0]:g}:{BAND[1]:g}", metavar="LOW:HIGH", help="fitted frequencies [Hz]; %(default)s"
     )
-    found.add_argument(
+    responses.add_argument(
         "--spacing", type=float, default=SPACING, metavar="HZ", help="distance of the frequencies [Hz]; %(default)g"
     )
-    found.add_argument("--window", type=float, metavar="S", help="the FRFs were averaged over Hann windows this long")
+    responses.add_argument(
+        "--window", type=float, metavar="S", help="the FRFs were averaged over Hann windows this long"
+    )
 
 
 LONGEST_STEP = 5e-4
@@ -262,11 +271,6 @@ def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings
     runs = CarRuns(vehicle=runs.vehicle, overrides=(*runs.overrides, step), engine=runs.engine, jobs=runs.jobs)
     if options.frf or options.record:
         return own_study(runs, folder, options)
-    if options.level or options.fit or options.channel or options.mapping or options.signal:
-        raise ConfigurationError(
-            "--level, --signal, --map, --fit and --channel belong to --frf or --record; give a file of FRFs or of time "
-            "histories"
-        )
     return study(runs, folder, quick=options.quick)
 
 

@@ -10,7 +10,8 @@ import sys
 import pytest
 
 from vehicle.commands import command_line
-from vehicle.commands.command_line import COLLECTED, Parser, begin_process, parse_and_run
+from vehicle.commands.command_line import COLLECTED, begin_process, parse_and_run
+from vehicle.commands.parser import Parser
 
 
 @pytest.fixture

@@ -27,7 +27,7 @@ def measured(car, high_piece, tmp_path_factory):
 
 def test_a_drive_file_is_written_and_read_again(measured, high_piece, tmp_path, capsys):
     folder = tmp_path / "found"
-    given = ["--target", str(measured), "--channel", f"{CHANNEL}=Dof 12*", "--band", "2:40", "--tolerance", "8"]
+    given = ["--target", str(measured), "--channel", f"{CHANNEL}=Dof 12*", "--band", "2:40", "--target-error", "8"]
     assert main([*given, "--output", str(folder)]) == 0
     said = capsys.readouterr()
     assert "iteration 1 of at most 15: error" in said.err and "fell below 8 %" in said.out

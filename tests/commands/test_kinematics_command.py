@@ -11,7 +11,7 @@ from vehicle.commands.kinematics import main
 
 
 def test_rows_and_rates(capsys):
-    assert main(["--travel=-20:20:10", "--json"]) == 0
+    assert main(["--travel", "-20:20:10", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     travel = [row["wheel_travel_m"] for row in found["rows"]]
     assert travel == pytest.approx([-0.02, -0.01, 0.0, 0.01, 0.02], abs=1e-9)
@@ -36,7 +36,7 @@ def test_ideal_joints_have_no_load(capsys):
 
 def test_files(tmp_path, capsys):
     folder = tmp_path / "axle"
-    arguments = ["--travel=-10:10:10", "--force", "x=100", "--moment", "z=100", "--output", str(folder)]
+    arguments = ["--travel=-10:10:10", "--contact-force", "x=100", "--moment", "z=100", "--output", str(folder)]
     assert main(arguments) == 0
     lines = (folder / "kinematics.csv").read_text(encoding="utf-8").splitlines()
     assert lines[2].startswith("wheel_travel [m],camber [deg],toe [deg],lateral [m]")
@@ -45,7 +45,7 @@ def test_files(tmp_path, capsys):
     assert (folder / "kinematics.png").stat().st_size > 10_000
     assert "load [N]" in capsys.readouterr().out
     assert main(arguments) == 2
-    assert main([*arguments, "--replace"]) == 0
+    assert main([*arguments, "--force"]) == 0
 
 
 @pytest.mark.parametrize(
@@ -56,9 +56,12 @@ def test_files(tmp_path, capsys):
         (["--travel", "50:10"], "--travel '50:10': needed is A:B or A:B:STEP in mm"),
         (["--travel", "a:b"], "--travel 'a:b': needed is A:B"),
         (["--travel", "0:100:0.001"], "100001 positions; at most 2001"),
-        (["--force", "w=1"], "--force 'w=1': needed is AXIS=VALUE"),
+        (["--contact-force", "w=1"], "--contact-force 'w=1': needed is AXIS=VALUE"),
+        (["--force", "w=1"], "a force on the wheels is given by --contact-force"),
+        (["--replace"], "files are replaced by --force"),
+        (["--force"], "--force: belongs to --output DIR"),
         (["--moment", "x=nan"], "--moment 'x=nan': needed is AXIS=VALUE"),
-        (["--ideal", "--force", "x=1"], "--ideal: ideal joints do not yield"),
+        (["--ideal", "--contact-force", "x=1"], "--contact-force: belongs to bushings that yield"),
     ],
 )
 def test_refusals(arguments, message, capsys):

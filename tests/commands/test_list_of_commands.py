@@ -50,9 +50,7 @@ def test_a_command_has_the_same_answer_under_both_names(capsys):
 @pytest.mark.parametrize("option", ["--vehicle", "--set", "--engine", "--force", "--jobs", "--quiet", "--debug"])
 def test_an_option_means_the_same_everywhere(option, monkeypatch):
     monkeypatch.setenv("COLUMNS", "1000")
-    # On a rig for axles a force is a load.
-    shared = {name: one for name, one in parsers().items() if (name, option) != ("kinematics", "--force")}
-    texts = [parser.format_help() for parser in shared.values()]
+    texts = [parser.format_help() for parser in parsers().values()]
     lines = [line.split() for text in texts for line in text.splitlines() if line.startswith(f"  {option} ")]
     # The default may differ: one run is MuJoCo's, many are left to the program.
     assert len(lines) > 1 and len({" ".join(line).replace("auto by", "mujoco by") for line in lines}) == 1

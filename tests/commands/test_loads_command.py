@@ -43,8 +43,14 @@ def test_files_of_a_sine(folder, capsys):
     assert float(spectrum[-1]["cycles"]) == pytest.approx(9.5, abs=0.5)
     assert float(spectrum[0]["cycles_of_this_range_or_more"]) == pytest.approx(float(tyre["cycles"]))
     assert (folder / "loads.png").stat().st_size > 10_000
-    # Once more only with --force, and then what was written before alone.
-    assert main([str(folder)]) == 2 and "give --force" in capsys.readouterr().err
+    # Once more beside the first ones, or with --force in their place.
+    assert main([str(folder)]) == 0
+    assert (
+        "loads.csv exists; writing " in (said := capsys.readouterr()).err
+        and "loads-2.csv, load_spectra-2.csv" in said.out
+    )
+    assert all((folder / name).exists() for name in ("loads-2.csv", "load_spectra-2.csv", "loads-2.png"))
+    assert main([str(folder), "--output", str(folder)]) == 2 and "give --force" in capsys.readouterr().err
     assert main([str(folder), "--force", "--quiet"]) == 0
     assert float(rows_of(folder / "loads.csv")[0]["equivalent_amplitude"]) == pytest.approx(300.0, rel=2e-2)
 
@@ -75,7 +81,7 @@ def test_bad_runs(folder, capsys, monkeypatch):
     assert "holds no time.npz or time.csv" in capsys.readouterr().err
     (folder / "loads.csv").write_text("mine")
     assert main([str(folder), "--force"]) == 2
-    assert "is of somebody else" in capsys.readouterr().err
+    assert "is not as this program wrote it there" in capsys.readouterr().err
     (folder / "loads.csv").unlink()
     monkeypatch.setitem(__import__("sys").modules, "rainflow", None)
     assert main([str(folder)]) == 5

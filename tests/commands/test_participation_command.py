@@ -49,7 +49,10 @@ def test_tables_and_files_say_the_same(tmp_path, capsys):
     {
         "frequency": (["--at", "-3"], "--at -3: must be a frequency above 0 Hz, as --at 26"),
         "wheel": (["--wheel", "rr"], "wheel rr"),
-        "place": (["--place", "seat_rail"], "place seat_rail: no acceleration on the body; there are suspension_mount"),
+        "place": (
+            ["--response", "seat_rail"],
+            "place seat_rail: no acceleration on the body; there are suspension_mount",
+        ),
         "mode": (["--mode", "10"], "--mode 10: the body has modes 1 to 9"),
         "rigid": (["--vehicle", "sedan"], "sedan: its body is rigid; modes that take part need body.flexible = true"),
     }.values(),

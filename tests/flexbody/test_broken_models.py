@@ -160,17 +160,22 @@ CASES = {
     "no nodes given": Case("K.mtx", nothing, MARKET[:4], "need --nodes too", 2),
     "no dofs given": Case("K.mtx", nothing, (*MARKET[:4], *MARKET[6:]), "needs --dofs", 2),
     "no mass given": Case("K.mtx", nothing, ("import", "K.mtx"), "needs --mass, --nodes and --dofs", 2),
-    "map of three": Case("map.csv", text("fr,1", "fr,1,2"), (*UFF, "--map", "map.csv"), "is no line point,node"),
+    "map of three": Case(
+        "map.csv", text("fr,1", "fr,1,2"), (*UFF, "--point-nodes", "map.csv"), "is no line point,node"
+    ),
     "map of an unknown point": Case(
-        "map.csv", text("strut", "nose"), (*UFF, "--map", "map.csv"), "no point 'nose_top_fr'"
+        "map.csv", text("strut", "nose"), (*UFF, "--point-nodes", "map.csv"), "no point 'nose_top_fr'"
     ),
     "map to no node": Case(
-        "map.csv", text("fr,1", "fr,999"), (*UFF, "--map", "map.csv"), "no node '999' for strut_top_fr"
+        "map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "no node '999' for strut_top_fr"
     ),
     "map twice": Case(
-        "map.csv", text("strut_top_fr,1", "seat,1\nseat,2"), (*UFF, "--map", "map.csv"), "point 'seat' is given twice"
+        "map.csv",
+        text("strut_top_fr,1", "seat,1\nseat,2"),
+        (*UFF, "--point-nodes", "map.csv"),
+        "point 'seat' is given twice",
     ),
-    "no map": Case("map.csv", gone, (*UFF, "--map", "map.csv"), "map.csv: cannot be read"),
+    "no map": Case("map.csv", gone, (*UFF, "--point-nodes", "map.csv"), "map.csv: cannot be read"),
     "uff without nodes": Case("modes.uff", modes(places=False), UFF, "20 of them without a place"),
     "uff without modal mass": Case("modes.uff", modes(modal_mass=0.0), UFF, "no modal mass, and so no scale"),
     "uff without modes": Case("modes.uff", modes(count=0), UFF, "modes.uff"),
@@ -185,8 +190,8 @@ CASES = {
     "up to below": option("--up-to", "-5", says="--up-to -5"),
     "up to too low": option("--up-to", "4", says="no mode between 3 and 4 Hz", code=3),
     "damping": option("--damping", "2", says="--damping 2: allowed is 0 to 0.3"),
-    "tolerance nan": option("--tolerance", "nan", says="--tolerance nan: allowed is above 0, up to 50 mm"),
-    "tolerance wide": option("--tolerance", "80", says="--tolerance 80"),
+    "tolerance nan": option("--point-distance", "nan", says="--point-distance nan: allowed is above 0, up to 50 mm"),
+    "tolerance wide": option("--point-distance", "80", says="--point-distance 80"),
     "spread": option("--spread", "-1", says="--spread -1: allowed is 0 mm or a radius"),
     "modal mass": option("--modal-mass", "0", says="--modal-mass 0: allowed is a mass above 0 kg"),
     "axes mirrored": option("--axes", "x,y,-z", says="three different axes that are not mirrored"),
@@ -197,7 +202,7 @@ CASES = {
     "method of modes": option("--method", "rubin", says="--method rubin: needs stiffness and mass"),
     "attachment modes": option("--attachment-modes", "200", says="choose rubin or craig-bampton"),
     "output as text": option("--output", "body.txt", says="a body model is written as .toml or .npz"),
-    "output exists": option("--output", "box.toml", says="exists; give another name, or --force"),
+    "output exists": option("--output", "box.toml", says="exists; give --force to replace it, or another name"),
     "output in a file": option("--output", "map.csv/body.toml", says="map.csv is a file, no folder"),
 }
 REFUSED = {"run.op2": "Nastran OP2", "run.RST": "ANSYS results", "file.full": "HBMAT,k", "a.odb": "*MATRIX OUTPUT",

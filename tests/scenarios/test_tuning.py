@@ -91,7 +91,7 @@ def test_options_of_own_files_are_checked(tmp_path, capsys):
         assert main([*options, *extra, "--output", str(tmp_path / "refused")]) in (2, 3)
         assert message in capsys.readouterr().err
     assert main(["--level", "low", "--output", str(tmp_path / "alone")]) == 2
-    assert "belong to --frf" in capsys.readouterr().err
+    assert "belongs to --frf" in capsys.readouterr().err
 
 
 def test_parameters_of_the_command_line(car):

@@ -111,8 +111,13 @@ def test_item_35_existing_output(shaker, short_signal, tmp_path):
     kept = tmp_path / "runs" / "short" / "mine.txt"
     kept.parent.mkdir(parents=True)
     kept.write_text("mine")
-    outcome = shaker("--input", "short.csv")
+    outcome = shaker("--input", "short.csv", "--output", "runs/short")
     assert outcome.code == 2 and "give --force" in outcome.err and kept.read_text() == "mine"
+    outcome = shaker("--input", "short.csv", "--force")
+    assert outcome.code == 2 and "no run wrote: mine.txt" in outcome.err and kept.read_text() == "mine"
+    outcome = shaker("--input", "short.csv", "--engine", "reduced")
+    assert outcome.code == 0 and "runs/short exists; writing runs/short-2" in outcome.err
+    assert (tmp_path / "runs" / "short-2" / "summary.json").exists() and kept.read_text() == "mine"
     outcome = shaker("--input", "short.csv", "--output", ".", "--force")
     assert outcome.code == 2 and "holds the input" in outcome.err and short_signal.exists()
 

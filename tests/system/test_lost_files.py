@@ -6,14 +6,16 @@ import json
 import os
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
-from vehicle.assembly.mjcf_files import write_mjcf
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.output.folder import check_film, folder_lock, output_folder, prepare_folder, write_text
-from vehicle.output.written_files import MARKER, discard, foreign, written
+from vehicle.output.destination import free_file, free_files, free_folder
+from vehicle.output.folder import check_file, folder_lock, output_folder, prepare_folder, write_text, write_whole
+from vehicle.output.model_files import write_mjcf
+from vehicle.output.written_files import MARKER, discard, foreign, note, written
 
 ROOT = Path(__file__).resolve().parents[2]
 FILM = b"\x00\x00\x00\x20ftypisom"
@@ -72,7 +74,7 @@ def test_folders_of_earlier_versions_are_recognised(tmp_path):
     run.mkdir()
     (run / "summary.json").write_text(json.dumps({"files": {"frf": "frf.csv", "video": "/elsewhere/film.mp4"}}))
     (run / "frf.csv").write_text("")
-    assert written(run) == {"summary.json", "frf.csv"} and foreign(run) == []
+    assert set(written(run)) == {"summary.json", "frf.csv"} and foreign(run) == []
     put(run, "frf.csv", force=True)
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "summary.json").write_text("{}")
@@ -92,23 +94,91 @@ def test_studies_keep_the_same_list(tmp_path):
     folder = prepare_folder(tmp_path / "study", force=False)
     write_text(folder / "results.md", "text")
     write_text(folder / "sub" / "one.csv", "text")
-    assert written(folder) == {"results.md", "sub/one.csv", MARKER}
+    assert set(written(folder)) == {"results.md", "sub/one.csv", MARKER}
     prepare_folder(folder, force=True)
     (folder / "mine.txt").write_text("mine")
     with pytest.raises(ConfigurationError, match=r"no run wrote: mine\.txt"):
         prepare_folder(folder, force=True)
 
 
-def test_a_film_replaces_nothing_but_a_film(tmp_path):
+def test_a_single_file_replaces_nothing_but_what_was_written_there(tmp_path):
     film = tmp_path / "film.mp4"
-    check_film(film, force=False)
-    film.write_bytes(FILM)
-    with pytest.raises(ConfigurationError, match="exists; give --force"):
-        check_film(film, force=False)
-    check_film(film, force=True)
-    film.write_text("a letter to my mother")
-    with pytest.raises(ConfigurationError, match="is no film"):
-        check_film(film, force=True)
+    check_file(film, "--video", ending=".mp4", force=False)
+    write_whole(film, lambda path: path.write_bytes(FILM))
+    with pytest.raises(ConfigurationError, match=r"--video .*: exists; give --force"):
+        check_file(film, "--video", force=False)
+    check_file(film, "--video", force=True)
+    write_whole(film, lambda path: path.write_bytes(FILM + b"again"))
+    # What somebody changed is theirs; so is a film of theirs that takes the name, and one that was moved here.
+    for content in (FILM + b"cut", b"a letter to my mother"):
+        film.write_bytes(content)
+        with pytest.raises(ConfigurationError, match="is not as this program wrote it there"):
+            check_file(film, "--video", force=True)
+        with pytest.raises(ConfigurationError, match="is not as this program wrote it there"):
+            write_text(film, "mine")
+        assert film.read_bytes() == content
+    film.write_bytes(FILM)  # as it was written once
+    write_text(film, "ours")
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "film.mp4").symlink_to(film)
+    with pytest.raises(ConfigurationError, match="is not as this program wrote it there"):
+        check_file(tmp_path / "elsewhere" / "film.mp4", force=True)
+
+
+def test_files_that_were_changed_since_are_kept(tmp_path):
+    put(tmp_path / "run", "a.csv", "b.csv")
+    (tmp_path / "run" / "b.csv").write_text("edited by hand")
+    with pytest.raises(ConfigurationError, match=r"files that were changed since a run wrote them: b\.csv; --force"):
+        put(tmp_path / "run", "a.csv", force=True)
+    study = prepare_folder(tmp_path / "study", force=False, rows="rows.jsonl")
+    note(study / "rows.jsonl")  # grows: every content is the program's
+    (study / "rows.jsonl").write_text("{}\n")
+    write_text(study / "table.csv", "1")
+    prepare_folder(study, force=False, resume=True, rows="rows.jsonl")
+    (study / "table.csv").write_text("edited by hand")
+    for ways in ({"force": False, "resume": True}, {"force": True}):
+        with pytest.raises(ConfigurationError, match=r"changed since a run wrote them: table\.csv"):
+            prepare_folder(study, rows="rows.jsonl", **ways)
+    assert (tmp_path / "run" / "b.csv").read_text() == (study / "table.csv").read_text() == "edited by hand"
+
+
+def test_the_next_free_name_and_two_runs_at_once(tmp_path):
+    runs = tmp_path / "runs"
+    with ExitStack() as first, ExitStack() as second:
+        assert free_folder(first, runs / "low") == runs / "low"
+        assert free_folder(second, runs / "low") == runs / "low-2"  # the first is being written, not there yet
+        with output_folder(runs / "low", force=False):
+            pass
+        assert free_folder(first, runs / "low") == runs / "low-3"
+        assert free_file(first, runs / "road.csv") == runs / "road.csv"
+        assert free_file(second, runs / "road.csv") == runs / "road-2.csv"
+        assert free_files(second, runs / "low", ["a.csv", "a.png"]) == [runs / "low/a.csv", runs / "low/a.png"]
+        (runs / "low" / "a-2.png").write_text("mine")
+        names = [path.name for path in free_files(first, runs / "low", ["a.csv", "a.png"])]
+        assert names == ["a-3.csv", "a-3.png"]
+    assert sorted(path.name for path in runs.iterdir()) == ["low"]  # no lock is left
+    with ExitStack() as held:
+        assert free_folder(held, runs / "low") == runs / "low-2"
+
+
+def test_processes_at_once_take_names_of_their_own(tmp_path):
+    work = (
+        "import sys; from contextlib import ExitStack; from pathlib import Path\n"
+        "from vehicle.output.destination import free_folder; from vehicle.output.folder import output_folder\n"
+        "with ExitStack() as held:\n"
+        "    path = free_folder(held, Path('runs/low'))\n"
+        "    print('ready', flush=True); sys.stdin.readline()\n"
+        "    with output_folder(path, force=False) as folder: (folder / 'a').write_text('')"
+    )
+    start = {"cwd": tmp_path, "env": {**os.environ, "PYTHONPATH": str(ROOT)}, "text": True}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    several = [subprocess.Popen([sys.executable, "-c", work], **start, **pipes) for _ in range(3)]
+    for one in several:
+        assert one.stdout.readline() == "ready\n"
+    for one in several:
+        one.communicate("go\n")
+    assert [one.returncode for one in several] == [0, 0, 0]
+    assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["low", "low-2", "low-3"]
 
 
 def test_a_link_leads_to_the_folder_that_is_replaced(tmp_path):
@@ -147,6 +217,6 @@ def test_two_runs_in_one_folder(tmp_path):
 def test_model_files_replace_only_model_files(tmp_path):
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "statue.stl").write_text("mine")
-    with pytest.raises(ConfigurationError, match=r"holds meshes/statue\.stl, which was not gen"):
+    with pytest.raises(ConfigurationError, match=r"meshes/statue\.stl: is not as this program wrote it there"):
         write_mjcf(tmp_path, {"car.xml": b"<mujoco/>"})
     assert (tmp_path / "meshes" / "statue.stl").exists()

@@ -47,7 +47,7 @@ def test_an_inertia_that_no_number_holds(engine, shaker, short_signal):
 
 def test_a_plate_that_stands_still(shaker, tmp_path):
     (tmp_path / "still.csv").write_text(csv_text(0.0 * GOOD))
-    for option in ([], ["--road"]):
+    for option in ([], ["--any-level"]):
         outcome = shaker("--input", "still.csv", "--engine", "reduced", *option)
         assert outcome.code == 3 and "no plate moves" in outcome.err and outcome.err.count("\n") == 1
 

@@ -57,8 +57,8 @@ def test_plates_that_follow_later_run_on_a_road_without_frfs(shaker, tmp_path):
     wave *= np.minimum(np.arange(9001) / 1000.0, 1.0)
     plates = {"fr": wave[1000:] - wave[1000], "fl": wave[:8001]}
     write_signal(tmp_path / "late.csv", Signal(time=time, displacement=plates))
-    assert "or give --road for a run without FRFs" in shaker("--input", "late.csv").err
-    outcome = shaker("--input", "late.csv", "--road", "--engine", "reduced")
+    assert "or give --any-level for a run without FRFs" in shaker("--input", "late.csv").err
+    outcome = shaker("--input", "late.csv", "--any-level", "--engine", "reduced")
     assert outcome.code == 0, outcome.err
     folder = tmp_path / "runs" / "late"
     files = {"summary.json", "vehicle.toml", "time.npz", "time.png"}
@@ -83,15 +83,16 @@ def test_a_sweep_drives_over_a_road(tmp_path, monkeypatch):
     ("arguments", "message"),
     [
         ([], "needed is either --input FILE, or a road: --road C --speed 80"),
-        (["--road"], "needed is either --input FILE, or a road"),
+        ([], "needed is either --input FILE, or a road"),
+        (["--road"], "--road: names no road; give a class of ISO 8608, A to H, or FILE.csv; levels beyond"),
         (["--road", "C"], "a road needs --speed KM/H"),
         (["--road", "Z", "--speed", "80"], "road class 'Z': allowed are A, B"),
         (["--road", "none.csv", "--speed", "80"], "--road none.csv: no class of ISO 8608 (A to H), and no file"),
         (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C beside --input: give one of them"),
-        (["--road", "C", "--speed", "80", "--wheel", "front_left"], "--wheel: belongs to --input; --road C drives all"),
+        (["--road", "C", "--speed", "80", "--wheel", "front_left"], "--wheel: belongs to --input; a road drives all"),
         (["--road", "C", "--speed", "80", "--remove-mean"], "--remove-mean: belongs to --input"),
         (["--input", "low.csv", "--speed", "80"], "--speed: belongs to a road, as --road C --speed 80"),
-        (["--input", "low.csv", "--road", "--seed", "2"], "--seed: belongs to a road"),
+        (["--input", "low.csv", "--any-level", "--seed", "2"], "--seed: belongs to a class of ISO 8608"),
     ],
 )
 def test_refusals(shaker, tmp_path, arguments, message):

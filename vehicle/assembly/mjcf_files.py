@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import io
-from pathlib import Path
 from xml.etree import ElementTree
 
 from vehicle.assembly.spec import assemble
 from vehicle.assembly.visuals import add_shapes, visible_shapes
-from vehicle.errors import ConfigurationError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.vehicle import Vehicle
 
@@ -85,27 +83,3 @@ def _scene(name: str) -> str:
     )
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
-
-
-def write_mjcf(folder: Path, files: dict[str, bytes]) -> None:
-    """Write the files into a folder; meshes that no longer exist are removed.
-
-    Args:
-        folder: target.
-        files: as of `mjcf_files`.
-
-    Raises:
-        ConfigurationError: it holds files of those names, and no model that was generated here.
-    """
-    car, meshes = folder / "car.xml", (folder / "meshes").glob("*.stl")
-    there = sorted({*(f"meshes/{mesh.name}" for mesh in meshes), *(name for name in files if (folder / name).exists())})
-    if there and not (car.is_file() and GENERATED.encode() in car.read_bytes()[:1000]):
-        raise ConfigurationError(f"--output {folder}: holds {there[0]}, which was not generated; give another folder")
-    (folder / "meshes").mkdir(parents=True, exist_ok=True)
-    for old in (folder / "meshes").glob("*.stl"):
-        if f"meshes/{old.name}" not in files:
-            old.unlink()
-    for name, content in files.items():
-        temporary = folder / f"{name}.part"
-        temporary.write_bytes(content)
-        temporary.replace(folder / name)

@@ -10,9 +10,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import Parser, command
+from vehicle.commands.command_line import command
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, message_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, DataError
 
 if TYPE_CHECKING:

@@ -13,8 +13,10 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from types import FrameType
 
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
 
 INTERRUPTED = 130
@@ -28,14 +30,6 @@ COLLECTED = (20_000, 5, 5)
 """How often a command looks for unreachable objects, as of `gc.set_threshold`. Loading its libraries makes half a
 million objects that stay: at Python's own pace, that of programs that run on, looking through them takes a tenth of a
 run."""
-
-
-class Parser(argparse.ArgumentParser):
-    """Argument parser whose errors are one message and exit code 2."""
-
-    def error(self, message: str) -> None:  # type: ignore[override]
-        """Raise the message instead of leaving the process."""
-        raise ConfigurationError(f"{message}; see {self.prog} --help")
 
 
 def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
@@ -126,14 +120,13 @@ def _print_nowhere() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def parse_and_run(
-    parser: argparse.ArgumentParser, job: Callable[[argparse.Namespace], None], arguments: Sequence[str] | None
-) -> int:
+def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arguments: Sequence[str] | None) -> int:
     """Parse the arguments of a command and run its job.
 
     Args:
         parser: with the option --debug.
-        job: as of `run_command`, given the options.
+        job: as of `run_command`, given the options; in addition to those of the parser `words`, the arguments, and
+            `held`, what is released when the command ends.
         arguments: without the program name; those of the process by default.
 
     Returns:
@@ -143,19 +136,18 @@ def parse_and_run(
     if arguments is None:
         begin_process()
 
-    def checked(text: list[str]) -> argparse.Namespace:
-        for word in text:
+    def work() -> None:
+        for word in given:
             if "\0" in word:
                 raise ConfigurationError(f"argument {word!r}: holds a NUL byte; no path or value may")
-        return parser.parse_args(text, argparse.Namespace(words=text))
+        with ExitStack() as held:
+            job(parser.parse_args(given, argparse.Namespace(words=given, held=held)))
 
     # Looked for by hand: a failure to parse must show its traceback too.
-    return run_command(lambda: job(checked(given)), debug="--debug" in given)
+    return run_command(work, debug="--debug" in given)
 
 
-def command(
-    parser: Callable[[], argparse.ArgumentParser], job: Callable[[argparse.Namespace], None]
-) -> Callable[..., int]:
+def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:
     """The `main` of a command: given its arguments (of the process by default) it returns the exit code.
 
     Args:

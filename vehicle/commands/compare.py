@@ -8,9 +8,11 @@ from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
+from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -21,6 +23,10 @@ if TYPE_CHECKING:
     from vehicle.records.measured import Measured
 
 OUTPUT = Path("runs/compare")
+
+RECORDS, RESPONSES, SHAPES, CHANNELS = "time histories", "responses", "mode shapes", "channels of the measurement"
+CAR, RUN = "the car", "the run"
+"""Titles of groups of options."""
 
 
 def parser() -> Parser:
@@ -33,38 +39,47 @@ def parser() -> Parser:
         help="folder of a run; or an input, as low.csv, which is put on the shaker; not needed for mode shapes",
     )
     measured_options(found, required=True)
-    found.add_argument(
+    records = found.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
+    records.add_argument(
         "--delay", type=float, default=0.0, metavar="S", help="the measurement began this long after the run [s]; 0"
     )
-    found.add_argument(
+    responses = found.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
+    responses.add_argument(
         "--window",
         type=float,
         metavar="S",
         help="length of the Hann windows that the measured responses were averaged over [s]; the simulated ones are "
         "then estimated alike; by default a local rational model of the whole record",
     )
-    found.add_argument(
+    responses.add_argument(
         "--bands",
         default="1,2,4,8,16,32,50",
         metavar="HZ,HZ,...",
         help="edges of the bands of the table [Hz]; %(default)s",
     )
-    found.add_argument(
+    shapes = found.scoped_group(SHAPES, needs="measured mode shapes; the file holds none", active=None)
+    shapes.add_argument(
         "--damper",
         choices=("stuck", "sliding"),
         default="stuck",
         help="state of the dampers, for modes; stuck by default",
     )
-    record_options(found, "", channel=False)
-    vehicle_options(found)
-    engine_option(found, "auto")
-    output_options(found, OUTPUT)
+    record_options(
+        found.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None),
+        "",
+        channel=False,
+    )
+    vehicle_options(
+        found.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
+    )
+    engine_option(found.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto")
+    output_options(found, str(OUTPUT))
     found.add_argument("--json", action="store_true", help="print the content of compare.json")
     message_options(found, quiet=True)
     return found
 
 
-def measured_options(parser: argparse.ArgumentParser, *, required: bool = False) -> None:
+def measured_options(parser: Parser, *, required: bool = False) -> None:
     """Add --measured, --map and --turn: which measurement, and which of its channels is which.
 
     Args:
@@ -84,10 +99,14 @@ def measured_options(parser: argparse.ArgumentParser, *, required: bool = False)
             "--delay: python -m vehicle compare, after the run"
         ),
     )
-    mapping_options(parser)
+    mapping_options(
+        parser.scoped_group(
+            "a measurement", needs="--measured FILE", active=lambda options: options.measured is not None
+        )
+    )
 
 
-def mapping_options(parser: argparse.ArgumentParser) -> None:
+def mapping_options(parser: argparse._ActionsContainer) -> None:
     """Add --map and --turn: which channels of a measurement are which."""
     parser.add_argument(
         "--map",
@@ -133,28 +152,35 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.comparison.comparison import comparison_of
     from vehicle.comparison.frf_comparison import edges_of
     from vehicle.output.comparison_files import write_comparison
-    from vehicle.output.folder import check_output, output_folder
+    from vehicle.output.folder import output_folder
     from vehicle.records.reader import read_record
 
     edges = edges_of(options.bands)
     choice = measured_choice(options)
     measurement = read_record(options.measured)
-    check_output(options.output, force=options.force, protect=(options.measured,))
+    output = output_folder_of(options, OUTPUT, protect=(options.measured,))
     if measurement.shapes and not measurement.channels:
-        summary, said = _modes(options, measurement, choice)
+        for group in (RECORDS, RESPONSES, CHANNELS, RUN):
+            refuse_idle(options, group)
+        summary, said = _modes(options, output, measurement, choice)
     else:
         if options.run is None:
             raise ConfigurationError("needed is RUN_OR_INPUT: the folder of a run, or an input as low.csv")
+        refuse_idle(options, SHAPES)
         simulated, known = _simulated(options, measurement, choice)
         measured = _measured(options, known, choice, measurement)
+        if measured.frf is None:
+            refuse_idle(options, RESPONSES)
+        if measured.record is None:
+            refuse_idle(options, RECORDS)
         comparison = comparison_of(measured, simulated, edges=edges, delay=options.delay, window=options.window)
-        with output_folder(options.output, force=options.force, protect=(options.measured,)) as folder:
+        with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
             write_comparison(folder, comparison)
         summary, said = comparison.summary(), comparison.text()
     if options.json:
         print(json.dumps(summary, indent=2, allow_nan=False))
     elif not options.quiet:
-        print(f"{said}\nfiles: {options.output}")
+        print(f"{said}\nfiles: {output}")
 
 
 def _measured(
@@ -175,8 +201,6 @@ def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: 
         taken: names whose units are of the input.
     """
     if options.measured is None:
-        if options.mapping or options.turned:
-            raise ConfigurationError("--map and --turn belong to --measured FILE")
         return None
     return _measured(options, known, measured_choice(options, taken))
 
@@ -189,6 +213,8 @@ def _simulated(
 
     folder = Path(options.run)
     if folder.is_dir():
+        for group in (CAR, RUN):
+            refuse_idle(options, group)
         found = of_folder(folder)
         return found, tuple(found.record.channels)
     from vehicle.car import Car
@@ -209,7 +235,9 @@ def _simulated(
     return of_run(run), known
 
 
-def _modes(options: argparse.Namespace, measurement: Measurement, choice: Choice) -> tuple[dict[str, Any], str]:
+def _modes(
+    options: argparse.Namespace, output: Path, measurement: Measurement, choice: Choice
+) -> tuple[dict[str, Any], str]:
     """Mode shapes beside those of the car."""
     from vehicle.comparison.mode_comparison import compare_modes
     from vehicle.comparison.pictures import plot_mac
@@ -227,7 +255,7 @@ def _modes(options: argparse.Namespace, measurement: Measurement, choice: Choice
         ("AutoMAC of the measured modes", found.measured_auto, rows, rows),
         ("AutoMAC of the simulated modes", found.simulated_auto, columns, columns),
     )
-    with output_folder(options.output, force=options.force, protect=(options.measured,)) as folder:
+    with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
         write_json(folder / "compare.json", summary)
         write_whole(folder / "mac.png", lambda path: plot_mac(path, tables, caption))
     return summary, found.text(name)

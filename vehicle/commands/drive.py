@@ -8,9 +8,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import Parser, command
+from vehicle.commands.command_line import command
+from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.names import CORNERS
 
@@ -56,14 +58,15 @@ def parser() -> Parser:
         help="share of the correction that a step makes [-], above 0 and up to 1; %(default)s by default",
     )
     found.add_argument(
-        "--tolerance",
+        "--target-error",
         type=float,
         default=0.1,
         metavar="PERCENT",
         help="end where the RMS of the error in the band falls below this share of the target's [%%]; %(default)s",
     )
+    found.former("--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT")
     engine_option(found, "auto")
-    output_options(found, None, default="runs/drive_<name of the target> by default")
+    output_options(found, "runs/drive_<name of the target>")
     message_options(found, quiet=True)
     return found
 
@@ -71,15 +74,14 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.car import Car
     from vehicle.output.drive_files import write_drive
-    from vehicle.output.folder import check_output, output_folder
+    from vehicle.output.folder import output_folder
     from vehicle.replication.driven_car import DrivenCar
     from vehicle.replication.iteration import replicate
     from vehicle.replication.target import read_target
 
-    output = options.output or Path("runs") / f"drive_{options.target.stem}"
     inputs = tuple(path for path in (options.target, options.vehicle) if path is not None)
-    check_output(output, force=options.force, protect=inputs)
     band = _checked_numbers(options)
+    output = output_folder_of(options, Path("runs") / f"drive_{options.target.stem}", protect=inputs)
     names, choice = _channels(options)
     car = Car.load(options.vehicle, options.overrides)
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
@@ -92,7 +94,7 @@ def _job(options: argparse.Namespace) -> None:
             target.lines,
             iterations=options.iterations,
             gain=options.gain,
-            tolerance=0.01 * options.tolerance,
+            tolerance=0.01 * options.target_error,
             possible=plant.possible,
             settled=plant.settled,
             said=lambda step: None if options.quiet else _say(step, options.iterations),
@@ -129,8 +131,8 @@ def _checked_numbers(options: argparse.Namespace) -> tuple[float, float]:
         raise ConfigurationError(f"--iterations {options.iterations}: must be 1 to 1000")
     if not 0.0 < options.gain <= 1.0:
         raise ConfigurationError(f"--gain {options.gain:g}: must be above 0 and up to 1")
-    if not 0.0 < options.tolerance < 100.0:
-        raise ConfigurationError(f"--tolerance {options.tolerance:g} %: must be above 0 and below 100")
+    if not 0.0 < options.target_error < 100.0:
+        raise ConfigurationError(f"--target-error {options.target_error:g} %: must be above 0 and below 100")
     return low, high
 
 

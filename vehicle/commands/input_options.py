@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from vehicle.commands.parser import Condition, Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
@@ -12,48 +13,74 @@ if TYPE_CHECKING:
     from vehicle.records.choice import Choice
 
 
-def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
-    """Add --input, --wheel, --road and its numbers: which plates move, and how.
+FILE_NEEDS = "--input; a road drives all wheels of the car"
+ROAD_NEEDS = "a road, as --road C --speed 80, and not to --input"
+CLASS_NEEDS = "a class of ISO 8608, as C at --speed 80; a file of signals and a measured profile are taken as they are"
+
+
+def signal_options(parser: Parser, *, several: bool = False) -> argparse._ArgumentGroup:
+    """Add --input, --road and the options of each: which plates move, and how.
 
     Args:
         parser: of the command.
         several: --input, --road and --speed may be repeated; then their values are lists.
+
+    Returns:
+        The group of the options that act on a file of signals.
     """
+    action = "append" if several else "store"
+    again = "; may be repeated" if several else ""
     parser.add_argument(
         "--input",
-        action="append" if several else "store",
+        action=action,
         metavar="FILE",
-        help="measurement file of any format of `inspect`, or the name of a shipped one: low.csv"
-        + ("; may be repeated" if several else ""),
+        help=f"measurement file of any format of `inspect`, or the name of a shipped one: low.csv{again}",
     )
     parser.add_argument(
+        "--road",
+        action=action,
+        metavar="C|FILE.csv",
+        help="instead of --input, all wheels drive over a road: its class of ISO 8608, A to H, or a measured profile "
+        f"(columns distance, left, right [m]){again}",
+    )
+    parser.former(
+        r"--road (--.*)?$",
+        "--road: names no road; give a class of ISO 8608, A to H, or FILE.csv; levels beyond a shaker are accepted by "
+        "--any-level",
+    )
+    group = parser.scoped_group("a file of signals", needs=FILE_NEEDS, active=lambda options: bool(options.input))
+    group.add_argument(
         "--wheel",
         choices=sorted(CORNERS),
         help="wheel of a plain displacement column; front_right by default",
     )
-    parser.add_argument(
-        "--road",
-        action="append" if several else "store",
-        nargs="?",
-        const="",
-        metavar="C|FILE.csv",
-        help="instead of --input, all wheels drive over a road: its class of ISO 8608, A to H, or a measured profile "
-        "(columns distance, left, right [m]); beside --input, alone: accept levels beyond a shaker"
-        + ("; may be repeated" if several else ""),
+    group.add_argument(
+        "--any-level",
+        action="store_true",
+        help="accept levels and accelerations beyond a shaker, and plates whose FRFs cannot be separated",
     )
-    rate = "" if several else "; beside --input: in place of the times of the file"
-    road_options(parser, several=several, rate_note=rate)
+
+    def is_class(options: argparse.Namespace) -> bool:
+        return any(len(road) == 1 for road in _listed(options.road))
+
+    note = "" if several else "; beside --input: in place of the times of the file"
+    road_options(parser, lambda options: bool(options.road), is_class, several=several, rate_note=note)
+    return group
 
 
-def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate_note: str = "") -> None:
+def road_options(
+    parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
+) -> None:
     """Add the numbers of a drive over a road; each is None where it is not given.
 
     Args:
         parser: of the command.
+        on_road: True if the options contain a road.
+        is_class: True if a road is a class of ISO 8608.
         several: --speed may be repeated, once for each road; then its value is a list.
-        rate_note: what the help of --rate says beside.
+        rate_note: what the help of --rate says in addition, where it acts on a file of signals too.
     """
-    group = parser.add_argument_group("a road")
+    group = parser.scoped_group("a road", needs=ROAD_NEEDS, active=on_road)
     group.add_argument(
         "--speed",
         action="append" if several else "store",
@@ -62,69 +89,52 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate
         help="speed of the car [km/h]" + ("; once for all roads, or once for each" if several else ""),
     )
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
-    group.add_argument("--rate", type=float, metavar="HZ", help=f"samples a second; 1000 by default{rate_note}")
-    group.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
-    group.add_argument(
+    (parser if rate_note else group).add_argument(
+        "--rate", type=float, metavar="HZ", help=f"samples a second; 1000 by default{rate_note}"
+    )
+    random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
+    random.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
+    random.add_argument(
         "--coherence",
         type=float,
         metavar="G",
         help="of the tracks: 1 equal, 0 unrelated; isotropic plane by default",
     )
-    group.add_argument(
+    random.add_argument(
         "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m]; 0 by default"
     )
 
 
-ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
-"""Options of `road_options`."""
-
-INPUT_CHOICES = {
-    **{name: name for name in ("wheel", "interpolate", "resample", "detrend", "highpass")},
-    "remove-mean": "remove_mean",
-    "channel": "picks",
-    "unit": "units",
-    "from": "first",
-    "to": "last",
-}
-"""Options of a file of signals, and where their values are."""
+def _listed(value: str | list[str] | None) -> list[str]:
+    return value if isinstance(value, list) else [value] if value else []
 
 
 def drives_on_road(options: argparse.Namespace) -> bool:
-    """Whether a road moves the plates and not a file.
+    """Return True if a road moves the plates, and False for a file of signals.
 
     Args:
         options: as of `signal_options`.
 
     Raises:
-        ConfigurationError: neither or both are given, or options that belong to the other.
+        ConfigurationError: neither or both are given.
     """
-    roads = options.road if isinstance(options.road, list) else [options.road]
-    words = " ".join(f"--road {one}" for one in roads)
-    if any(roads):
-        if options.input:
-            raise ConfigurationError(
-                f"{words} beside --input: give one of them; --road alone accepts levels beyond a shaker"
-            )
-        for name, place in INPUT_CHOICES.items():
-            measured = name == "unit" and getattr(options, "measured", None) is not None
-            if getattr(options, place, None) and not measured:
-                raise ConfigurationError(f"--{name}: belongs to --input; {words} drives all wheels of the car")
-        return True
-    if not options.input:
+    roads = " ".join(f"--road {road}" for road in _listed(options.road))
+    if roads and options.input:
+        raise ConfigurationError(f"{roads} beside --input: give one of them")
+    if not roads and not options.input:
         raise ConfigurationError("needed is either --input FILE, or a road: --road C --speed 80")
-    for name in ROAD_NUMBERS:
-        if getattr(options, name) is not None and not (name == "rate" and hasattr(options, "picks")):
-            raise ConfigurationError(f"--{name}: belongs to a road, as --road C --speed 80, and not to --input")
-    return False
+    return bool(roads)
 
 
-def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool = True, rate: bool = True) -> None:
+def record_options(
+    parser: argparse._ActionsContainer, roles: str, *, channel: bool = True, rate: bool = True, unit: bool = True
+) -> None:
     """Add the choice of channels, units and times in a measurement file.
 
     Args:
-        parser: of the command.
+        parser: of the command, or the group of the options that act on the file.
         roles: what a channel is chosen for, in words, with an example.
-        channel, rate: False where the command has such an option of its own.
+        channel, rate, unit: False where the command has such an option of its own.
     """
     if channel:
         parser.add_argument(
@@ -136,15 +146,8 @@ def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool
             help=f"channel of the file, by number, exact name, or pattern with *, for {roles}; time=NAME names the "
             "times; may be repeated; `python -m vehicle inspect FILE` lists them",
         )
-    parser.add_argument(
-        "--unit",
-        dest="units",
-        action="append",
-        default=[],
-        metavar="[ROLE=]UNIT",
-        help="unit of the chosen channels, or of one, where the file tells none or a wrong one, as mm or g; may be "
-        "repeated",
-    )
+    if unit:
+        unit_option(parser)
     if rate:
         parser.add_argument("--rate", type=float, metavar="HZ", help="samples a second, in place of the file's times")
     parser.add_argument("--from", dest="first", type=float, metavar="S", help="begin at this time of the file [s]")
@@ -155,6 +158,19 @@ def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool
         type=float,
         metavar="HZ",
         help="corner of a high-pass without phase shift [Hz]; with it velocities and accelerations are integrated",
+    )
+
+
+def unit_option(parser: argparse._ActionsContainer) -> None:
+    """Add --unit: the units of the channels of a file."""
+    parser.add_argument(
+        "--unit",
+        dest="units",
+        action="append",
+        default=[],
+        metavar="[ROLE=]UNIT",
+        help="unit of the chosen channels, or of one, where the file tells none or a wrong one, as mm or g; may be "
+        "repeated",
     )
 
 

@@ -40,8 +40,6 @@ def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
 def _roads(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
     from vehicle.commands.road import class_or_profile, road_drive
 
-    if not all(options.road):
-        raise ConfigurationError("--road: names no road here; give a class of ISO 8608, A to H, or FILE.csv")
     speeds = options.speed or [None]
     if len(speeds) not in (1, len(options.road)):
         raise ConfigurationError(
@@ -58,6 +56,6 @@ def _files(options: argparse.Namespace) -> list[Input]:
     from vehicle.excitation.input_files import find_input
     from vehicle.sweeps.case import SignalFile
 
-    wheel, levels = CORNERS[options.wheel or "front_right"], options.road is not None
+    wheel = CORNERS[options.wheel or "front_right"]
     paths = [find_input(name).resolve() for name in options.input]
-    return [SignalFile(path=path, wheel=wheel, accept_implausible=levels) for path in paths]
+    return [SignalFile(path=path, wheel=wheel, accept_implausible=options.any_level) for path in paths]

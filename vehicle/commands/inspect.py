@@ -7,8 +7,9 @@ import json
 import shlex
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.command_line import Parser, command
+from vehicle.commands.command_line import command
 from vehicle.commands.options import command_parser, message_options
+from vehicle.commands.parser import Parser
 
 if TYPE_CHECKING:
     from vehicle.records.channel import Channel, Measurement

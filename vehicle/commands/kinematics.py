@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vehicle.commands.command_line import Parser, parse_and_run
-from vehicle.commands.options import FORCE_HELP, command_parser, message_options, vehicle_options
+from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.options import command_parser, extra_output_options, message_options, vehicle_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -33,11 +35,16 @@ def parser() -> Parser:
         "--travel",
         default="-50:50:5",
         metavar="A:B[:STEP]",
-        help="of the wheel centres [mm], upwards; written --travel=-50:50; %(default)s by default",
+        help="of the wheel centres [mm], upwards; %(default)s by default",
     )
     found.add_argument("--opposite", action="store_true", help="the left wheel goes down where the right one goes up")
-    for name, what in (("force", "force [N]"), ("moment", "moment [N m]")):
-        found.add_argument(
+    loads = found.scoped_group(
+        "loads on the wheels",
+        needs="bushings that yield, and --ideal makes ideal joints of them; leave one of the two out",
+        active=lambda options: not options.ideal,
+    )
+    for name, what in (("contact-force", "force [N]"), ("moment", "moment [N m]")):
+        loads.add_argument(
             f"--{name}",
             action="append",
             default=[],
@@ -46,8 +53,12 @@ def parser() -> Parser:
             "right, z up), as x=1000; with --opposite against each other; may be repeated",
         )
     found.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
-    found.add_argument("--output", type=Path, metavar="DIR", help="write kinematics.csv and kinematics.png there")
-    found.add_argument("--replace", action="store_true", help=FORCE_HELP)
+    extra_output_options(found, "kinematics.csv and kinematics.png")
+    found.former("--replace", "--replace: files are replaced by --force, as in all commands")
+    found.former(
+        "--force(=| [^-])",
+        "--force: replaces files, as in all commands; a force on the wheels is given by --contact-force AXIS=VALUE",
+    )
     found.add_argument("--json", action="store_true", help="print JSON")
     message_options(found)
     return found
@@ -63,15 +74,14 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.simulation.axle_curves import design_slopes, travel_curve
 
     travels = _travels(options.travel)
-    load = np.array([*_vector("--force", options.force), *_vector("--moment", options.moment)])
-    if options.ideal and load.any():
-        raise ConfigurationError("--ideal: ideal joints do not yield to --force or --moment; leave one of them out")
+    load = np.array([*_vector("--contact-force", options.contact_force), *_vector("--moment", options.moment)])
+    folder = None if options.output is None else output_folder_of(options, options.output)
     car = Car.load(options.vehicle, options.overrides)
     statics = axle_statics(car, options.axle, ideal=options.ideal)
     rates = design_slopes(statics, opposite=options.opposite, load=load)
     poses = travel_curve(statics, travels, opposite=options.opposite, load=load)
-    if options.output is not None:
-        _write(options, car.vehicle.name, poses)
+    if folder is not None:
+        _write(options, folder, car.vehicle.name, poses)
     if options.json:
         rows = [{k: None if math.isnan(v) else v for k, v in dataclasses.asdict(pose).items()} for pose in poses]
         print(json.dumps({"axle": options.axle, "rates": rates, "rows": rows}, indent=2, allow_nan=False))
@@ -166,7 +176,7 @@ def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str
     return "\n".join(lines)
 
 
-def _write(options: argparse.Namespace, name: str, poses: list[WheelPose]) -> None:
+def _write(options: argparse.Namespace, output: Path, name: str, poses: list[WheelPose]) -> None:
     from vehicle.output.folder import output_folder, write_whole
     from vehicle.records.text_format import write_table
     from vehicle.rendering.kinematics_plot import plot_kinematics
@@ -179,13 +189,13 @@ def _write(options: argparse.Namespace, name: str, poses: list[WheelPose]) -> No
         f"{name}, {options.axle} axle, wheel on the right, against its design position",
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
     ]
-    with output_folder(options.output, force=options.replace) as folder:
+    with output_folder(output, force=options.force) as folder:
         write_whole(folder / "kinematics.csv", lambda file: write_table(file, heads, columns, comments))
         caption = "; ".join(
             [
                 "opposite travel" if options.opposite else "equal travel",
                 "ideal joints" if options.ideal else "bushings as they are",
-                *(f"force {entry} N" for entry in options.force),
+                *(f"force {entry} N" for entry in options.contact_force),
                 *(f"moment {entry} N m" for entry in options.moment),
             ]
         )

@@ -8,8 +8,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import FORCE_HELP, command_parser, message_options
+from vehicle.commands.command_line import command
+from vehicle.commands.destination import output_files_of
+from vehicle.commands.options import command_parser, message_options, output_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -39,10 +41,7 @@ def parser() -> Parser:
     found.add_argument(
         "--classes", type=int, default=64, metavar="N", help="classes of the range in the spectra; %(default)s"
     )
-    found.add_argument(
-        "--output", type=Path, metavar="DIR", help=f"folder of {', '.join(FILES)}; that of the run by default"
-    )
-    found.add_argument("--force", action="store_true", help=FORCE_HELP)
+    output_options(found, f"{', '.join(FILES)} in that of the run")
     message_options(found, quiet=True)
     return found
 
@@ -50,18 +49,17 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.analysis.load_spectrum import load_spectrum
     from vehicle.output.folder import write_text, write_whole
-    from vehicle.output.written_files import mark
     from vehicle.records.formats import read_columns
     from vehicle.rendering.load_plot import plot_loads
 
     source = _time_file(options.run)
-    folder = _folder(options, source.parent)
     if not 1 <= options.classes <= 10000:
         raise ConfigurationError(f"--classes {options.classes}: must be 1 to 10000")
     if not 1.0 <= options.slope < 1000.0:
         raise ConfigurationError(f"--slope {options.slope:g}: must be at least 1, and below 1000")
     record = read_columns(source)
     names = _chosen(options.channels, record.units, source)
+    table, spectra, picture = output_files_of(options, source.parent, FILES)
     duration = float(record.time[-1] - record.time[0])
     found = [
         load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
@@ -71,14 +69,12 @@ def _job(options: argparse.Namespace) -> None:
         f"{source.name}, {duration:g} s; rainflow counts of ASTM E1049; equivalent amplitude: one cycle a second of "
         f"equal damage, slope {options.slope:g}"
     )
-    folder.mkdir(parents=True, exist_ok=True)
-    mark(folder)
-    write_text(folder / FILES[0], _table(found, about))
-    write_text(folder / FILES[1], _spectra(found, about, options.classes))
-    write_whole(folder / FILES[2], lambda path: plot_loads(path, found, about))
+    write_text(table, _table(found, about))
+    write_text(spectra, _spectra(found, about, options.classes))
+    write_whole(picture, lambda path: plot_loads(path, found, about))
     if not options.quiet:
         print(_report(found, about))
-        print(f"files: {folder}: {', '.join(FILES)}")
+        print(f"files: {table.parent}: {', '.join(path.name for path in (table, spectra, picture))}")
 
 
 def _time_file(run: Path) -> Path:
@@ -89,20 +85,6 @@ def _time_file(run: Path) -> Path:
         if (run / name).is_file():
             return run / name
     raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file of its own")
-
-
-def _folder(options: argparse.Namespace, own: Path) -> Path:
-    """Where the files go; refused where they would replace others."""
-    from vehicle.output.written_files import written
-
-    folder: Path = options.output or own
-    if folder.exists() and not folder.is_dir():
-        raise ConfigurationError(f"--output {folder}: is a file; give a folder")
-    for name in FILES:
-        if (folder / name).exists() and not (options.force and name in written(folder)):
-            mend = "is of somebody else; give another --output" if options.force else "exists; give --force"
-            raise ConfigurationError(f"{folder / name}: {mend}")
-    return folder
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:

@@ -5,33 +5,34 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehicle.commands.command_line import Parser, command
-from vehicle.commands.options import command_parser, message_options, vehicle_options
+from vehicle.commands.command_line import command
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.options import command_parser, message_options, output_options, vehicle_options
+from vehicle.commands.parser import Parser
 
 
 def parser() -> Parser:
     """The options of the command."""
     found = command_parser("mjcf", "Write car.xml, scene.xml and meshes of a vehicle.")
     vehicle_options(found)
-    found.add_argument(
-        "--output",
-        type=Path,
-        default=Path("mjcf"),
-        metavar="DIR",
-        help="folder of the model, where an older one is replaced; mjcf/ by default",
-    )
+    output_options(found, "mjcf")
     message_options(found)
     return found
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.assembly.mjcf_files import mjcf_files, write_mjcf
+    from vehicle.assembly.mjcf_files import mjcf_files
     from vehicle.car import Car
+    from vehicle.output.model_files import write_mjcf
 
     car = Car.load(options.vehicle, options.overrides)
     files = mjcf_files(car.vehicle, car.trimmed_body)
-    write_mjcf(options.output, files)
-    print(f"{options.output}: car.xml, scene.xml, {len(files) - 2} meshes")
+    # With --force the files of others in the folder stay, so that it is not replaced as a whole.
+    folder = options.output or Path("mjcf")
+    if not (options.force and folder.is_dir()):
+        folder = output_folder_of(options, Path("mjcf"))
+    write_mjcf(folder, files)
+    print(f"{folder}: car.xml, scene.xml, {len(files) - 2} meshes")
 
 
 main = command(parser, _job)

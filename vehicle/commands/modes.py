@@ -9,8 +9,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.destination import output_file_of
 from vehicle.commands.options import FORCE_HELP, command_parser, film_name, message_options, vehicle_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 
@@ -40,7 +42,10 @@ def parser() -> Parser:
         help="write the mode of --animate as a film of three cycles, 4 s, that can be repeated without a seam; "
         "runs/mode_<frequency>_hz.mp4 by default",
     )
-    found.add_argument("--force", action="store_true", help=FORCE_HELP)
+    files = found.scoped_group(
+        "files", needs="--uff or --video", active=lambda options: options.uff is not None or options.video is not None
+    )
+    files.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(found)
     return found
 
@@ -49,11 +54,10 @@ def _job(options: argparse.Namespace) -> None:
     _check_film_options(options)
     from vehicle.car import Car
 
-    if options.uff is not None and options.uff.exists():
-        own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
-        if not (options.force and own):
-            mend = "is of somebody else; give another name" if options.force else "exists; give --force"
-            raise ConfigurationError(f"--uff {options.uff}: {mend}")
+    if options.uff is not None:
+        from vehicle.output.destination import named_file
+
+        named_file(options.held, options.uff, "--uff", force=options.force)
     car = Car.load(options.vehicle, options.overrides)
     found = modes_table(car, options.damper)
     if options.uff is not None:
@@ -81,11 +85,11 @@ def _check_film_options(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"--animate {options.animate:g}: must be a frequency above 0 Hz, as --animate 28")
     if options.video is None:
         raise ConfigurationError(f"--animate {options.animate:g}: shows a mode as a film; give --video [FILE.mp4] too")
-    from vehicle.output.folder import check_film
+    from vehicle.output.destination import named_file
     from vehicle.rendering.backend import require_film
 
     if options.video:
-        check_film(film_name(options.video, ""), force=options.force)
+        named_file(options.held, film_name(options.video, ""), "--video", force=options.force)
     require_film()
 
 
@@ -103,14 +107,13 @@ def nearest(modes: Sequence[Any], frequency: float) -> Any:
 
 def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
     """Write the film; what it shows, and where it is."""
-    from vehicle.output.folder import check_film, write_whole
+    from vehicle.output.folder import write_whole
     from vehicle.rendering.mode_film import mode_film
 
     mode = nearest(car.modes(options.damper), options.animate)
     path = film_name(options.video, f"runs/mode_{mode.frequency:.2f}_hz.mp4")
     if not options.video:
-        path.parent.mkdir(exist_ok=True)
-        check_film(path, force=options.force)
+        path = output_file_of(argparse.Namespace(**vars(options), output=None), path)
     write_whole(path, lambda file: mode_film(car.model, mode, file, progress=ProgressLine("film      ", enabled=True)))
     return {"file": str(path), "asked_hz": options.animate, "frequency_hz": mode.frequency}
 

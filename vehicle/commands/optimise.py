@@ -11,7 +11,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
@@ -24,6 +25,7 @@ from vehicle.commands.options import (
     skip_option,
     vehicle_options,
 )
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -81,13 +83,17 @@ def parser() -> Parser:
     search.add_argument(
         "--search-seed", type=int, default=1, metavar="N", help="one seed is one search; %(default)s by default"
     )
-    made = found.add_argument_group("cars as they are made")
-    made.add_argument(
+    found.add_argument(
         "--tolerance",
         action="append",
         default=[],
         metavar="PATH=SIZE",
         help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
+    )
+    made = found.scoped_group(
+        "cars as they are made",
+        needs="--tolerance PATH=SIZE, and there is none",
+        active=lambda options: bool(options.tolerance),
     )
     made.add_argument(
         "--samples", type=int, metavar="K", help="cars within the tolerances for each car tried; 8 by default"
@@ -106,7 +112,7 @@ def parser() -> Parser:
     found.add_argument(
         "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn, and how far it is"
     )
-    output_options(found, Path("runs/optimise"))
+    output_options(found, "runs/optimise")
     found.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")
     message_options(found, quiet=True)
     return found
@@ -121,7 +127,6 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.optimisation.search import pymoo
     from vehicle.optimisation.search_files import agreement, read_beside, write_search
     from vehicle.optimisation.trials import on_executor
-    from vehicle.output.folder import prepare_folder
     from vehicle.sweeps.executors import executor_factory
 
     for name, least in (("cars", 8), ("population", 8), ("search_seed", 0)):
@@ -131,7 +136,7 @@ def _job(options: argparse.Namespace) -> None:
     trials, vehicle = _trials(options)
     beside = None if options.beside is None else read_beside(options.beside, trials.problem)
     make = executor_factory(options.executor, options.jobs)
-    folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=CARS)
+    folder = prepared_folder_of(options, Path("runs/optimise"), rows=CARS)
     with ExitStack() as held:
         if options.executor or options.jobs > 1:
             trials = replace(trials, evaluate=on_executor(held.enter_context(make()), trials.measure))
@@ -210,10 +215,6 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
         tolerances = toleranced(vehicle, [parsed_tolerance(text) for text in options.tolerance])
         places = bands(len(tolerances), 8 if options.samples is None else options.samples, options.search_seed)
         spread = Spread(tolerances=tolerances, bands=places, quantile=quantile)
-    else:
-        for name in ("samples", "quantile"):
-            if getattr(options, name) is not None:
-                raise ConfigurationError(f"--{name}: belongs to --tolerance PATH=SIZE, and there is none")
     trials = Trials(
         problem=problem,
         inputs=inputs,

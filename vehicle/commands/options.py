@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from vehicle.commands.command_line import Parser
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import ENGINES
 from vehicle.parameters.shipped import CARS, vehicle_file
@@ -14,7 +14,7 @@ EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
 )
 
-FORCE_HELP = "replace what an earlier run wrote there; any other file stops it"
+FORCE_HELP = "replace what an earlier run wrote there; any other file, and one that was changed since, stops it"
 
 
 def command_parser(name: str, description: str) -> Parser:
@@ -30,7 +30,7 @@ def command_parser(name: str, description: str) -> Parser:
 VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of source 1 by default"
 
 
-def vehicle_options(parser: argparse.ArgumentParser) -> None:
+def vehicle_options(parser: argparse._ActionsContainer) -> None:
     """Add --vehicle and --set: which car."""
     parser.add_argument(
         "--vehicle",
@@ -49,18 +49,30 @@ def vehicle_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def output_options(parser: argparse.ArgumentParser, folder: Path | None, *, default: str = "") -> None:
-    """Add --output and --force: where the results go.
+def output_options(parser: Parser, default: str, *, metavar: str = "DIR") -> None:
+    """Add --output and --force: where the results go, see `vehicle.commands.destination`.
 
     Args:
         parser: of the command.
-        folder: without --output; None where the job chooses it.
-        default: what the help says of it then.
+        default: the folder or file without --output, for the help.
+        metavar: DIR, or FILE with its ending.
     """
-    parser.add_argument(
-        "--output", type=Path, default=folder, metavar="DIR", help=f"folder of the results; {default or folder}"
-    )
+    what = "folder" if metavar == "DIR" else "file"
+    text = f"{what} of the results; {default} by default, and the next free name where that exists"
+    parser.add_argument("--output", type=Path, metavar=metavar, help=text)
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
+
+
+def extra_output_options(parser: Parser, files: str) -> None:
+    """Add --output and --force of a command that prints, and writes files where --output is given.
+
+    Args:
+        parser: of the command.
+        files: names of the files, for the help.
+    """
+    parser.add_argument("--output", type=Path, metavar="DIR", help=f"write {files} there")
+    group = parser.scoped_group("files", needs="--output DIR", active=lambda options: options.output is not None)
+    group.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
 def film_name(given: str, default: str) -> Path:
@@ -79,7 +91,7 @@ def film_name(given: str, default: str) -> Path:
     return name
 
 
-def engine_option(parser: argparse.ArgumentParser, default: str) -> None:
+def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
     """Add --engine: what computes a run.
 
     Args:
@@ -99,6 +111,13 @@ def skip_option(parser: argparse.ArgumentParser) -> None:
     """Add --skip: the car starts at rest."""
     text = "seconds left out at the start; %(default)g by default"
     parser.add_argument("--skip", type=float, default=2.0, metavar="S", help=text)
+
+
+def resume_options(parser: Parser) -> None:
+    """Add --resume and --retry-failed: go on with a table of runs."""
+    parser.add_argument("--resume", action="store_true", help="go on in that folder; finished rows are kept")
+    group = parser.scoped_group("going on", needs="--resume", active=lambda options: options.resume)
+    group.add_argument("--retry-failed", action="store_true", help="run failed rows again")
 
 
 def jobs_option(parser: argparse.ArgumentParser, *, note: str = "") -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.command_line import Parser, command
-from vehicle.commands.input_options import ROAD_NUMBERS, road_options
-from vehicle.commands.options import FORCE_HELP, command_parser, message_options, vehicle_options
+from vehicle.commands.command_line import command
+from vehicle.commands.destination import output_file_of
+from vehicle.commands.input_options import road_options
+from vehicle.commands.options import command_parser, message_options, output_options, vehicle_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -23,26 +26,25 @@ def parser() -> Parser:
     vehicle_options(found)
     found.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
     found.add_argument("--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]")
-    road_options(found)
-    found.add_argument("--output", type=Path, metavar="FILE.csv", help="file of the signals; road.csv by default")
-    found.add_argument("--force", action="store_true", help=FORCE_HELP)
+    road_options(found, lambda _: True, lambda options: options.profile is None)
+    output_options(found, "road.csv", metavar="FILE.csv")
     message_options(found, quiet=True)
     return found
 
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.excitation.signal_file import write_signal
+    from vehicle.output.folder import write_whole
     from vehicle.parameters.vehicle import load_vehicle
 
-    path = options.output or Path("road.csv")
-    if path.exists() and not options.force:
-        raise ConfigurationError(f"--output {path}: exists; give --force to replace it, or another name")
     if (options.road_class is None) == (options.profile is None):
         raise ConfigurationError("road: needed is either --class or --profile, one of them")
+    inputs = tuple(file for file in (options.profile, options.vehicle) if file is not None)
+    path = output_file_of(options, Path("road.csv"), ending=".csv", protect=inputs)
     vehicle = load_vehicle(options.vehicle, options.overrides)
     road = options.road_class.upper() if options.profile is None else options.profile
     signal = road_drive(road, options, vehicle).signal()
-    write_signal(path, signal, [signal.source, f"wheels of {vehicle.name}"])
+    write_whole(path, lambda file: write_signal(file, signal, [signal.source, f"wheels of {vehicle.name}"]))
     if not options.quiet:
         sizes = ", ".join(f"{wheel} {1e3 * float(z.std()):.3g}" for wheel, z in signal.displacement.items())
         print(f"{path}: {signal.source}; {signal.duration:g} s; RMS [mm] {sizes}")
@@ -77,7 +79,9 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
     wheels = vehicle.composition.wheels
     foremost = min(wheel.center[0] for wheel in wheels)
     side: dict[bool, Side] = {True: "right", False: "left"}
-    numbers = {name: value for name in ROAD_NUMBERS if (value := getattr(options, name)) is not None}
+    # Every option that is named as a number of a drive, where it is given.
+    names = {field.name for field in fields(RoadDrive)} & vars(options).keys() - {"road"}
+    numbers = {name: value for name in names if (value := getattr(options, name)) is not None}
     return RoadDrive(
         road=road,
         wheels=tuple((wheel.name, wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels),

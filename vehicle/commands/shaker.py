@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 import math
 import shlex
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.compare import measured_beside, measured_options
-from vehicle.commands.input_options import drives_on_road, record_choice, record_options, signal_options
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.input_options import drives_on_road, record_choice, record_options, signal_options, unit_option
 from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
     command_parser,
@@ -22,6 +22,7 @@ from vehicle.commands.options import (
     output_options,
     vehicle_options,
 )
+from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
@@ -33,9 +34,18 @@ if TYPE_CHECKING:
 def parser() -> Parser:
     """The options of the command."""
     found = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
-    signal_options(found)
-    record_options(found, 'a plate, as fr="Shaker FR"', rate=False)
-    output_options(found, None, default="runs/<input stem>, or runs/road_C_80, by default")
+    file = signal_options(found)
+    record_options(file, 'a plate, as fr="Shaker FR"', rate=False, unit=False)
+    file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
+    file.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
+    file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
+    read = found.scoped_group(
+        "a file of signals or of a measurement",
+        needs="--input or --measured; a road has none",
+        active=lambda options: bool(options.input or options.measured),
+    )
+    unit_option(read)
+    output_options(found, "runs/<input stem>, or runs/road_C_80,")
     vehicle_options(found)
     engine_option(found, "mujoco")
     found.add_argument(
@@ -65,16 +75,17 @@ def parser() -> Parser:
         "uff with the places of the car; may be repeated",
     )
     found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
-    found.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
-    found.add_argument(
+    film = found.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
+    film.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
+    film.add_argument(
         "--video-duration",
         type=float,
         default=10.0,
         metavar="S",
         help="length of the film [s], 10 by default; slow motion shows less of the record in it",
     )
-    found.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower; 1 by default")
-    found.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
+    film.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower; 1 by default")
+    film.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     measured_options(found)
     found.add_argument(
         "--report",
@@ -84,9 +95,6 @@ def parser() -> Parser:
         help="write a report too: one HTML file with findings, figures, moving modes and tables; report.html in the "
         "folder of the run by default",
     )
-    found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
-    found.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
-    found.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     message_options(found, quiet=True)
     return found
 
@@ -95,7 +103,7 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.excitation.input_files import find_input
     from vehicle.excitation.signal_file import read_signal
-    from vehicle.output.folder import check_output, output_folder
+    from vehicle.output.folder import output_folder
 
     drive = None
     if drives_on_road(options):
@@ -107,10 +115,9 @@ def _job(options: argparse.Namespace) -> None:
     else:
         source = find_input(options.input)
         stem = source.stem
-    output = options.output or Path("runs") / stem
-    inputs = tuple(path for path in (source, options.vehicle) if isinstance(path, Path))
-    check_output(output, force=options.force, protect=inputs)
+    inputs = tuple(path for path in (source, options.vehicle, options.measured) if isinstance(path, Path))
     _check_numbers(options)
+    output = output_folder_of(options, Path("runs") / stem, protect=inputs)
     if "h5" in options.formats:
         from vehicle.records.reader import extra
 
@@ -141,7 +148,7 @@ def _job(options: argparse.Namespace) -> None:
             interpolate=options.interpolate,
             resample_hz=options.resample,
             remove_mean=options.remove_mean,
-            accept_implausible=options.road is not None,
+            accept_implausible=options.any_level,
             choice=choice,
         )
     else:
@@ -151,7 +158,7 @@ def _job(options: argparse.Namespace) -> None:
     measured = measured_beside(options, channels or car.vehicle.channels, choice.units if choice else ())
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
     car.check(engine)
-    if options.road is None:
+    if drive is None and not options.any_level:
         require_plates(signal)
     road = None if drive is None else drive.summary(signal)
     signal = signal if drive is None else replace(signal, source=drive.name)
@@ -243,24 +250,23 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
 
 def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
     """Where the film goes: a plain name lies in the folder of the run."""
-    from vehicle.output.folder import check_film
-
-    name = film_name(options.video, f"{stem}.mp4")
-    return _beside(name, "--video", output, lambda: check_film(name, force=options.force))
+    return _beside(film_name(options.video, f"{stem}.mp4"), "--video", output, options)
 
 
 def _report_path(options: argparse.Namespace, output: Path) -> Path:
     """Where the report goes, in the same way."""
-    from vehicle.commands.report import NAME, check_report
+    from vehicle.commands.report import NAME
 
     name = Path(options.report or NAME)
     if name.suffix != ".html":
         raise ConfigurationError(f"--report {name}: a report is written as .html; give FILE.html")
-    return _beside(name, "--report", output, lambda: check_report(name, "--report", force=options.force))
+    return _beside(name, "--report", output, options)
 
 
-def _beside(name: Path, option: str, output: Path, check: Callable[[], None]) -> Path:
-    """A plain name in the folder of the run, or a path outside it that `check` does not refuse."""
+def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) -> Path:
+    """A plain name in the folder of the run, or a path outside it where nothing is in the way."""
+    from vehicle.output.destination import named_file
+
     if name.parent == Path():
         return name
     folder = output.resolve()
@@ -268,8 +274,7 @@ def _beside(name: Path, option: str, output: Path, check: Callable[[], None]) ->
         return Path(name.name)
     if folder in name.resolve().parents:
         raise ConfigurationError(f"{option} {name}: lies below the folder of the run; give a plain name: {name.name}")
-    check()
-    return name
+    return named_file(options.held, name, option, force=options.force)
 
 
 main = command(parser, _job)

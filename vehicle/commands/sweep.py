@@ -8,7 +8,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle.commands.command_line import Parser, ProgressLine, command
+from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
@@ -18,9 +19,11 @@ from vehicle.commands.options import (
     jobs_option,
     message_options,
     output_options,
+    resume_options,
     skip_option,
     vehicle_options,
 )
+from vehicle.commands.parser import Parser
 
 
 def parser() -> Parser:
@@ -46,9 +49,8 @@ def parser() -> Parser:
     skip_option(found)
     jobs_option(found)
     executor_option(found)
-    output_options(found, Path("runs/sweep"))
-    found.add_argument("--resume", action="store_true", help="go on in that folder; finished rows are kept")
-    found.add_argument("--retry-failed", action="store_true", help="with --resume: run failed rows again")
+    output_options(found, "runs/sweep")
+    resume_options(found)
     found.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
     message_options(found, quiet=True)
     return found
@@ -57,7 +59,6 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
-    from vehicle.output.folder import prepare_folder
     from vehicle.parameters.vehicle import load_vehicle
     from vehicle.sweeps.case import table_cases
     from vehicle.sweeps.executors import executor_factory
@@ -74,7 +75,7 @@ def _job(options: argparse.Namespace) -> None:
     inputs = chosen_inputs(options, vehicle)
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
-    folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=ROWS)
+    folder = prepared_folder_of(options, Path("runs/sweep"), rows=ROWS)
     try:
         table = sweep(
             cases,

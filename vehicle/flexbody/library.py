@@ -112,7 +112,7 @@ def _with_changed_modes(model: Superelement, vehicle: Vehicle) -> Superelement:
     return replace(model, frequencies=frequencies, damping_ratio=damping, derived=True)
 
 
-def own_body_file(vehicle: Vehicle, folder: Path) -> Path | None:
+def own_body_file(vehicle: Vehicle, folder: Path | None) -> Path | None:
     """The file of the body where it is none of the package; arguments as of `body_model`."""
     found = None if vehicle.body.superelement is None else _find(vehicle.body.superelement, folder)
     return None if found is None or found.parent == PACKAGE_FOLDER else found
@@ -131,7 +131,9 @@ def body_file(vehicle: Vehicle, folder: Path | None = None) -> Path:
 
 
 def _find(name: str, folder: Path | None) -> Path | None:
-    """A file by its name, which parameter validation keeps free of folders; None where there is none."""
+    """A file by its name, or by the whole path that the user gives as an override; None where there is none."""
+    if "/" in name:
+        return Path(name) if Path(name).is_file() else None
     for place in (folder, PACKAGE_FOLDER):
         if place is None or not (place / name).is_file():
             continue

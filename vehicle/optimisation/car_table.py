@@ -14,6 +14,7 @@ from vehicle.errors import DataError, OutputError
 from vehicle.optimisation.problem import Problem
 from vehicle.optimisation.search import Tried
 from vehicle.output.folder import write_text
+from vehicle.output.written_files import note
 
 CARS = "cars.csv"
 
@@ -49,6 +50,7 @@ class CarTable:
         self._head = ["car", "generation", *columns(problem), "failed because"]
         known = self._read() if path.exists() else []
         write_text(path, _text([self._head]))
+        note(path)  # which grows from now on
         for tried in known:
             self.add(tried)
 

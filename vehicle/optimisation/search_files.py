@@ -19,8 +19,7 @@ from vehicle.optimisation.front import distance, hypervolume
 from vehicle.optimisation.outcome import BASE, Outcome
 from vehicle.optimisation.problem import Problem, Vector
 from vehicle.output.folder import write_json, write_text, write_whole
-from vehicle.output.own_files import write_own_files
-from vehicle.parameters.toml_file import write_text as vehicle_text
+from vehicle.output.own_files import parameters_text, write_own_files
 from vehicle.rendering.front_plot import FrontPicture, plot_front
 
 FRONT = "front.csv"
@@ -133,7 +132,7 @@ def write_search(
     for name, row in found.named.items():
         file = re.sub(r"[^A-Za-z0-9_.-]+", "_", name) + ".toml"
         header = f"{name} of a search; made with {' '.join(cars[name].overrides)}"
-        write_text(folder / file, vehicle_text(cars[name].vehicle, header))
+        write_text(folder / file, parameters_text(cars[name], header))
         files |= {name: file, **write_own_files(folder, cars[name])}
         point = dict(zip((one.path for one in found.problem.ranges), found.tried.points[row].tolist(), strict=True))
         points[name] = {"vehicle": file, "overrides": list(cars[name].overrides), "parameters": point}

@@ -9,7 +9,7 @@ import numpy as np
 
 from vehicle.excitation.signal_file import write_signal
 from vehicle.output.folder import write_json, write_text, write_whole
-from vehicle.parameters.toml_file import write_text as vehicle_text
+from vehicle.output.own_files import parameters_text, write_own_files
 from vehicle.records.formats import FORMATS
 from vehicle.records.table import Record
 from vehicle.rendering.drive_plot import plot_convergence, plot_replication
@@ -41,7 +41,7 @@ def write_drive(folder: Path, found: Replication, plant: DrivenCar) -> dict[str,
     Raises:
         OutputError: a file cannot be written.
     """
-    target, vehicle, run = plant.target, plant.car.vehicle, plant.last
+    target, run = plant.target, plant.last
     assert run is not None
     signal, low, high = plant.signal(found.drive), *target.band
     last = found.steps[-1]
@@ -78,7 +78,7 @@ def write_drive(folder: Path, found: Replication, plant: DrivenCar) -> dict[str,
             f"{about}; {found.outcome}",
         ),
     )
-    write_text(folder / FILES["vehicle"], vehicle_text(vehicle, "parameters of this drive, as used"))
+    write_text(folder / FILES["vehicle"], parameters_text(plant.car, "parameters of this drive, as used"))
     summary = {
         "target": {
             "file": target.source.name,
@@ -103,7 +103,7 @@ def write_drive(folder: Path, found: Replication, plant: DrivenCar) -> dict[str,
             {"number": step.number, "gain": step.gain, "error": step.error, "kept": step.kept} for step in found.steps
         ],
         "notices": [*target.notices, *plant.ramp, *run.recording.statistics.warnings],
-        "files": FILES,
+        "files": FILES | write_own_files(folder, plant.car),
     }
     write_json(folder / FILES["summary"], summary)
     return summary

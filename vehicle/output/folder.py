@@ -6,13 +6,22 @@ import fcntl
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.output.written_files import MARKER, discard, mark, note, refuse_foreign
+from vehicle.output.written_files import (
+    MARKER,
+    UNFINISHED,
+    digest_of,
+    discard,
+    mark,
+    note,
+    refuse_foreign,
+    refuse_foreign_file,
+)
 
 
 @contextmanager
@@ -89,8 +98,7 @@ def prepare_folder(folder: Path, *, force: bool, resume: bool = False, rows: str
             )
             raise ConfigurationError(f"--output {folder}: holds {ways}")
         with folder_lock(folder.resolve()):
-            if not (resume and begun):
-                refuse_foreign(folder)
+            refuse_foreign(folder, changes_only=resume and begun)
             mark(folder)
             if force and rows:
                 (folder / rows).unlink(missing_ok=True)
@@ -133,44 +141,103 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> 
     return folder
 
 
-def check_film(path: Path, *, force: bool) -> None:
-    """Refuse the path of a film outside the folder of its run, before anything is computed.
+def check_file(
+    path: Path, option: str = "--output", *, ending: str = "", force: bool, protect: tuple[Path, ...] = ()
+) -> None:
+    """Refuse the path of a single file before anything is computed.
+
+    Args:
+        path: of the file.
+        option: that names it.
+        ending: that its name must have, as ".csv".
+        force: replace a file that the program wrote.
+        protect: input files, which are never replaced.
 
     Raises:
-        ConfigurationError: it exists without `force`, or is no film: nothing but a film is replaced by one.
-        OutputError: its folder does not exist or cannot be written.
+        ConfigurationError: another ending, a folder, an input, a file that exists without `force`, or one that the
+            program did not write.
+        OutputError: its folder cannot be made or written.
     """
+    if ending and path.suffix != ending:
+        raise ConfigurationError(f"{option} {path}: this file is written as {ending}; give FILE{ending}")
+    if path.is_dir():
+        raise ConfigurationError(f"{option} {path}: is a folder; give FILE{ending}")
+    if any(file.resolve() == path.resolve() for file in protect):
+        raise ConfigurationError(f"{option} {path}: is an input of this command; give another name")
     if path.exists() or path.is_symlink():
         if not force:
-            raise ConfigurationError(f"--video {path}: exists; give --force to replace it, or another name")
-        if not _is_film(path):
-            raise ConfigurationError(f"--video {path}: exists and is no film; give another name")
-    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK):
-        raise OutputError(f"--video {path}: {path.parent} is no folder that can be written; choose another one")
+            raise ConfigurationError(f"{option} {path}: exists; give --force to replace it, or another name")
+        refuse_foreign_file(path, option)
+    above = next(folder for folder in path.absolute().parents if folder.exists())
+    if not above.is_dir():
+        raise ConfigurationError(f"{option} {path}: {above.name} is a file, no folder; give another name")
+    if not os.access(above, os.W_OK):
+        raise OutputError(f"{option} {path}: {above} cannot be written; choose another folder")
 
 
-def _is_film(path: Path) -> bool:
-    """Whether a file begins with a box of the type `ftyp`, behind four bytes of its length (ISO/IEC 14496-12, 4.3)."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as file:
-        return file.read(8)[4:] == b"ftyp"
+def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
+    """Refuse to write files into a folder that may hold others in addition.
+
+    Args:
+        folder: the folder; it need not exist.
+        names: of the files, relative to it.
+        force: replace those that the program wrote.
+
+    Raises:
+        ConfigurationError: the folder is a file, or a file is in the way.
+        OutputError: the folder cannot be written.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ConfigurationError(f"--output {folder}: is a file; give a folder")
+    for name in names:
+        check_file(folder / name, force=force)
+
+
+_claimed: set[Path] = set()
+"""Folders and files that this command has locked until its end, as of `claim`."""
+
+
+class OccupiedError(ConfigurationError):
+    """Another process writes there."""
+
+
+@contextmanager
+def claim(path: Path) -> Iterator[None]:
+    """Lock a folder or a file that a command writes later; `folder_lock` of this process passes meanwhile.
+
+    Args:
+        path: without links.
+
+    Raises:
+        OccupiedError, OutputError: as of `folder_lock`.
+    """
+    if path in _claimed:
+        raise OccupiedError(f"--output {path}: is written twice by this command; give another name")
+    with folder_lock(path):
+        _claimed.add(path)
+        try:
+            yield
+        finally:
+            _claimed.discard(path)
 
 
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
-    """Keep other processes from writing into the same folder meanwhile.
+    """Keep other processes from writing into the same folder, or the same file, meanwhile.
 
     The kernel drops the lock of a process that dies, so that the file a killed one leaves behind locks nothing.
 
     Raises:
-        ConfigurationError: another process writes there; the message has its number.
+        OccupiedError: another process writes there; the message has its number.
         OutputError: the parent of the folder cannot be written.
     """
+    if folder in _claimed:
+        yield
+        return
     path = folder.parent / f".{folder.name}.lock"
+    made = [parent for parent in path.parents if not parent.exists()]
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+        descriptor = _opened(path)
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written: {error.strerror}; choose another --output") from None
     try:
@@ -180,7 +247,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
                 raise BlockingIOError  # the other one finished between the two calls
         except BlockingIOError:
             owner = os.read(descriptor, 20).decode(errors="replace").strip()
-            raise ConfigurationError(
+            raise OccupiedError(
                 f"--output {folder}: process {owner or '(unknown)'} is writing there; wait for it, or give another "
                 "folder"
             ) from None
@@ -194,23 +261,38 @@ def folder_lock(folder: Path) -> Iterator[None]:
             path.unlink(missing_ok=True)
     finally:
         os.close(descriptor)
+        with suppress(OSError):  # a folder that is in use by now
+            for parent in made:
+                parent.rmdir()
+
+
+def _opened(path: Path) -> int:
+    """Open a lock file, whose folder another process may remove in between."""
+    for _ in range(5):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with suppress(FileNotFoundError):
+            return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+    return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write one file under a temporary name and rename it; a marked folder lists it.
+    """Write one file under a temporary name and rename it; the list of its folder gets its name and digest.
 
     Args:
         path: final name.
         write: writes the file at the path it is given; the ending of the name is kept.
 
     Raises:
+        ConfigurationError: a file is there that the program did not write, or that was changed since.
         OutputError: the file cannot be written; nothing is left behind.
     """
+    refuse_foreign_file(path)
     temporary = path.with_name(f".{os.getpid()}.{path.name}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        note(path)
+        note(path, UNFINISHED)
         write(temporary)
+        note(path, digest_of(temporary))
         temporary.replace(path)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing is left behind") from None

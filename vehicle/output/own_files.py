@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from vehicle.car import Car
@@ -9,6 +10,16 @@ from vehicle.flexbody.library import own_body_file
 from vehicle.output.folder import write_whole
 from vehicle.parameters.instances import instances
 from vehicle.parameters.template import own_templates
+from vehicle.parameters.toml_file import write_text as vehicle_text
+
+
+def parameters_text(car: Car, header: str) -> str:
+    """Return the vehicle file of a car; a body model of elsewhere is named as `write_own_files` copies it."""
+    vehicle = car.vehicle
+    if "/" in (name := vehicle.body.superelement or ""):
+        table = vehicle.table | {"body": vehicle.table["body"] | {"superelement": Path(name).name}}
+        vehicle = replace(vehicle, table=table)
+    return vehicle_text(vehicle, header)
 
 
 def write_own_files(folder: Path, car: Car) -> dict[str, str]:
@@ -24,11 +35,11 @@ def write_own_files(folder: Path, car: Car) -> dict[str, str]:
     Raises:
         OutputError: a file cannot be written.
     """
-    if car.folder is None:
-        return {}
-    places = (car.folder, car.folder / "templates")
-    names = [str(i.numbers["template"]) for i in instances(car.vehicle.table, places).values()]
-    found = {f"templates/{file.name}": file for file in own_templates(names, places)}
+    found: dict[str, Path] = {}
+    if car.folder is not None:
+        places = (car.folder, car.folder / "templates")
+        names = [str(i.numbers["template"]) for i in instances(car.vehicle.table, places).values()]
+        found = {f"templates/{file.name}": file for file in own_templates(names, places)}
     if body := own_body_file(car.vehicle, car.folder):
         found[body.name] = body
     for name, file in found.items():

@@ -20,10 +20,9 @@ from vehicle.flexbody.loads import body_loads
 from vehicle.flexbody.mass_difference import mass_difference
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.output.folder import write_json, write_text, write_whole
-from vehicle.output.own_files import write_own_files
+from vehicle.output.own_files import parameters_text, write_own_files
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.parameters.idle import idle_parameters
-from vehicle.parameters.toml_file import write_text as vehicle_text
 from vehicle.parameters.whole_body import body_notices
 from vehicle.records.formats import FORMATS
 from vehicle.records.frf import write_frf
@@ -60,7 +59,7 @@ def require_plates(signal: Signal) -> None:
     try:
         common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], FRF_BAND)
     except DependentInputsError as error:
-        raise DataError(f"{error}; or give --road for a run without FRFs") from None
+        raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
 
 
 def write_run(
@@ -107,7 +106,7 @@ def write_run(
         write_whole(folder / "psd.csv", lambda path: _write_psd(path, run))
     files["time_plot"] = "time.png"
     header = f"parameters of this run, as used\nframe: {FRAME}"
-    write_text(folder / "vehicle.toml", vehicle_text(run.car.vehicle, header))
+    write_text(folder / "vehicle.toml", parameters_text(run.car, header))
     files |= write_own_files(folder, run.car)
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME

@@ -78,7 +78,10 @@ class TrimmedBody:
     cog: Point = quantity("m", "centre of gravity", length=3)
     inertia: BodyInertia
     superelement: str | None = quantity(
-        "-", "body design or modal superelement: file beside the vehicle file, or of the package", default=None
+        "-",
+        "body design or modal superelement: file beside the vehicle file, or of the package; with --set any path",
+        is_file=True,
+        default=None,
     )
     flexible: bool = True
     attachment_flexibility: bool = True

@@ -15,7 +15,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
-from vehicle.parameters.quantity import field_quantity
+from vehicle.parameters.quantity import PATH_PATTERN, field_quantity
 from vehicle.parameters.toml_file import as_table, copy_table
 
 Optional = Callable[[], Iterable[str]]
@@ -268,7 +268,7 @@ def parsed_value(assignment: str, text: str, old: Any) -> Any:
     except RecursionError:
         raise ConfigurationError(f"--set {assignment[:60]}...: brackets are nested too deep") from None
     except tomllib.TOMLDecodeError:
-        if isinstance(old, str) and re.fullmatch(r"[A-Za-z0-9_.-]+", text):
+        if isinstance(old, str) and PATH_PATTERN.fullmatch(text):
             return text
         try:
             return float(text)  # ".5" and "1." are numbers to everybody but TOML

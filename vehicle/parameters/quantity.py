@@ -13,6 +13,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9_.-]+")
+PATH_PATTERN = re.compile(r"[^\s\"'\[\]{}#\\]([^\"'\[\]{}#\\\r\n\t]*[^\s\"'\[\]{}#\\])?")
+"""Path of a file: blanks inside it, and no sign that means something in a TOML file."""
 
 
 def quantity(
@@ -25,6 +27,7 @@ def quantity(
     why: str = "",
     length: int | None = None,
     choices: tuple[str, ...] | None = None,
+    is_file: bool = False,
     default: Any = dataclasses.MISSING,
 ) -> Any:
     """Declare a field of a parameter class.
@@ -38,6 +41,7 @@ def quantity(
         why: reason of the range, shown where it is left.
         length: number of components of a vector; None for a scalar.
         choices: allowed words of a text field.
+        is_file: True for a text field that may be the path of a file; other texts are names.
         default: value where a file leaves the field out; by default it must be given.
 
     Returns:
@@ -52,6 +56,7 @@ def quantity(
         "why": why,
         "length": length,
         "choices": choices,
+        "is_file": is_file,
         "default": None if default is dataclasses.MISSING else default,
     }
     if default is dataclasses.MISSING:
@@ -106,6 +111,8 @@ def check(path: str, value: Any, metadata: Any) -> None:
     names = (value,) if isinstance(value, str) else value
     texts = isinstance(names, tuple) and names and all(isinstance(name, str) for name in names)
     if texts and metadata["unit"] == "-":
+        if metadata["is_file"] and PATH_PATTERN.fullmatch(value):
+            return
         for name in names:
             if not NAME_PATTERN.fullmatch(name):
                 raise ConfigurationError(f"{path}: found {name!r}, allowed are names of letters, digits, '_', '.', '-'")

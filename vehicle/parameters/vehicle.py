@@ -244,8 +244,31 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
         ConfigurationError: the file or an override is wrong.
     """
     table = vehicle_table(file)
+    if "/" in (name := _body_file(table)):
+        raise ConfigurationError(
+            f"body.superelement: found {name!r}, allowed are names of letters, digits, '_', '.', '-'; a file elsewhere "
+            f"is given with --set body.superelement={name}"
+        )
     texts = list(overrides)
-    return varied_table(table, texts, lambda: [*optional_paths(table, file.parent), *new_loads(texts)])
+    found = varied_table(table, texts, lambda: [*optional_paths(table, file.parent), *new_loads(texts)])
+    if "/" in (name := _body_file(found)):
+        place = Path(name).expanduser()
+        if not place.is_absolute():  # workers of a sweep may run elsewhere
+            raise ConfigurationError(
+                f"--set body.superelement={name}: allowed are names of letters, digits, '_', '.', '-', of a file beside "
+                f"the vehicle file or of the package, or a whole path: {place.resolve()}"
+            )
+        if not place.is_file():
+            raise ConfigurationError(f"--set body.superelement={name}: no such file, or not a file")
+        found["body"]["superelement"] = str(place)
+    return found
+
+
+def _body_file(table: Mapping[str, Any]) -> str:
+    """The file of the body in a table that is not checked yet."""
+    body = table.get("body")
+    name = body.get("superelement") if isinstance(body, Mapping) else None
+    return name if isinstance(name, str) else ""
 
 
 def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Vehicle:

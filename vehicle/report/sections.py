@@ -216,5 +216,5 @@ def repeating(run: FinishedRun) -> Markup:
 def _signal_again(run: FinishedRun) -> list[str]:
     """What puts the same displacements under the wheels: of a road, those that the run recorded."""
     if run.summary["input"].get("road"):
-        return ["--input", f"{run.place}/{run.summary['files']['time']}", "--road"]
+        return ["--input", f"{run.place}/{run.summary['files']['time']}", "--any-level"]
     return ["--input", run.summary["input"]["file"]]

@@ -101,8 +101,7 @@ def sweep(
             made=_made(cases, chosen),
         )
         if folder is not None:
-            table.write(folder)
-            _say_how_long(folder, clock.perf_counter() - began, len(todo))
+            table.write(folder, f"{len(todo)} runs computed in {clock.perf_counter() - began:.2f} s")
         return table
 
 
@@ -142,8 +141,3 @@ def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
         "program": program_digest(),
         "libraries": libraries(),
     }
-
-
-def _say_how_long(folder: Path, seconds: float, runs: int) -> None:
-    with (folder / "timing.csv").open("a", encoding="utf-8") as file:
-        file.write(f"# {runs} runs computed in {seconds:.2f} s\n")

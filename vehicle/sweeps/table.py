@@ -70,13 +70,18 @@ class SweepTable:
             )
         return file.getvalue()
 
-    def write(self, folder: Path) -> None:
-        """Write `table.csv`, `sweep.json` and `timing.csv`."""
+    def write(self, folder: Path, computed: str = "") -> None:
+        """Write `table.csv`, `sweep.json` and `timing.csv`.
+
+        Args:
+            folder: where to.
+            computed: last line of `timing.csv`, where there is one.
+        """
         text = self.text()
         write_text(folder / "table.csv", text)
         write_json(folder / "sweep.json", {**self.made, "failed": [case.label for case, _ in self.failed]})
         times = "case,seconds [s]\n" + "".join(f"{i},{r.seconds:.4f}\n" for i, r in enumerate(self.results))
-        write_text(folder / "timing.csv", times)
+        write_text(folder / "timing.csv", times + (f"# {computed}\n" if computed else ""))
 
 
 def _changes(case: Case) -> dict[str, str]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 
 from vehicle.commands.body import build_body, compare_bodies, import_body, participation, show_body
-from vehicle.commands.command_line import Parser, command
+from vehicle.commands.command_line import command
 from vehicle.commands.options import EXIT_CODES, command_parser
+from vehicle.commands.parser import Parser
 
 TASKS = {
     "import": import_body,

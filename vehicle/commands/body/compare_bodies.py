@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
-from vehicle.commands.options import FORCE_HELP, message_options, vehicle_options
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.options import extra_output_options, message_options, vehicle_options
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,8 +28,7 @@ def add(tasks: Any) -> None:
     compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
     compared.add_argument("file", type=Path, metavar="FILE", help="body model, .toml or .npz")
     compared.add_argument("other", type=Path, metavar="OTHER", help="the one that it is compared with")
-    compared.add_argument("--output", type=Path, metavar="DIR", help=f"write {', '.join(FILES)} there")
-    compared.add_argument("--force", action="store_true", help=FORCE_HELP)
+    extra_output_options(compared, ", ".join(FILES))
     vehicle_options(compared)
     message_options(compared)
 
@@ -39,10 +39,9 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
     from vehicle.analysis.modal_assurance import mac
     from vehicle.flexbody.superelement import attached_nodes
-    from vehicle.output.folder import check_output
 
     if options.output is not None:
-        check_output(options.output, force=options.force)
+        output_folder_of(options, options.output)
     models = [model_of(file, options, vehicle) for file in (options.file, options.other)]
     places = vehicle.composition.attachments()
     shapes = []

@@ -86,7 +86,11 @@ def add(tasks: Any) -> None:
     taken.add_argument(
         "--damping", type=float, default=0.02, metavar="RATIO", help="modal damping ratio; 0.02 by default"
     )
-    taken.add_argument("--tolerance", type=float, default=1.0, metavar="MM", help="farthest node of a point [mm]; 1")
+    taken.former("--tolerance", "--tolerance: the farthest node of a point is given by --point-distance MM")
+    taken.former("--map", "--map: the table of nodes for points of the car is given by --point-nodes FILE")
+    taken.add_argument(
+        "--point-distance", type=float, default=1.0, metavar="MM", help="farthest node of a point [mm]; 1"
+    )
     taken.add_argument(
         "--spread",
         type=float,
@@ -94,7 +98,9 @@ def add(tasks: Any) -> None:
         metavar="MM",
         help="nodes within this radius carry a point together [mm]; 0",
     )
-    taken.add_argument("--map", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car")
+    taken.add_argument(
+        "--point-nodes", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car"
+    )
     taken.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
     taken.add_argument(
         "--residual",
@@ -118,9 +124,9 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     _check_numbers(options)
     places = vehicle.composition.attachments()
     near = {
-        "tolerance": 1e-3 * options.tolerance,
+        "tolerance": 1e-3 * options.point_distance,
         "spread": 1e-3 * options.spread,
-        "named": read_map(options.map) if options.map else {},
+        "named": read_map(options.point_nodes) if options.point_nodes else {},
     }
     origin = _origin(options.origin)
     matrices = _matrices(options)
@@ -216,7 +222,12 @@ def _check_numbers(options: argparse.Namespace) -> None:
             f"a frequency from --up-to, {options.up_to:g} Hz, on",
         ),
         ("--damping", options.damping, 0.0 <= options.damping <= HIGHEST_DAMPING, f"0 to {HIGHEST_DAMPING:g}"),
-        ("--tolerance", options.tolerance, 0.0 < options.tolerance <= most, f"above 0, up to {most:g} mm"),
+        (
+            "--point-distance",
+            options.point_distance,
+            0.0 < options.point_distance <= most,
+            f"above 0, up to {most:g} mm",
+        ),
         ("--spread", options.spread, 0.0 <= options.spread < math.inf, "0 mm or a radius"),
         (
             "--modal-mass",

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.destination import output_file_of
+from vehicle.commands.options import FORCE_HELP
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -16,30 +18,28 @@ if TYPE_CHECKING:
 def output_options(task: Any) -> None:
     """Where a model is written."""
     task.add_argument("--output", type=Path, required=True, metavar="FILE", help="body model to write, .toml or .npz")
-    task.add_argument("--force", action="store_true", help="replace the file")
+    task.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
 def require_output(options: argparse.Namespace) -> None:
     """Refuse an output that cannot be written, before the work.
 
     Raises:
-        ConfigurationError: its name, an existing file, a folder that is a file.
+        ConfigurationError: its name, an input, an existing file without --force or of somebody else.
+        OutputError: its folder cannot be written.
     """
     if options.output.suffix not in (".toml", ".npz"):
         raise ConfigurationError(f"--output {options.output}: a body model is written as .toml or .npz")
-    if options.output.exists() and not options.force:
-        raise ConfigurationError(f"--output {options.output}: exists; give another name, or --force")
-    there = next(folder for folder in options.output.absolute().parents if folder.exists())
-    if not there.is_dir():
-        raise ConfigurationError(f"--output {options.output}: {there.name} is a file, no folder; give another name")
+    inputs = (getattr(options, name, None) for name in ("file", "design", "vehicle"))
+    output_file_of(options, options.output, protect=tuple(path for path in inputs if path is not None))
 
 
 def write(options: argparse.Namespace, model: Superelement) -> None:
     """Write a model to the output."""
     from vehicle.flexbody.superelement_file import write_superelement
+    from vehicle.output.folder import write_whole
 
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    write_superelement(options.output, model)
+    write_whole(options.output, lambda file: write_superelement(file, model))
 
 
 def model_of(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:

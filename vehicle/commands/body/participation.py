@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.options import FORCE_HELP, message_options, vehicle_options
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.options import extra_output_options, message_options, vehicle_options
 from vehicle.errors import ConfigurationError
+from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
     from vehicle.linear.participation import Participation
@@ -31,7 +32,7 @@ def add(tasks: Any) -> None:
         "participation", help="which body modes make a place loud at a frequency, and which attachments drive them"
     )
     asked.add_argument(
-        "--place",
+        "--response",
         default="seat_rail_acc_z",
         metavar="CHANNEL",
         help="acceleration of a place on the body; %(default)s by default",
@@ -42,15 +43,17 @@ def add(tasks: Any) -> None:
         metavar="HZ",
         help="frequency of the tables [Hz]; by default that of the largest response between 1 and 50 Hz",
     )
-    asked.add_argument("--wheel", metavar="NAME", help="whose plate moves, as fr; the first of the car by default")
+    asked.former("--place", "--place: the acceleration is named by --response CHANNEL, as --response seat_rail_acc_z")
+    asked.add_argument(
+        "--wheel", metavar="NAME", help="wheel whose plate moves, as fr or front_right; the first of the car by default"
+    )
     asked.add_argument(
         "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
     )
     asked.add_argument(
         "--mode", type=int, metavar="N", help="mode whose driving attachments are shown; the loudest by default"
     )
-    asked.add_argument("--output", type=Path, metavar="DIR", help=f"write {', '.join(FILES)} there")
-    asked.add_argument("--force", action="store_true", help=FORCE_HELP)
+    extra_output_options(asked, ", ".join(FILES))
     asked.add_argument("--json", action="store_true", help="print JSON")
     vehicle_options(asked)
     message_options(asked)
@@ -62,20 +65,19 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
     from vehicle.car import Car
     from vehicle.linear.participation import participation
-    from vehicle.output.folder import check_output
 
     if options.at is not None and not 0.0 < options.at < math.inf:
         raise ConfigurationError(f"--at {options.at:g}: must be a frequency above 0 Hz, as --at 26")
-    wheel = options.wheel or next(iter(vehicle.wheels), "")
+    wheel = CORNERS.get(options.wheel, options.wheel) or next(iter(vehicle.wheels), "")
     vehicle.require_wheels((wheel,))
     if options.output is not None:
-        check_output(options.output, force=options.force)
+        output_folder_of(options, options.output)
     car = Car(vehicle, folder=options.vehicle.parent if options.vehicle else None)
     band = np.geomspace(LOWEST, HIGHEST, LINES)
 
     def of(lines: Any) -> Participation:
         stuck = options.damper == "stuck"
-        return participation(car.model, car.matrices, car.load_rows, options.place, lines, stuck=stuck, wheel=wheel)
+        return participation(car.model, car.matrices, car.load_rows, options.response, lines, stuck=stuck, wheel=wheel)
 
     over = of(band)
     at = round(float(band[np.abs(over.total).argmax()]), 2) if options.at is None else options.at
@@ -84,7 +86,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     if options.mode is not None and not 1 <= options.mode <= modes:
         raise ConfigurationError(f"--mode {options.mode}: the body has modes 1 to {modes}")
     mode = int(found.shares[6:, 0].argmax()) if options.mode is None else options.mode - 1
-    about = f"{vehicle.name}: {options.place} per displacement of the plate {wheel}, dampers {options.damper}"
+    about = f"{vehicle.name}: {options.response} per displacement of the plate {wheel}, dampers {options.damper}"
     if options.output is not None:
         _write(options, over, found, mode, about)
     if options.json:
@@ -198,7 +200,7 @@ def _write(options: argparse.Namespace, over: Participation, found: Participatio
             folder / FILES[2],
             lambda file: plot_participation(
                 file,
-                options.place,
+                options.response,
                 over.frequency,
                 {names[i]: in_phase(over.contributions)[i] for i in order},
                 at,

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.body.model_file import model_of
-from vehicle.commands.options import FORCE_HELP, message_options, vehicle_options
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.options import extra_output_options, message_options, vehicle_options
 from vehicle.errors import DataError
 
 if TYPE_CHECKING:
@@ -24,8 +25,7 @@ def add(tasks: Any) -> None:
     """The options."""
     shown = tasks.add_parser("show", help="frequencies, participation of attachments, mass properties, residuals")
     shown.add_argument("file", type=Path, nargs="?", metavar="FILE", help="body model; that of the vehicle by default")
-    shown.add_argument("--output", type=Path, metavar="DIR", help=f"write {', '.join(FILES)} there")
-    shown.add_argument("--force", action="store_true", help=FORCE_HELP)
+    extra_output_options(shown, ", ".join(FILES))
     shown.add_argument("--json", action="store_true", help="print JSON")
     vehicle_options(shown)
     message_options(shown)
@@ -33,10 +33,8 @@ def add(tasks: Any) -> None:
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Print it, and write files where asked for."""
-    from vehicle.output.folder import check_output
-
     if options.output is not None:
-        check_output(options.output, force=options.force)
+        output_folder_of(options, options.output)
     model = model_of(options.file, options, vehicle)
     if options.output is not None:
         from vehicle.commands.body.shown_files import write_files

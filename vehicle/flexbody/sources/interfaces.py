@@ -87,8 +87,8 @@ def interfaces(
     if far:
         raise DataError(
             f"{len(far)} points of the car have no node within {1e3 * max(tolerance, spread):g} mm; the nearest are "
-            f"{'; '.join(far)}. Choose nodes with --map, a radius with --spread, or a --tolerance up to 50 mm; check "
-            "frame and unit of the model with --axes, --origin and --length-unit."
+            f"{'; '.join(far)}. Choose nodes with --point-nodes, a radius with --spread, or a --point-distance up to "
+            "50 mm; check frame and unit of the model with --axes, --origin and --length-unit."
         )
     return found
 
@@ -141,7 +141,7 @@ def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface
     if widths[1] <= _FLAT * widths[0] or widths[0] == 0.0:
         raise DataError(
             f"{name}: the {len(nodes)} nodes within the radius lie on one line and hold no rotation; give a larger "
-            "--spread, or a node with --map."
+            "--spread, or a node with --point-nodes."
         )
     fit = rigid_fit(positions, np.ones(len(nodes)), np.array(place))  # (6, k, 3)
     row = {
@@ -151,7 +151,7 @@ def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface
     }
     dofs = np.array([[row.get((int(node), axis), -1) for axis in range(3)] for node in nodes])
     if np.any(dofs < 0):
-        raise DataError(f"{name}: a node within the radius lacks a displacement; choose a node with --map.")
+        raise DataError(f"{name}: a node within the radius lacks a displacement; choose a node with --point-nodes.")
 
     def columns(part: FloatArray) -> Any:
         values = part.reshape(3, -1)

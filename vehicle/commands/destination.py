@@ -1,0 +1,111 @@
+"""Where the results of a command go, as of --output and --force; chosen and locked before anything is computed."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+
+def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tuple[Path, ...] = ()) -> Path:
+    """Choose the folder of the results.
+
+    Args:
+        options: as of `output_options`.
+        default: folder without --output; where it exists, the next free name is taken, and said.
+        protect: input files; a folder that holds one of them is never replaced.
+
+    Returns:
+        The folder, locked until the command ends.
+
+    Raises:
+        ConfigurationError: a folder that is named exists without --force, or holds files that no run wrote.
+        OutputError: it cannot be written.
+    """
+    from vehicle.output.destination import free_folder, named
+
+    if options.output is not None or options.force:
+        return named(options.held, options.output or default, force=options.force, protect=protect)
+    return _said(options, default, free_folder(options.held, default, protect=protect))
+
+
+def prepared_folder_of(options: argparse.Namespace, default: Path, *, rows: str = "") -> Path:
+    """Choose and make the folder of a study, a sweep or a search, whose files are written one after the other.
+
+    Args:
+        options: as of `output_options`, and `resume_options` where the command can go on.
+        default: as of `output_folder_of`.
+        rows: as of `prepare_folder`.
+
+    Returns:
+        The folder, locked until the command ends.
+
+    Raises:
+        ConfigurationError, OutputError: as of `prepare_folder`.
+    """
+    from vehicle.output.destination import free_folder
+    from vehicle.output.folder import claim, prepare_folder
+
+    resume = getattr(options, "resume", False)
+    if options.output is not None or options.force or resume:
+        folder = options.output or default
+        options.held.enter_context(claim(folder.resolve()))
+    else:
+        folder = _said(options, default, free_folder(options.held, default))
+    return prepare_folder(folder, force=options.force, resume=resume, rows=rows)
+
+
+def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[str]) -> list[Path]:
+    """Choose the files that a command adds to a folder which holds others.
+
+    Args:
+        options: as of `output_options`.
+        folder: without --output; where a file of a name exists there, all names get the next free number, and that is
+            said.
+        names: of the files.
+
+    Returns:
+        The files, locked until the command ends.
+
+    Raises:
+        ConfigurationError: a file exists in a folder that is named, without --force; or no run wrote it.
+        OutputError: the folder cannot be written.
+    """
+    from vehicle.output.destination import free_files
+    from vehicle.output.folder import check_files, claim
+
+    if options.output is not None or options.force:
+        folder = options.output or folder
+        check_files(folder, names, force=options.force)
+        options.held.enter_context(claim(folder.resolve() / names[0]))
+        return [folder / name for name in names]
+    files = free_files(options.held, folder, names)
+    _said(options, folder / names[0], files[0])
+    return files
+
+
+def output_file_of(
+    options: argparse.Namespace, default: Path, *, ending: str = "", protect: tuple[Path, ...] = ()
+) -> Path:
+    """Choose the file of the results; arguments, result and errors as of `output_folder_of`.
+
+    Args:
+        options: as of `output_options`.
+        default: file without --output; where it exists, the next free name is taken, and said.
+        ending: that the name must have.
+        protect: input files, which are never replaced.
+    """
+    from vehicle.output.destination import free_file, named_file
+
+    if options.output is not None or options.force:
+        path = options.output or default
+        return named_file(options.held, path, ending=ending, force=options.force, protect=protect)
+    return _said(options, default, free_file(options.held, default))
+
+
+def _said(options: argparse.Namespace, default: Path, chosen: Path) -> Path:
+    """Tell on the console of a name that is not the default one."""
+    if chosen != default and not getattr(options, "quiet", False):
+        print(f"notice: {default} exists; writing {chosen} (--force replaces {default})", file=sys.stderr)
+    return chosen

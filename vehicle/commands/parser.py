@@ -1,0 +1,137 @@
+"""Argument parser of all commands: values that begin with a minus, former words, options that would do nothing."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+
+Condition = Callable[[argparse.Namespace], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What a group of options acts on.
+
+    Attributes:
+        active: True if the options of a command line contain what the group acts on; None where only the command can
+            tell, which then calls `refuse_idle`.
+        needs: completes "belongs to ...", for the message.
+        options: those of the group; each is added when the group gets it.
+    """
+
+    active: Condition | None
+    needs: str
+    options: list[argparse.Action] = field(default_factory=list)
+
+
+class _ScopedGroup(argparse._ArgumentGroup):
+    """Group of options with a scope: whatever is added to the group is refused where the scope is not active."""
+
+    scope: Scope
+
+    def _add_action(self, action: argparse.Action) -> argparse.Action:
+        self.scope.options.append(action)
+        return super()._add_action(action)
+
+
+class Parser(argparse.ArgumentParser):
+    """Argument parser whose errors are one message and exit code 2.
+
+    A word with a single minus in front is a value, but for -h: there is no other short option.
+    """
+
+    def __init__(self, *args: Any, **keywords: Any) -> None:
+        super().__init__(*args, **keywords)
+        self.scopes: dict[str, Scope] = {}
+        self.former_words: list[tuple[re.Pattern[str], str]] = []
+
+    def scoped_group(self, title: str, *, needs: str, active: Condition | None) -> argparse._ArgumentGroup:
+        """Add a group of options that act on something that not every command line contains.
+
+        Args:
+            title: of the group in the help.
+            needs: completes the message "--option: belongs to ...", with the option that makes the group act.
+            active: True if the parsed options contain what the group acts on; None where only the command can tell.
+
+        Returns:
+            The group; every option that is added to it is refused where the group is not active.
+        """
+        group = _ScopedGroup(self, title)
+        group.scope = Scope(active, needs)
+        self.scopes[title] = group.scope
+        self._action_groups.append(group)
+        return group
+
+    def former(self, pattern: str, message: str) -> None:
+        """Refuse a word that had a meaning in an earlier version.
+
+        Args:
+            pattern: regular expression that is matched at each word and the one behind it, with a blank between.
+            message: which names the word of today.
+        """
+        self.former_words.append((re.compile(pattern), message))
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse, and refuse former words and options of groups that are not active."""
+        words = [str(word) for word in (args or ())]
+        for first, second in pairwise([*words, ""]):
+            for pattern, message in self.former_words:
+                if pattern.match(f"{first} {second}"):
+                    raise ConfigurationError(message)
+        options, rest = super().parse_known_args(args, namespace)
+        given = self._given(words)
+        for scope in self.scopes.values():
+            if scope.active is not None and not scope.active(options):
+                _refuse(scope, given)
+        # Those of a subparser are there already.
+        options.given = given | getattr(options, "given", {})
+        options.scopes = self.scopes | getattr(options, "scopes", {})
+        return options, rest
+
+    def _given(self, words: Sequence[str]) -> dict[str, str]:
+        """Return the destinations of the options on a command line, and the word of each as it is written."""
+        found: dict[str, str] = {}
+        for word in words:
+            if word == "--":
+                break
+            option = word.partition("=")[0]
+            if action := self._option_string_actions.get(option):
+                found[action.dest] = option
+        return found
+
+    def _parse_optional(self, arg_string: str) -> Any:
+        """Take a word with a single minus as a value; argparse does so for plain numbers alone."""
+        if not arg_string.startswith("--") and arg_string not in self._option_string_actions:
+            if f"-{arg_string.partition('=')[0]}" in self._option_string_actions:
+                raise ConfigurationError(f"{arg_string}: options begin with two hyphens; give -{arg_string}")
+            return None
+        return super()._parse_optional(arg_string)
+
+    def error(self, message: str) -> None:  # type: ignore[override]
+        """Raise the message instead of leaving the process."""
+        raise ConfigurationError(f"{message}; see {self.prog} --help")
+
+
+def refuse_idle(options: argparse.Namespace, title: str) -> None:
+    """Refuse the options of a group of which only the command can tell that they would do nothing.
+
+    Args:
+        options: as parsed.
+        title: of the group.
+
+    Raises:
+        ConfigurationError: an option of the group is on the command line.
+    """
+    _refuse(options.scopes[title], options.given)
+
+
+def _refuse(scope: Scope, given: dict[str, str]) -> None:
+    for action in scope.options:
+        if word := given.get(action.dest):
+            raise ConfigurationError(f"{word}: belongs to {scope.needs}")
