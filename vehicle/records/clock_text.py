@@ -29,7 +29,11 @@ _CLOCK = re.compile(
     re.ASCII,
 )
 _MINUTES = re.compile(r"(?P<m>\d{1,3}):(?P<s>\d{2})[.,](?P<f>\d+)", re.ASCII)
-_BOTH = re.compile(r"(?P<date>\S*?[-/.]\S*?[-/.]\S*?|\d{1,2} [A-Za-z]+ \d{4})(?:[T ]\s*|,\s+)(?P<clock>\d.*)")
+_BOTH = re.compile(
+    r"(?P<date>\d[\d./-]{5,9}|\d{1,2}[ -][A-Za-z]{3,9}[ -]\d{4})(?:[T ] ?|, ?)(?P<clock>\d[\d:.,APMapmZUTCGz+ -]{3,27})"
+)
+LONGEST_CLOCK = 48
+"""Maximum number of characters of a date and time."""
 
 
 def is_clock(cell: str) -> bool:
@@ -38,7 +42,12 @@ def is_clock(cell: str) -> bool:
     Args:
         cell: text without blanks around it.
     """
-    return (":" in cell and _seconds_of_clock(_BOTH.sub(r"\g<clock>", cell)) is not None) or is_date(cell)
+    if len(cell) > LONGEST_CLOCK:
+        return False
+    both = _BOTH.fullmatch(cell)
+    if both:
+        return is_date(both["date"]) and _seconds_of_clock(both["clock"]) is not None
+    return _seconds_of_clock(cell) is not None or is_date(cell)
 
 
 def is_date(cell: str) -> bool:

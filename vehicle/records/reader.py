@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import struct
 import zipfile
 from collections.abc import Callable
@@ -18,6 +19,8 @@ HEAD = 4096
 
 READERS = {
     "csv": "logger_format",
+    "lvm": "lvm_format",
+    "vbo": "vbo_format",
     "npz": "array_format",
     "uff": "uff_format",
     "mat": "matlab_format",
@@ -27,6 +30,7 @@ READERS = {
     "mdf": "mdf_format",
     "tdms": "tdms_format",
     "xlsx": "sheet_format",
+    "parquet": "parquet_format",
 }
 """Name of a format and the module that reads it, imported when such a file is met."""
 
@@ -55,6 +59,9 @@ ENDINGS = {
     ".flac": ("compressed sound", "WAV"),
 }
 """The same by the end of the name, for a file of bytes that nothing else tells."""
+
+
+_VBOX = re.compile(rb"^\[(header|column names)\]\s*$", re.IGNORECASE | re.MULTILINE)
 
 
 def read_record(path: str | Path) -> Measurement:
@@ -120,6 +127,7 @@ def _by_bytes(path: Path, head: bytes, size: int) -> str | None:
         b"\x89HDF\r\n\x1a\n": "hdf5",
         b"MATLAB 7.3": "hdf5",
         b"FORMAT\0": "rpc",
+        b"PAR1": "parquet",
     }
     for begins, name in plain.items():
         if head.startswith(begins):
@@ -130,6 +138,10 @@ def _by_bytes(path: Path, head: bytes, size: int) -> str | None:
         return "wav"
     if head[126:128] in (b"IM", b"MI") or head.startswith(b"MATLAB 5.0") or _matlab_4(head, size):
         return "mat"
+    if head.startswith(b"LabVIEW Measurement"):
+        return "lvm"
+    if _VBOX.search(head):
+        return "vbo"
     first = [line.strip() for line in head[:600].splitlines() if line.strip()][:2]
     if len(first) == 2 and first[0] == b"-1" and first[1][:4].strip(b"b ").isdigit():
         return "uff"

@@ -126,6 +126,10 @@ def find_unit(text: str) -> Unit | None:
     return None if unit is None else unit._replace(factor=unit.factor * float(scaled["number"]))
 
 
+GRAMS = ("g/s", "mg/s", "g/km", "g/h", "g/min", "g/l")
+"""Quotients in which g is a gram: flows of air and fuel."""
+
+
 def find_ratio(text: str) -> Unit | None:
     """What a unit or the quotient of two units means, as (m/s2)/N, g/m or m/s2/N; None where that is open.
 
@@ -133,7 +137,7 @@ def find_ratio(text: str) -> Unit | None:
         text: as found in a file.
     """
     whole = find_unit(text)
-    if whole is not None:
+    if whole is not None or text.strip().lower() in GRAMS:
         return whole
     inverse = _INVERSE.fullmatch(text.strip())
     if inverse:
