@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.errors import ConfigurationError
@@ -83,6 +84,7 @@ INPUT_CHOICES = {
     "remove-mean": "remove_mean",
     "channel": "picks",
     "unit": "units",
+    "dbc": "databases",
     "from": "first",
     "to": "last",
 }
@@ -147,6 +149,7 @@ def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool
     )
     if rate:
         parser.add_argument("--rate", type=float, metavar="HZ", help="samples a second, in place of the file's times")
+    database_option(parser)
     parser.add_argument("--from", dest="first", type=float, metavar="S", help="begin at this time of the file [s]")
     parser.add_argument("--to", dest="last", type=float, metavar="S", help="end at this time of the file [s]")
     parser.add_argument("--detrend", action="store_true", help="subtract the straight line of least squares")
@@ -155,6 +158,19 @@ def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool
         type=float,
         metavar="HZ",
         help="corner of a high-pass without phase shift [Hz]; with it velocities and accelerations are integrated",
+    )
+
+
+def database_option(parser: argparse.ArgumentParser) -> None:
+    """Add --dbc, which decodes the log of a CAN bus."""
+    parser.add_argument(
+        "--dbc",
+        dest="databases",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="database of CAN messages that decodes a bus log (MDF, .asc, .trc, candump); may be repeated",
     )
 
 
@@ -184,5 +200,6 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
         last=options.last,
         detrend=options.detrend,
         highpass=options.highpass,
+        databases=tuple(options.databases),
     )
     return None if found.empty else found
