@@ -145,6 +145,7 @@ def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> 
         raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
     units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in taken}
     own = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass")}
+    own["databases"] = tuple(options.databases)
     return Choice(channels=channels, units=units, **(own if hasattr(options, "delay") else {}))
 
 
@@ -157,7 +158,7 @@ def _job(options: argparse.Namespace) -> None:
 
     edges = edges_of(options.bands)
     choice = measured_choice(options)
-    measurement = read_record(options.measured)
+    measurement = read_record(options.measured, choice.databases)
     output = output_folder_of(options, OUTPUT, protect=(options.measured,))
     if measurement.shapes and not measurement.channels:
         for group in (RECORDS, RESPONSES, CHANNELS, RUN):

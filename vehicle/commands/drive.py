@@ -148,7 +148,7 @@ def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
     if not names:
         raise ConfigurationError("needed is --channel: the acceleration of the car that was measured")
     if len(names) == 1 and alone:
-        held = read_record(options.target).channels
+        held = read_record(options.target, choice.databases).channels
         if len(held) == 1:
             names = {alone[0]: "1"}
     return names, choice

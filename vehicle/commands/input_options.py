@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.commands.parser import Condition, Parser
@@ -150,6 +151,7 @@ def record_options(
         unit_option(parser)
     if rate:
         parser.add_argument("--rate", type=float, metavar="HZ", help="samples a second, in place of the file's times")
+    database_option(parser)
     parser.add_argument("--from", dest="first", type=float, metavar="S", help="begin at this time of the file [s]")
     parser.add_argument("--to", dest="last", type=float, metavar="S", help="end at this time of the file [s]")
     parser.add_argument("--detrend", action="store_true", help="subtract the straight line of least squares")
@@ -171,6 +173,19 @@ def unit_option(parser: argparse._ActionsContainer) -> None:
         metavar="[ROLE=]UNIT",
         help="unit of the chosen channels, or of one, where the file tells none or a wrong one, as mm or g; may be "
         "repeated",
+    )
+
+
+def database_option(parser: argparse._ActionsContainer) -> None:
+    """Add --dbc, which decodes the log of a CAN bus."""
+    parser.add_argument(
+        "--dbc",
+        dest="databases",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="database of CAN messages that decodes a bus log (MDF, .asc, .trc, candump); may be repeated",
     )
 
 
@@ -200,5 +215,6 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
         last=options.last,
         detrend=options.detrend,
         highpass=options.highpass,
+        databases=tuple(options.databases),
     )
     return None if found.empty else found

@@ -8,6 +8,7 @@ import shlex
 from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import command
+from vehicle.commands.input_options import database_option
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.parser import Parser
 
@@ -19,6 +20,7 @@ def parser() -> Parser:
     """The options of the command."""
     found = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
     found.add_argument("file", metavar="FILE", help="of any format, recognised by its content; or a shipped input")
+    database_option(found)
     found.add_argument("--json", action="store_true", help="print JSON")
     message_options(found)
     return found
@@ -28,7 +30,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.excitation.input_files import find_input
     from vehicle.records.reader import read_record
 
-    measurement = read_record(find_input(options.file))
+    measurement = read_record(find_input(options.file), tuple(options.databases))
     found = contents(measurement)
     print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
 

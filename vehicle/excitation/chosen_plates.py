@@ -34,8 +34,8 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> Table:
         ConfigurationError: no such file, or a role that is no wheel.
         DataError: bad data, or nothing chosen among several channels.
     """
-    measurement = read_record(path)
     choice = Choice() if choice is None else choice
+    measurement = read_record(path, choice.databases)
     unknown = next((role for role in choice.channels if role != "time" and not is_wheel(role)), None)
     if unknown is not None:
         raise ConfigurationError(f"--channel {unknown}=...: allowed are {', '.join(CORNERS.values())} and time")

@@ -46,7 +46,7 @@ def _notices(xyz: Mapping[str, Vector], rate: float) -> tuple[str, ...]:
 
 def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
     """Chosen channels under the names of the axes, in m/s2."""
-    measurement = read_record(path)
+    measurement = read_record(path, choice.databases)
     roles = {role: wanted for role, wanted in choice.channels.items() if role != "time"}
     held = {one.name for one in measurement.channels}
     if not roles and held.issuperset(names):

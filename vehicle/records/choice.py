@@ -6,6 +6,7 @@ import fnmatch
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -28,6 +29,7 @@ class Choice:
         first, last: excerpt [s], in the times of the file.
         detrend: subtract the straight line of least squares.
         highpass: corner frequency [Hz]; needed to integrate velocities and accelerations.
+        databases: files of the form DBC, which decode the log of a CAN bus.
     """
 
     channels: Mapping[str, str] = field(default_factory=dict)
@@ -37,6 +39,7 @@ class Choice:
     last: float | None = None
     detrend: bool = False
     highpass: float | None = None
+    databases: tuple[Path, ...] = ()
 
     def __post_init__(self) -> None:
         for name, value in (("--rate", self.rate), ("--highpass", self.highpass)):

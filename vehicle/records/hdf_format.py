@@ -13,9 +13,18 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.records.channel import Channel, Measurement, even_step, uniform_axis
+from vehicle.records.heads import TIME_NAME, split_head
 from vehicle.records.matlab_format import channels_of
+from vehicle.records.pandas_frames import frame_channels
 from vehicle.records.reader import digest, extra
+from vehicle.records.units import find_unit
 
+PLAIN_CLASSES = frozenset(
+    ("double", "single", "logical", "char", "struct", "cell", "function_handle", "canonical empty")
+) | {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
+"""Classes of MATLAB that are no objects."""
+LONG = 10
+"""An array of at least so many times more columns than rows holds a channel in each row."""
 AXES = "axes"
 """Group of the axes that are not even, under the names of their channels."""
 
@@ -28,16 +37,19 @@ def read(path: Path) -> Measurement:
         DataError: damaged, cut off, or without numbers.
     """
     h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
+    start = ""
     try:
         with h5py.File(path, "r") as file:
             if any("MATLAB_class" in one.attrs for one in file.values()):
-                held = {name: _matlab(file, one, h5py) for name, one in file.items() if not name.startswith("#")}
-                channels, notices = channels_of({name: one for name, one in held.items() if one is not None}, path)
+                objects = {name: kind for name, one in file.items() if (kind := _object_class(one))}
+                plain = [name for name in file if not name.startswith("#") and name not in objects]
+                held = {name: _matlab(file, file[name], h5py) for name in plain}
+                held = {name: one for name, one in held.items() if one is not None}
+                channels, notices = channels_of(held, path, objects)
                 program = "MATLAB 7.3"
             else:
-                found: list[Channel] = []
-                file.visititems(lambda name, one: found.extend(_arrays(name, one, h5py)))
-                channels, notices = tuple(found), []
+                notices = []
+                channels, start = _walk(path, file, h5py, notices)
                 program = _attribute(file, "program")
     except DataError:
         raise
@@ -48,8 +60,42 @@ def read(path: Path) -> Measurement:
     if not channels:
         raise DataError(f"{path}: no array of numbers")
     return Measurement(
-        path=path, format="hdf5", channels=channels, sha256=digest(path), program=program, notices=tuple(notices)
+        path=path,
+        format="hdf5",
+        channels=channels,
+        sha256=digest(path),
+        program=program,
+        start=start,
+        notices=tuple(notices),
     )
+
+
+def _walk(path: Path, file: Any, h5py: Any, notices: list[str]) -> tuple[tuple[Channel, ...], str]:
+    """Channels of all arrays and of the frames of pandas below a group, in the order of the file; a start."""
+    found: list[Channel] = []
+    starts: list[str] = []
+
+    def enter(group: Any, prefix: str) -> None:
+        for name, one in group.items():
+            label = f"{prefix}{name}"
+            if isinstance(one, h5py.Dataset):
+                found.extend(_arrays(label, one, notices))
+            elif one.attrs.get("pandas_type") is not None:
+                channels, start = frame_channels(path, label, one)
+                found.extend(channels)
+                starts.append(start)
+            else:
+                enter(one, f"{label}/")
+
+    enter(file, "")
+    return tuple(found), next(filter(None, starts), "")
+
+
+def _object_class(one: Any) -> str:
+    """Class of a variable of MATLAB that is an object, as a table; empty for arrays, structures and cells."""
+    kind = one.attrs.get("MATLAB_class", b"")
+    kind = kind.decode("latin-1") if isinstance(kind, bytes) else str(kind)
+    return kind if "MATLAB_object_decode" in one.attrs or (kind and kind not in PLAIN_CLASSES) else ""
 
 
 def _matlab(file: Any, one: Any, h5py: Any) -> Any:
@@ -61,6 +107,8 @@ def _matlab(file: Any, one: Any, h5py: Any) -> Any:
             record[0, 0][name] = value
         return record
     kind = one.attrs.get("MATLAB_class", b"")
+    if _object_class(one):
+        return np.empty((1, 1), dtype=[(name, object) for name in ("s0", "s1", "s2", "arr")])  # as scipy gives it
     if one.attrs.get("MATLAB_empty", 0):
         return np.array([])
     values = one[()]
@@ -74,24 +122,32 @@ def _matlab(file: Any, one: Any, h5py: Any) -> Any:
     return np.asarray(values).T
 
 
-def _arrays(name: str, one: Any, h5py: Any) -> list[Channel]:
-    """Channels of an array: its columns, where it has two axes."""
-    if not isinstance(one, h5py.Dataset) or one.dtype.kind not in "fiuc" or one.ndim not in (1, 2) or one.size < 2:
+def _arrays(name: str, one: Any, notices: list[str]) -> list[Channel]:
+    """Channels of an array: its columns, where it has two axes; its rows where these are the longer ones."""
+    if name.startswith(f"{AXES}/") or one.size is None or one.size < 2:
         return []
-    if name.startswith(f"{AXES}/"):
+    if one.dtype.names is not None:
+        return _fields(name, one, notices)
+    if one.dtype.kind not in "fiuc" or one.ndim not in (1, 2):
         return []
     values = np.asarray(one[()])
-    values = values.astype(complex if values.dtype.kind == "c" else np.float64).reshape(len(values), -1)
+    values = values.astype(complex if values.dtype.kind == "c" else np.float64)
+    form = "(:,{})"
+    if values.ndim == 2 and (len(values) == 1 or LONG * len(values) <= values.shape[1]):
+        if len(values) > 1:
+            notices.append(f"array {name!r} of {len(values)} x {values.shape[1]}: each row is a channel")
+        values, form = values.T, "({},:)"
+    values = values.reshape(len(values), -1)
     step, start = one.attrs.get("step"), float(one.attrs.get("start", 0.0))
     kind = _attribute(one, "kind")
     axis = uniform_axis(len(values), float(step), start) if step is not None and step > 0.0 and kind else None
     own = one.file.get(f"{AXES}/{name}")
-    if isinstance(own, h5py.Dataset) and own.shape == (len(values),) and kind:
+    if getattr(own, "shape", None) == (len(values),) and kind:
         axis = np.asarray(own[()], dtype=np.float64)
     label = _attribute(one, "name") or name
     return [
         Channel(
-            name=label if values.shape[1] == 1 else f"{label}(:,{n + 1})",
+            name=label if values.shape[1] == 1 else label + form.format(n + 1),
             values=values[:, n].copy(),
             unit=_attribute(one, "unit") or _attribute(one, "units"),
             axis=axis,
@@ -103,6 +159,32 @@ def _arrays(name: str, one: Any, h5py: Any) -> list[Channel]:
         )
         for n in range(values.shape[1])
     ]
+
+
+def _fields(name: str, one: Any, notices: list[str]) -> list[Channel]:
+    """Channels of an array of records, under the names of its fields; a field of times is their axis."""
+    if one.ndim != 1:
+        notices.append(f"array {name!r} of records with {one.ndim} axes is left out")
+        return []
+    table = one[()]
+    plain = [field for field in table.dtype.names if table[field].dtype.kind in "fiu" and table[field].ndim == 1]
+    left = [field for field in table.dtype.names if field not in plain]
+    if left:
+        notices.append(f"fields of {name!r} that hold no numbers are left out: {', '.join(map(repr, left))}")
+    heads = {field: split_head(field) for field in plain}
+    key = next((field for field, (text, unit) in heads.items() if TIME_NAME.fullmatch(text) and _seconds(unit)), None)
+    axis = None if key is None else table[key].astype(np.float64) * _seconds(heads[key][1])
+    return [
+        Channel(name=text, values=table[field].astype(np.float64), unit=unit, axis=axis, place=name)
+        for field, (text, unit) in heads.items()
+        if field != key
+    ]
+
+
+def _seconds(unit: str) -> float:
+    """Factor of a unit of time to seconds; 0 for any other unit."""
+    known = find_unit(unit)
+    return known.factor if known is not None and known.quantity == "time" else 0.0
 
 
 def _attribute(one: Any, name: str) -> str:

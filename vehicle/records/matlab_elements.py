@@ -17,6 +17,8 @@ WIDTHS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8, 16: 1, 1
 """Kind of data to bytes of a number."""
 NUMERIC = range(6, 16)
 """Classes of arrays of numbers."""
+OBJECT = 17
+"""Class of an array that holds an object: a table, a timetable, a datetime, a string."""
 DEEPEST = 40
 """Structures within structures that are followed; a damaged file may nest without end."""
 
@@ -41,7 +43,7 @@ def check_matrix(path: Path, data: bytes, order: str, where: str, depth: int = 0
     if len(parts) < 3 or kinds[0] != 6 or len(parts[0][1]) != 8 or depth > DEEPEST:
         raise _damaged(path, where)
     flags, sizes = parts[0][1], parts[1][1]
-    if flags[0 if order == "<" else 3] in (16, 17):
+    if flags[0 if order == "<" else 3] in (16, OBJECT):
         return  # a function or an object: other parts, and no numbers
     dimensions = struct.unpack(f"{order}{len(sizes) // 4}i", sizes[: len(sizes) // 4 * 4])
     word = struct.unpack(f"{order}I", flags[:4])[0]
@@ -57,6 +59,24 @@ def check_matrix(path: Path, data: bytes, order: str, where: str, depth: int = 0
             raise _damaged(path, where)
     if (word & 255) in NUMERIC and len(parts) != (5 if word & 0x800 else 4) and count:
         raise _damaged(path, where)
+
+
+def object_name(path: Path, data: bytes, order: str) -> tuple[str, str] | None:
+    """Return name and class of an object of MATLAB, as of a table; None of any other matrix.
+
+    Args:
+        path: the file.
+        data: of the element, without its tag.
+        order: "<" or ">".
+
+    Raises:
+        DataError: parts that do not fit together.
+    """
+    if len(data) < 16 or data[8 if order == "<" else 11] != OBJECT:
+        return None
+    parts = _parts(path, data, order, "an object")
+    texts = [held.decode("latin-1") for kind, held in parts[1:4] if kind == 1]
+    return (texts[0], texts[2]) if len(texts) == 3 else ("?", "object")
 
 
 def _parts(path: Path, data: bytes, order: str, where: str) -> list[tuple[int, bytes]]:

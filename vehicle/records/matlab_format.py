@@ -13,7 +13,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.records.channel import Channel, Measurement, check_length, clock_step, even_step, uniform_axis
-from vehicle.records.matlab_elements import COMPRESSED, MATRIX, check_matrix
+from vehicle.records.matlab_elements import COMPRESSED, MATRIX, check_matrix, object_name
 from vehicle.records.reader import digest
 from vehicle.records.table import Vector
 from vehicle.records.units import find_ratio, find_unit
@@ -28,20 +28,21 @@ def read(path: Path) -> Measurement:
     from scipy.io import loadmat
     from scipy.io.matlab import MatReadError
 
-    _check_elements(path)
+    objects = _check_elements(path)
     told: list[str] = []
     try:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             held = loadmat(path, squeeze_me=False, struct_as_record=True)
         told = [str(one.message).split("\n")[0] for one in caught]
+        told = [text for text in told if 'variable name "None"' not in text]  # objects, which have no name there
     except (
         ValueError, TypeError, KeyError, IndexError, EOFError, OSError, OverflowError, MemoryError, AttributeError,
         NotImplementedError, UnicodeDecodeError, struct.error, zlib.error, MatReadError,
     ) as error:  # fmt: skip
         raise DataError(f"{path}: no MAT file that can be read ({error}); save it again, as version 7") from None
     program = held.get("__header__", b"")
-    found, notices = channels_of(held, path)
+    found, notices = channels_of(held, path, objects)
     return Measurement(
         path=path,
         format="mat",
@@ -52,25 +53,30 @@ def read(path: Path) -> Measurement:
     )
 
 
-def channels_of(held: Mapping[str, Any], path: Path) -> tuple[tuple[Channel, ...], list[str]]:
+def channels_of(
+    held: Mapping[str, Any], path: Path, objects: Mapping[str, str]
+) -> tuple[tuple[Channel, ...], list[str]]:
     """Channels among variables, and notices; MAT files of all versions hold the same.
 
     Args:
         held: name to array; a structure is an array of records.
         path: for messages.
+        objects: name to class of the variables that are objects: tables, timetables, dates; they are not read.
 
     Raises:
         DataError: there are none.
     """
     found: list[Channel] = []
     scalars: list[str] = []
+    objects = dict(objects)
     for name, value in held.items():
-        if name.startswith("__"):
+        if name.startswith("__") or _is_object(value):
             continue
         for label, record in _records(name, value):
             if "x_values" in record and "y_values" in record:
                 found += _signal(path, label, record)
                 continue
+            objects |= {f"{label}.{field}": "object" for field, one in record.items() if _is_object(one)}
             inner = {f"{label}.{field}": np.asarray(one) for field, one in record.items()}
             found += [_plain(text, one) for text, one in inner.items() if _is_vector(one)]
         array = np.asarray(value)
@@ -84,13 +90,36 @@ def channels_of(held: Mapping[str, Any], path: Path) -> tuple[tuple[Channel, ...
             continue
         columns = array if array.shape[0] >= array.shape[1] else array.T
         found += [_plain(f"{name}(:,{n + 1})", columns[:, n]) for n in range(columns.shape[1])]
+    remedy = _remedy(objects)
+    if not found and objects:
+        raise DataError(f"{path}: no array of numbers; {remedy}")
     if not found:
         names = ", ".join(name for name in list(held)[:12] if not name.startswith("__")) or "nothing"
         raise DataError(f"{path}: no structure with x_values and y_values and no array of numbers; it holds {names}")
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
+    if objects:
+        notices.append(f"left out: {remedy}")
     if any(one.axis is None for one in found):
         notices.append("arrays without times: give --rate HZ, or --channel time=NAME --unit time=s")
     return tuple(found), notices
+
+
+def _is_object(value: Any) -> bool:
+    """True for an object as scipy gives it: pointers into a part of the file that is not read."""
+    names = np.asarray(value).dtype.names
+    return names is not None and "s2" in names and "arr" in names
+
+
+def _remedy(objects: Mapping[str, str]) -> str:
+    """What the objects of a file are, and the line of MATLAB that converts the first table or the first of all."""
+    if not objects:
+        return ""
+    shown = ", ".join(f"{name} ({kind})" for name, kind in list(objects.items())[:8])
+    name, kind = next(((n, k) for n, k in objects.items() if k in ("table", "timetable")), next(iter(objects.items())))
+    line = {"table": f"writetable({name}, '{name}.csv')", "timetable": f"writetimetable({name}, '{name}.csv')"}.get(
+        kind, f"x = double({name})" if kind != "datetime" else f"x = posixtime({name})"
+    )
+    return f"{shown} are objects of MATLAB, which only MATLAB reads; convert them there, as {line}"
 
 
 def _is_vector(array: Any) -> bool:
@@ -105,7 +134,7 @@ def _plain(name: str, values: Any) -> Channel:
 def _records(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, dict[str, Any]]]:
     """Structures of a variable, and those within them."""
     array = np.asarray(value)
-    if depth > 4 or array.dtype.names is None:
+    if depth > 4 or array.dtype.names is None or _is_object(array):
         return
     flat = array.ravel()
     for index, one in enumerate(flat):
@@ -191,13 +220,14 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
     return found
 
 
-def _check_elements(path: Path) -> None:
-    """Refuse an element of a version 5 file that claims more bytes than are there."""
+def _check_elements(path: Path) -> dict[str, str]:
+    """Refuse an element of a version 5 file that claims more bytes than are there; return the objects and classes."""
     size = path.stat().st_size
+    objects: dict[str, str] = {}
     with path.open("rb") as file:
         head = file.read(128)
         if head[126:128] not in (b"IM", b"MI"):
-            return  # version 4: its reader checks each matrix
+            return {}  # version 4: its reader checks each matrix
         order = "<" if head[126:128] == b"IM" else ">"
         position = 128
         while position + 8 <= size:
@@ -216,9 +246,13 @@ def _check_elements(path: Path) -> None:
                     raise DataError(f"{path}: element at byte {position}: {error}; save the file again") from None
                 body = body[8:]
             check_matrix(path, body, order, f"element at byte {position}")
+            named = object_name(path, body, order) if kind in (MATRIX, COMPRESSED) else None
+            if named is not None:
+                objects[named[0]] = named[1]
             position += 8 + count if kind == 15 else 8 + count + -count % 8
         if position != size and size - position > 7:
             raise DataError(f"{path}: the file ends within an element; it was cut off; save it again")
+    return objects
 
 
 def write(path: Path, channels: tuple[Channel, ...], about: str) -> None:

@@ -75,8 +75,8 @@ def read_measured(
         ConfigurationError: no such file, or a name that the model does not have.
         DataError: bad data, or nothing to compare.
     """
-    file = read_record(path) if measurement is None else measurement
     asked = Choice() if choice is None else choice
+    file = read_record(path, asked.databases) if measurement is None else measurement
     roles = {name: wanted for name, wanted in asked.channels.items() if name != "time"} or _same_names(file, known)
     unknown = next((name for name in (*roles, *turned) if name not in known), None)
     if unknown is not None:

@@ -30,8 +30,17 @@ _TABLE = {
         "in": 0.0254,
         "mil": 2.54e-5,
         "ft": 0.3048,
+        "km": 1e3,
     },
-    ("velocity", "m/s"): {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "km/h": 1.0 / 3.6, "in/s": 0.0254},
+    ("velocity", "m/s"): {
+        "m/s": 1.0,
+        "mm/s": 1e-3,
+        "cm/s": 1e-2,
+        "km/h": 1.0 / 3.6,
+        "mph": 0.44704,
+        "knots": 1852.0 / 3600.0,
+        "in/s": 0.0254,
+    },
     ("acceleration", "m/s2"): {
         "m/s2": 1.0,
         "mm/s2": 1e-3,
@@ -43,8 +52,8 @@ _TABLE = {
     },
     ("force", "N"): {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605},
     ("moment", "N m"): {"Nm": 1.0, "kNm": 1e3},
-    ("pressure", "Pa"): {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "bar": 1e5, "mbar": 1e2},
-    ("angle", "rad"): {"rad": 1.0, "deg": math.pi / 180.0, "°": math.pi / 180.0},
+    ("pressure", "Pa"): {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "bar": 1e5, "mbar": 1e2, "psi": 6894.757293168},
+    ("angle", "rad"): {"rad": 1.0, "deg": math.pi / 180.0, "°": math.pi / 180.0, "arcmin": math.pi / 10800.0},
     ("angular velocity", "rad/s"): {"rad/s": 1.0, "deg/s": math.pi / 180.0, "°/s": math.pi / 180.0},
     ("voltage", "V"): {"V": 1.0, "mV": 1e-3, "Volts": 1.0, "Volt": 1.0},
     ("current", "A"): {"A": 1.0, "mA": 1e-3},
@@ -58,6 +67,30 @@ UNITS = {text: Unit(*kind, factor) for kind, units in _TABLE.items() for text, f
 QUANTITIES = {kind[0]: kind[1] for kind in _TABLE}
 """Quantity to its SI unit."""
 
+_SPELLINGS = {
+    **dict.fromkeys(("second", "seconds", "Seconds", "Sec", "Secs", "secs"), "s"),
+    **dict.fromkeys(("msec", "mSec", "mSecs", "msecs", "milliseconds", "millisecond"), "ms"),
+    **dict.fromkeys(("usec", "usecs", "microseconds"), "us"),
+    **dict.fromkeys(("kmh", "Kmh", "KMH", "km/hr", "Km/h", "KM/H", "kph", "KPH", "km_h", "kmph"), "km/h"),
+    **dict.fromkeys(("MPH", "mi/h"), "mph"),
+    **dict.fromkeys(("knot", "kts", "kt"), "knots"),
+    **dict.fromkeys(("metres", "meters", "metre", "meter", "Meters"), "m"),
+    **dict.fromkeys(("Meters/second", "meters/second", "mps", "Meters/s"), "m/s"),
+    **dict.fromkeys(("mps2", "m/s^2.", "ms-2", "ms^-2"), "m/s2"),
+    **dict.fromkeys(("degree", "degrees", "Degrees", "Deg", "DEG"), "deg"),
+    **dict.fromkeys(("dps", "degrees/second", "degrees/s", "degs/s"), "deg/s"),
+    **dict.fromkeys(("radians", "Rad"), "rad"),
+    **dict.fromkeys(("rads/s", "rad/second"), "rad/s"),
+    **dict.fromkeys(("gee", "g's", "Gs", "G's", "gravities"), "g"),
+    **dict.fromkeys(("newton", "newtons", "Newton", "Newtons"), "N"),
+    **dict.fromkeys(("HZ", "hz"), "Hz"),
+    **dict.fromkeys(("volt", "volts", "VOLT"), "V"),
+    **dict.fromkeys(("celsius", "Celsius", "deg C", "degrees C", "degreesC", ".C", "℃", "degc"), "degC"),
+    **dict.fromkeys(("kilopascals", "kpa", "KPa"), "kPa"),
+    **dict.fromkeys(("PSI",), "psi"),
+}
+"""Spellings of loggers to the form of `_TABLE`."""
+
 _SECONDS_SQUARED = re.compile(r"/(s|sec)(\^2|²|\*\*2|\^\(2\)|/s|/sec)$")
 _NEGATIVE = re.compile(r"[ .·*]?s(\^-|\^\(-|-|⁻)(?P<power>[12¹²])\)?$")
 _SCALED = re.compile(r"(?P<number>[+-]?\d+(\.\d*)?([eE][+-]?\d+)?)[ *]+(?P<unit>\D.*)")
@@ -69,7 +102,9 @@ def plain_unit(text: str) -> str:
     found = text.strip().strip("[]").strip()
     if found.startswith("(") and found.endswith(")") and found.count("(") == 1:
         found = found[1:-1].strip()
+    found = _SPELLINGS.get(found, found)
     found = found.replace("µ", "u").replace("μ", "u").replace("sec", "s").replace("_", "")
+    found = re.sub(r"/\(s ?(\^2|²|2|\*s)\)$", "/s2", found)
     found = _SECONDS_SQUARED.sub("/s2", found.replace(" / ", "/"))
     found = _NEGATIVE.sub(lambda match: "/s2" if match["power"] in "2²" else "/s", found)
     if found in ("N m", "N*m", "N·m", "N.m", "kN m", "kN*m"):
@@ -91,6 +126,10 @@ def find_unit(text: str) -> Unit | None:
     return None if unit is None else unit._replace(factor=unit.factor * float(scaled["number"]))
 
 
+GRAMS = ("g/s", "mg/s", "g/km", "g/h", "g/min", "g/l")
+"""Quotients in which g is a gram: flows of air and fuel."""
+
+
 def find_ratio(text: str) -> Unit | None:
     """What a unit or the quotient of two units means, as (m/s2)/N, g/m or m/s2/N; None where that is open.
 
@@ -98,7 +137,7 @@ def find_ratio(text: str) -> Unit | None:
         text: as found in a file.
     """
     whole = find_unit(text)
-    if whole is not None:
+    if whole is not None or text.strip().lower() in GRAMS:
         return whole
     inverse = _INVERSE.fullmatch(text.strip())
     if inverse:

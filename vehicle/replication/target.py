@@ -72,7 +72,7 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
         ConfigurationError: a band that the record does not hold.
         DataError: bad data, another quantity than acceleration, nothing in the band.
     """
-    measurement = read_record(path)
+    measurement = read_record(path, choice.databases)
     times = {role: name for role, name in choice.channels.items() if role == "time"}
     chosen = choose(measurement, replace(choice, channels={**times, **names}))
     for role, quantity in chosen.quantities.items():
