@@ -149,6 +149,12 @@ def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool
         parser.add_argument("--rate", type=float, metavar="HZ", help="samples a second, in place of the file's times")
     parser.add_argument("--from", dest="first", type=float, metavar="S", help="begin at this time of the file [s]")
     parser.add_argument("--to", dest="last", type=float, metavar="S", help="end at this time of the file [s]")
+    parser.add_argument(
+        "--resample",
+        type=float,
+        metavar="HZ",
+        help="bring the record to this sampling rate first, with anti-alias filter: for jittered times",
+    )
     parser.add_argument("--detrend", action="store_true", help="subtract the straight line of least squares")
     parser.add_argument(
         "--highpass",
@@ -184,5 +190,6 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
         last=options.last,
         detrend=options.detrend,
         highpass=options.highpass,
+        resample=options.resample,
     )
     return None if found.empty else found

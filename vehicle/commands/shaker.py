@@ -85,7 +85,6 @@ def parser() -> Parser:
         "folder of the run by default",
     )
     found.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
-    found.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
     found.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     message_options(found, quiet=True)
     return found
@@ -139,7 +138,6 @@ def _job(options: argparse.Namespace) -> None:
             source,
             wheel=wheel,
             interpolate=options.interpolate,
-            resample_hz=options.resample,
             remove_mean=options.remove_mean,
             accept_implausible=options.road is not None,
             choice=choice,
