@@ -20,8 +20,8 @@ from vehicle.analysis.exposure import (
     vibration_dose_value,
     weighted_rms,
 )
-from vehicle.analysis.samples import checked_rows, checked_signals, checked_time_step, is_constant
-from vehicle.analysis.weighting import weighted_record, weighting
+from vehicle.analysis.samples import USABLE, checked_rows, checked_signals, checked_time_step, is_constant
+from vehicle.analysis.weighting import FULL_SAMPLING_RATE, weighted_record, weighting
 from vehicle.errors import ConfigurationError, DataError
 
 AXES = ("x", "y", "z")
@@ -34,6 +34,8 @@ MOTION_SICKNESS_PERIOD = 240.0
 """Least measurement from which a motion sickness dose value should be estimated [s] (ISO 2631-1:1997, D.1)"""
 START_UP_EFFECT = 0.01
 """Share by which a maximum in the start-up of a filter must exceed those after it to be worth a sentence [-]"""
+CLOCK_TOLERANCE = 1e-3
+"""Error of a rate that is known from jittered times [-]."""
 OFFSET_EFFECT = 0.01
 """Change of a weighted RMS or VDV by the offset above which someone must say what the offset is [-]."""
 LARGEST_MEAN = 1.0
@@ -182,6 +184,8 @@ def evaluate(
     average: RunningAverage = "linear",
     skip: float = 0.0,
     from_rest: bool = False,
+    axes: Sequence[str] = AXES,
+    highest: float | None = None,
 ) -> dict[str, Any]:
     """Evaluate the acceleration of one point: weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums.
 
@@ -192,23 +196,28 @@ def evaluate(
 
     Args:
         time_step: [s].
-        xyz: acceleration of the point in x, y, z [m/s2], shape (3, n), or one by one.
+        xyz: acceleration of the point in x, y, z [m/s2], shape (3, n), or one by one; only those of `axes`.
         place: name in `APPLICATIONS`: "seat" (z Wk, x and y Wd), "backrest", "feet", "standing", "seat_bs6841", ...
         average: of the running RMS in MTVV, "linear" or "exponential".
         skip: seconds of the weighted records left out at the beginning; the filters run through them.
         from_rest: the record starts at rest, so all of it counts.
+        axes: measured axes, in the order x, y, z; all three by default.
+        highest: highest frequency that the record holds [Hz]; 0.4 of its rate by default.
 
     Returns:
-        {"place", "standard", "duration_s", "sampling_rate_hz", "running_average",
+        {"place", "standard", "duration_s", "sampling_rate_hz", "highest_hz", "running_average",
          "x" | "y" | "z": {"weighting", "multiplying_factor", "weighted_rms", "mtvv", "crest_factor", "vdv",
                            "estimated_vdv", "msdv", "msdv_weighting", "mtvv_ratio", "vdv_ratio"},
          "vector_sum": {"weighted_rms", "vdv", "health_weighted_rms"}, "reasons": [...]}.
         The axes are without multiplying factors, the sums with them; `vdv` is summed in the fourth power. `mtvv_ratio`
         (MTVV / a_w) above 1.5 or `vdv_ratio` (VDV / (a_w T^(1/4))) above 1.75 mean that the RMS alone understates the
-        shocks. A value that does not exist is None, and `reasons` says why: MSDV below 43.2 s, for instance.
+        shocks. A value that does not exist is None, and `reasons` says why: MSDV below 43.2 s, for instance. An axis
+        that is not among `axes` is None, and then so are the sums. `highest_hz` is None from 80 Hz on, the range of
+        the standard; below, vibration above it is in no value.
 
     Raises:
-        DataError: not three axes, none of them moves, sampled below 250 Hz, not finite, over before the filters settle.
+        DataError: not one signal for each axis, none of them moves, sampled below 25 Hz, not finite, over before the
+            filters settle.
         ConfigurationError: unknown place or average, a skip that is negative, not finite or the whole record.
 
     Source: ISO 2631-1:1997, clauses 5.5 and 6 to 9, annex D; BS 6841:1987.
@@ -216,32 +225,39 @@ def evaluate(
     step = checked_time_step(time_step)
     use = application(place)
     rows = checked_rows("acceleration", xyz)
-    if len(rows) != 3:
-        raise DataError(f"acceleration: found {len(rows)} signals, needed are the three axes x, y, z")
+    if len(rows) != len(axes):
+        raise DataError(f"acceleration: found {len(rows)} signals, needed are the axes {', '.join(axes)}")
     if not any(row.any() for row in rows):
-        raise DataError("acceleration: all three axes are zero throughout, so there is nothing to evaluate")
+        which = "all three axes are" if len(axes) == 3 else f"{' and '.join(axes)} is"
+        raise DataError(f"acceleration: {which} zero throughout, so there is nothing to evaluate")
     if not 0.0 <= skip < (rows[0].size - 1) * step:
         raise ConfigurationError(
             f"skip: found {skip:g} s, allowed is 0 s to less than the record, {rows[0].size * step:g} s"
         )
     span = _Span(time_step=step, skip=skip, from_rest=from_rest)
-    axes, said = {}, []
-    for axis, record, name, factor in zip(AXES, rows, use.weightings, use.comfort_factors, strict=True):
-        axes[axis], remarks = _axis(span, record, name, factor, average)
+    found: dict[str, Any] = dict.fromkeys(AXES)
+    said = []
+    of = dict(zip(AXES, zip(use.weightings, use.comfort_factors, strict=True), strict=True))
+    for axis, record in zip(axes, rows, strict=True):
+        found[axis], remarks = _axis(span, record, *of[axis], average)
         said += [f"{axis}: {remark}" for remark in remarks]
     duration = span.whole(rows[0]).size * step
-    rms = [axes[axis]["weighted_rms"] for axis in AXES]
-    sums: dict[str, float | None] = {
-        "weighted_rms": vector_sum(rms, use.comfort_factors),
-        "vdv": vector_sum([axes[axis]["vdv"] for axis in AXES], use.comfort_factors, power=4.0),
-        "health_weighted_rms": None if use.health_factors is None else vector_sum(rms, use.health_factors),
-    }
+    sums = _sums(found, use) if len(axes) == 3 else None
     reasons = [
         f"{axis}: zero throughout, so crest factor and ratios are undefined"
-        for axis in AXES
-        if axes[axis]["crest_factor"] is None
+        for axis in axes
+        if found[axis]["crest_factor"] is None
     ]
     reasons += said + _about_motion_sickness(duration)
+    if sums is None:
+        missing = [axis for axis in AXES if axis not in axes]
+        reasons.append(f"{' and '.join(missing)}: not given, so there is no vector sum")
+    band = USABLE / step if highest is None else min(highest, USABLE / step)
+    limited = band < USABLE * FULL_SAMPLING_RATE * (1.0 - CLOCK_TOLERANCE)
+    if limited:
+        reasons.append(
+            f"the record holds vibration up to {band:.4g} Hz; what lies above, to 80 Hz in ISO 2631-1, is in no value"
+        )
     if use.health_factors is None:
         reasons.append(f"vector_sum.health_weighted_rms: the standard gives no health factors for {place}")
     return {
@@ -249,10 +265,21 @@ def evaluate(
         "standard": use.standard,
         "duration_s": duration,
         "sampling_rate_hz": 1.0 / step,
+        "highest_hz": band if limited else None,
         "running_average": average,
-        **axes,
+        **found,
         "vector_sum": sums,
         "reasons": reasons,
+    }
+
+
+def _sums(found: dict[str, Any], use: Application) -> dict[str, float | None]:
+    """Return the vector sums of the measures of three axes."""
+    rms = [found[axis]["weighted_rms"] for axis in AXES]
+    return {
+        "weighted_rms": vector_sum(rms, use.comfort_factors),
+        "vdv": vector_sum([found[axis]["vdv"] for axis in AXES], use.comfort_factors, power=4.0),
+        "health_weighted_rms": None if use.health_factors is None else vector_sum(rms, use.health_factors),
     }
 
 
@@ -275,8 +302,10 @@ def without_offset(signals: ArrayLike) -> NDArray[np.float64]:
     return array - offset_line(array)
 
 
-def offset_effect(time_step: float, xyz: ArrayLike, *, place: str = "seat") -> NDArray[np.float64]:
-    """Return by how much mean and drift change weighted RMS or VDV, |with - without| / without, shape (3,).
+def offset_effect(
+    time_step: float, xyz: ArrayLike, *, place: str = "seat", axes: Sequence[str] = AXES
+) -> NDArray[np.float64]:
+    """Return by how much mean and drift change weighted RMS or VDV, |with - without| / without, shape (k,).
 
     The larger of the two changes. The weighting filters are at rest before the record, so a mean is a step at its
     beginning; of a long record the VDV feels it longest. An axis that is nothing but an offset has an infinite effect,
@@ -284,12 +313,14 @@ def offset_effect(time_step: float, xyz: ArrayLike, *, place: str = "seat") -> N
 
     Args:
         time_step: [s].
-        xyz: acceleration [m/s2], shape (3, n).
+        xyz: acceleration [m/s2], shape (k, n).
         place: point of contact, which names the weightings.
+        axes: k of x, y and z.
     """
     array = checked_signals("acceleration", xyz)
     effects = []
-    for record, clean, name in zip(array, without_offset(array), application(place).weightings, strict=True):
+    names = [application(place).weightings[AXES.index(axis)] for axis in axes]
+    for record, clean, name in zip(array, without_offset(array), names, strict=True):
         weighted = [weighted_record(time_step, signal, name) for signal in (record, clean)]
         kept, removed = (np.array([weighted_rms(w), vibration_dose_value(time_step, w)]) for w in weighted)
         # below 1e-12 of the record itself the rest is rounding

@@ -12,6 +12,9 @@ from vehicle.errors import ConfigurationError, DataError
 SAMPLES_PER_PERIOD = 2.5
 """Least sampling rate over the highest frequency evaluated: an anti-alias filter needs room below Nyquist (2.0)."""
 
+USABLE = 1.0 / SAMPLES_PER_PERIOD
+"""Highest frequency that a record holds, as a share of its sampling rate [-]."""
+
 
 def checked_time_step(time_step: float) -> float:
     """Return the time step [s] when it is a positive finite number, else raise `ConfigurationError`."""

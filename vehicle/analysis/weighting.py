@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from vehicle.analysis.samples import checked_signals, checked_time_step
 from vehicle.errors import ConfigurationError, DataError
 
-LEAST_SAMPLING_RATE = 250.0
-"""The weightings limit the band at 100 Hz; 2.5 times that must be the sampling rate [Hz] (bad-inputs item 11)."""
+LEAST_SAMPLING_RATE = 25.0
+"""Lowest sampling rate of a weighted record [Hz]: it holds vibration up to 10 Hz, the range in which Wk is highest."""
+FULL_SAMPLING_RATE = 200.0
+"""From this sampling rate on a record holds vibration up to 80 Hz, the range of ISO 2631-1:1997, 1 [Hz]."""
 LINES_AT_ONCE = 2**18
 """Lines of a long record that are weighted at once."""
 
@@ -153,7 +155,7 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
         Weighted records, shape as given.
 
     Raises:
-        DataError: sampled below 250 Hz (Wf: 2.5 times 0.63 Hz is enough), not finite.
+        DataError: sampled below 25 Hz (Wf: 2.5 times 0.63 Hz is enough), not finite.
         ConfigurationError: unknown weighting.
 
     Source: ISO 2631-1:1997, annex A (filters defined by their analogue transfer function).

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.analysis.comfort import ComfortValue, comfort_value
+from vehicle.analysis.comfort import COMFORT_BAND, ComfortValue, comfort_value
 from vehicle.analysis.motion_response import MotionResponse
 from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.excitation.signal import Signal
@@ -91,6 +91,8 @@ class Run:
     ) -> RunResponse:
         """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
 
+        They end where the band of the signal ends.
+
         Where several plates move independently, the FRF is that to the plate of one wheel alone, the coherence that
         with all; plates that are copies without a delay count as one, and the FRF is that to their common motion.
 
@@ -121,11 +123,15 @@ class Run:
             DataError, DependentInputsError: as of `frf`.
         """
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
-        return responses(self.recording, self.signal, names, FRF_BAND, window)
+        return responses(self.recording, self.signal, names, self.signal.band(FRF_BAND), window)
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
-        """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""
-        return comfort_value(self.recording.timestep, [self.recording[f"{place}_acc_{axis}"] for axis in AXES])
+        """Return the RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2].
+
+        The band ends where that of the signal ends; see `ComfortValue.band`.
+        """
+        xyz = [self.recording[f"{place}_acc_{axis}"] for axis in AXES]
+        return comfort_value(self.recording.timestep, xyz, self.signal.band(COMFORT_BAND))
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
         """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""

@@ -29,7 +29,7 @@ def parser() -> Parser:
         "--input",
         required=True,
         metavar="FILE",
-        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file",
+        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone will do",
     )
     found.add_argument(
         "--channel",
@@ -86,7 +86,7 @@ def _read(options: argparse.Namespace, picks: Sequence[str], judged: str = "xyz"
     """
     import numpy as np
 
-    from vehicle.analysis.evaluation import AXES, LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line
+    from vehicle.analysis.evaluation import LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line
     from vehicle.records.acceleration import read_acceleration
 
     places = [text for text in picks if "=" not in text]
@@ -98,8 +98,8 @@ def _read(options: argparse.Namespace, picks: Sequence[str], judged: str = "xyz"
         xyz = np.array(list(record.channels.values()))
         line = offset_line(xyz)
         ends = zip(
-            AXES,
-            offset_effect(record.step, xyz, place=options.place),
+            record.channels,
+            offset_effect(record.step, xyz, place=options.place, axes=list(record.channels)),
             xyz.mean(axis=1),
             line[:, -1] - line[:, 0],
             strict=True,
@@ -119,13 +119,13 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     """Read, treat the offset as asked, and evaluate."""
     import numpy as np
 
-    from vehicle.analysis.evaluation import AXES, application, evaluate, offset_line, without_offset
+    from vehicle.analysis.evaluation import application, evaluate, offset_line, without_offset
 
     application(options.place)
     if options.rail is not None and options.place not in ("seat", "seat_bs6841"):
         raise ConfigurationError(f"--place {options.place}: --rail asks for the value of a seat; leave one of them out")
     record = _read(options, options.picks)
-    xyz = np.array(list(record.channels.values()))
+    axes, xyz = list(record.channels), np.array(list(record.channels.values()))
     removed = options.offset == "remove"
     result = evaluate(
         record.step,
@@ -134,12 +134,14 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
         average=options.mtvv,
         skip=options.skip,
         from_rest=options.offset == "keep",
+        axes=axes,
+        highest=record.usable,
     )
     line = offset_line(xyz)
     offset = {
         "treatment": "removed" if removed else "kept",
-        "mean": dict(zip(AXES, (float(value) for value in xyz.mean(axis=1)), strict=True)),
-        "drift": dict(zip(AXES, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
+        "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
+        "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
     }
     found = {"input": options.input, "offset": offset, **result, "notices": list(record.notices)}
     if options.rail is not None:
@@ -163,7 +165,9 @@ def _seat_value(options: argparse.Namespace, seat: Record) -> dict[str, Any]:
     axis, equals, name = options.rail.partition("=")
     if equals and axis != "z":
         raise ConfigurationError(f"--rail {options.rail}: the value of a seat is that of z; give z=NAME, or a place")
-    rail = _read(options, [f"{one}={name}" for one in "xyz"] if equals else [options.rail], judged="z")
+    rail = _read(options, [f"z={name}"] if equals else [options.rail], judged="z")
+    if "z" not in seat.channels or "z" not in rail.channels:
+        raise ConfigurationError("--rail: the value of a seat is that of z, which was not measured at both places")
     both = np.array([seat.channels["z"], rail.channels["z"]])
     both = without_offset(both) if options.offset == "remove" else both
     return asdict(seat_value(seat.step, both[0], both[1], place=options.place, skip=options.skip))
@@ -191,20 +195,22 @@ def _table(result: dict[str, Any]) -> str:
         ("estimated VDV", "estimated_vdv", "m/s^1.75"),
         ("MSDV (Wf)", "msdv", "m/s^1.5"),
     )
+    axes = [axis for axis in ("x", "y", "z") if result[axis] is not None]
     lines = [
         f"{result['input']}: {result['duration_s']:g} s at {result['sampling_rate_hz']:g} Hz, {result['place']} "
         f"({result['standard']})",
-        f"{'':16}{'x':>12}{'y':>12}{'z':>12}",
+        f"{'':16}" + "".join(f"{axis:>12}" for axis in axes),
     ]
     for title, key, unit in rows:
-        cells = [result[axis][key] for axis in ("x", "y", "z")]
+        cells = [result[axis][key] for axis in axes]
         shown = ["-" if v is None else v if isinstance(v, str) else f"{v:.4g}" for v in cells]
         lines.append(f"{title:16}" + "".join(f"{cell:>12}" for cell in shown) + f"  {unit}".rstrip())
     sums = result["vector_sum"]
-    lines.append(f"vector sum of RMS (comfort)  {sums['weighted_rms']:.4g} m/s2")
-    if sums["health_weighted_rms"] is not None:
-        lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
-    lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
+    if sums is not None:
+        lines.append(f"vector sum of RMS (comfort)  {sums['weighted_rms']:.4g} m/s2")
+        if sums["health_weighted_rms"] is not None:
+            lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
+        lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
     if "seat_value" in result:
         ratio = result["seat_value"]
         lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")

@@ -144,7 +144,7 @@ def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> 
     if "" in channels:
         raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
     units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in taken}
-    own = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass")}
+    own = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
     own["databases"] = tuple(options.databases)
     return Choice(channels=channels, units=units, **(own if hasattr(options, "delay") else {}))
 

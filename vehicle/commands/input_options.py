@@ -154,6 +154,12 @@ def record_options(
     database_option(parser)
     parser.add_argument("--from", dest="first", type=float, metavar="S", help="begin at this time of the file [s]")
     parser.add_argument("--to", dest="last", type=float, metavar="S", help="end at this time of the file [s]")
+    parser.add_argument(
+        "--resample",
+        type=float,
+        metavar="HZ",
+        help="bring the record to this sampling rate first, with anti-alias filter: for jittered times",
+    )
     parser.add_argument("--detrend", action="store_true", help="subtract the straight line of least squares")
     parser.add_argument(
         "--highpass",
@@ -216,5 +222,6 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
         detrend=options.detrend,
         highpass=options.highpass,
         databases=tuple(options.databases),
+        resample=options.resample,
     )
     return None if found.empty else found

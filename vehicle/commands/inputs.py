@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from vehicle.commands.input_options import drives_on_road
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
@@ -23,13 +23,19 @@ def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
 
     Raises:
         ConfigurationError: none, two of one name, a speed for no road, or a --skip that leaves nothing.
-        DataError: an input cannot be read.
+        DataError: an input cannot be read, or was sampled below 125 Hz.
     """
     from vehicle.sweeps.case import signal_of
 
     inputs = _roads(options, vehicle) if drives_on_road(options) else _files(options)
     for source in inputs:
-        duration = signal_of(source).duration
+        signal = signal_of(source)
+        if signal.highest is not None:
+            raise DataError(
+                f"{source.name}: holds vibration up to {signal.highest:g} Hz alone, comfort in 2 to 50 Hz needs a record "
+                "of at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
+            )
+        duration = signal.duration
         if not 0.0 <= options.skip < duration:
             raise ConfigurationError(
                 f"--skip {options.skip:g} s: allowed is 0 s to less than {source.name}, {duration:g} s"

@@ -37,7 +37,6 @@ def parser() -> Parser:
     file = signal_options(found)
     record_options(file, 'a plate, as fr="Shaker FR"', rate=False, unit=False)
     file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
-    file.add_argument("--resample", type=float, metavar="HZ", help="bring a non-uniform signal to this rate")
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     read = found.scoped_group(
         "a file of signals or of a measurement",
@@ -146,7 +145,6 @@ def _job(options: argparse.Namespace) -> None:
             source,
             wheel=wheel,
             interpolate=options.interpolate,
-            resample_hz=options.resample,
             remove_mean=options.remove_mean,
             accept_implausible=options.any_level,
             choice=choice,

@@ -56,12 +56,17 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
 
 def _comfort(summary: dict[str, Any]) -> list[str]:
     """Comfort at the seat rail, and on the seat of a car that has one."""
+    from vehicle.analysis.comfort import COMFORT_BAND
+
     lines, places = [], summary["comfort"]
     if "seat_rail" in places:
-        rms = places["seat_rail"]["rms_2_50_hz"]
+        rail = places["seat_rail"]
+        rms = rail.get("rms_of_band", rail["rms_2_50_hz"])
+        low, high = rms.get("band_hz", COMFORT_BAND)
+        axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
         lines.append(
-            f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz (x {rms['x']:.4f}, "
-            f"y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {_weighted(places, 'seat_rail'):.4f} m/s2"
+            f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, {low:g} to {high:g} Hz ({axes}); ISO "
+            f"2631-1 vector sum {_weighted(places, 'seat_rail'):.4f} m/s2"
         )
     if (ratio := summary["seat_value"]) is not None:
         lines.append(

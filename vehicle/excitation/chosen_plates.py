@@ -13,7 +13,7 @@ from vehicle.records.channel import Channel
 from vehicle.records.choice import Choice, choose
 from vehicle.records.integration import displacement
 from vehicle.records.reader import read_record
-from vehicle.records.table import TIME, Header, Table
+from vehicle.records.table import TIME, USABLE, Header, Table
 
 
 def _moves(channel: Channel) -> bool:
@@ -21,7 +21,7 @@ def _moves(channel: Channel) -> bool:
     return not channel.name.startswith("plate_") or bool(np.ptp(channel.values) > 0.0)
 
 
-def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> Table:
+def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> tuple[Table, float]:
     """Displacements of plates as a table with the heads `time [s]`, `displacement_fr [m]`.
 
     Args:
@@ -29,6 +29,9 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> Table:
         choice: channels for wheels, and what is done to them; None, or no channel, where the file holds
             one time history alone.
         wheel: the plate that this one drives.
+
+    Returns:
+        The table, and the sampling rate that its band stands for [Hz]: the lower of those before and after resampling.
 
     Raises:
         ConfigurationError: no such file, or a role that is no wheel.
@@ -57,7 +60,7 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> Table:
     chosen = choose(measurement, choice)
     columns, notices = displacement(chosen, choice, str(path))
     header = Header(path=path, line=0, cells=(TIME, *(f"displacement_{role} [m]" for role in columns)))
-    return Table(
+    table = Table(
         header=header,
         key=0,
         values=np.column_stack([chosen.time, *columns.values()]),
@@ -65,3 +68,4 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> Table:
         notices=(*chosen.notices, *notices),
         sha256=measurement.sha256,
     )
+    return table, chosen.highest / USABLE

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.records.clock import PAUSE
+from vehicle.records.rare_events import rare_events
 
 LARGEST_DISPLACEMENT = 0.15
 """Largest plausible |z| [m]: beyond it a plate leaves the stroke of a rig and a wheel the ground."""
@@ -34,8 +35,8 @@ record of 20 periods of its lowest frequency stays below 0.2."""
 
 def check_level(
     path: Path, displacement: Mapping[str, NDArray[np.float64]], timestep: float, units: Mapping[str, str] | None = None
-) -> None:
-    """Stop at magnitudes that speak of another unit or quantity.
+) -> list[str]:
+    """Stop at magnitudes that speak of another unit or quantity; name rare events, such as a pothole.
 
     Args:
         path: file, for messages.
@@ -44,9 +45,14 @@ def check_level(
         units: wheel -> unit that its column is declared in, "m" (by default) or "mm": messages speak in it; "" for a
             channel of a measurement file, whose unit the file or --unit tells.
 
+    Returns:
+        A notice for each plate that exceeds a level in rare events; see `rare_events`.
+
     Raises:
-        DataError: |z| > 0.15 m, |z''| > 50 m/s2, or RMS < 1e-7 m (a plate at rest beside a moving one is accepted).
+        DataError: |z| > 0.15 m or |z''| > 50 m/s2 beyond rare events, or RMS < 1e-7 m (a plate at rest beside a moving
+            one is accepted).
     """
+    events = []
     moving = any(np.std(z) >= SMALLEST_RMS for z in displacement.values())
     for wheel, z in displacement.items():
         unit = (units or {}).get(wheel, "m")
@@ -58,7 +64,12 @@ def check_level(
         if not unit:
             unit, doubt, mend = "m", "is the unit of the channel right?", f"give another: --unit {wheel}=UNIT"
         at = int(np.argmax(np.abs(z)))
-        if abs(z[at]) > LARGEST_DISPLACEMENT:
+        if abs(z[at]) > LARGEST_DISPLACEMENT and rare_events(z, LARGEST_DISPLACEMENT):
+            events.append(
+                f"plate {wheel} is displaced by {per_metre * z[at]:.4g} {unit} at t = {at * timestep:.6g} s, beyond "
+                f"{per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
+            )
+        elif abs(z[at]) > LARGEST_DISPLACEMENT:
             raise DataError(
                 f"{path}: plate {wheel} is displaced by {per_metre * z[at]:.6g} {unit} at sample {at} "
                 f"(t = {at * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}; {doubt}; {mend}, "
@@ -75,12 +86,18 @@ def check_level(
             )
         acceleration = band_limited_acceleration(z, timestep)
         at = int(np.argmax(np.abs(acceleration)))
-        if abs(acceleration[at]) > LARGEST_ACCELERATION:
+        if abs(acceleration[at]) > LARGEST_ACCELERATION and rare_events(acceleration, LARGEST_ACCELERATION):
+            events.append(
+                f"plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s (below "
+                f"{ACCELERATION_BAND:g} Hz), beyond {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
+            )
+        elif abs(acceleration[at]) > LARGEST_ACCELERATION:
             raise DataError(
                 f"{path}: plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s "
                 f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {doubt}; {mend}. Otherwise "
-                "look there for a jump or a spike in the record, or give --road if it is a road and no shaker signal"
+                "look there for a jump or a spike in the record, or add --road without a value if it is a road"
             )
+    return events
 
 
 def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArray[np.float64]:

@@ -49,6 +49,7 @@ class Signal:
         notices: one sentence for everything that was done to the data or noticed about them.
         source: name of the file or text of the generator.
         sha256: hexadecimal digest of the file, None for a generated signal.
+        highest: highest frequency that the signal holds [Hz] where that is below 50 Hz; else None.
 
     Raises:
         DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
@@ -59,6 +60,7 @@ class Signal:
     notices: tuple[str, ...] = ()
     source: str = "array"
     sha256: str | None = None
+    highest: float | None = None
 
     def __post_init__(self) -> None:
         time = _read_only(self.time)
@@ -128,6 +130,10 @@ class Signal:
         for wheel, values in self.displacement.items():
             content.update(wheel.encode() + values.tobytes())
         return {"sha256": content.hexdigest()}
+
+    def band(self, band: tuple[float, float]) -> tuple[float, float]:
+        """Return the part of a band [Hz] that the signal holds."""
+        return band if self.highest is None else (band[0], min(band[1], self.highest))
 
     def rms(self, wheel: str) -> float:
         """Root mean square of the displacement about its mean [m]; 0 for a plate at rest."""

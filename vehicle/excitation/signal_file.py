@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,12 +14,20 @@ from vehicle.excitation.chosen_plates import chosen_plates
 from vehicle.excitation.plausibility import aliasing_notices, check_level, drifts, pauses
 from vehicle.excitation.rest import start_from_rest
 from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
-from vehicle.excitation.time_grid import LOWEST_RATE, check_rate, decimate, fill_missing, refine
+from vehicle.excitation.time_grid import FINE_RATE, LOWEST_RATE, SMOOTH_RATE, check_rate, fill_missing
 from vehicle.names import CORNERS, in_order, is_wheel
 from vehicle.records.choice import Choice
-from vehicle.records.clock import check_increasing, check_uniform, is_uniform, without_rounding
+from vehicle.records.clock import (
+    UNIFORM_TOLERANCE,
+    check_increasing,
+    check_uniform,
+    clock_options,
+    is_uniform,
+    without_rounding,
+)
 from vehicle.records.formats import is_table, read_table
-from vehicle.records.table import TIME, Header, Table, Vector, Wanted, name_and_unit
+from vehicle.records.resampled import resampled
+from vehicle.records.table import TIME, USABLE, Header, Table, Vector, Wanted, name_and_unit
 from vehicle.records.text_format import write_table
 from vehicle.records.units import find_unit
 
@@ -35,7 +44,6 @@ def read_signal(
     *,
     wheel: str = "fr",
     interpolate: bool = False,
-    resample_hz: float | None = None,
     remove_mean: bool = False,
     accept_implausible: bool = False,
     choice: Choice | None = None,
@@ -50,10 +58,10 @@ def read_signal(
         path: the file, of a format of `vehicle.records`.
         wheel: wheel that a plain `displacement` column drives, as 'fr'.
         interpolate: fill missing displacements by a cubic spline over gaps up to 10 ms.
-        resample_hz: new sampling rate [Hz] with anti-alias filter, also for non-uniform times.
         remove_mean: subtract the mean of each column.
         accept_implausible: keep going where level or acceleration is beyond a shaker's (roads), with a notice.
-        choice: channels of a measurement file, and what is done to them; None for the columns above.
+        choice: channels of a measurement file, and what is done to them; None, or a rate to resample to alone, for the
+            columns above.
 
     Raises:
         ConfigurationError: no such file, unknown wheel, resampling rate out of range.
@@ -62,18 +70,17 @@ def read_signal(
     path = Path(path)
     if not is_wheel(wheel):
         raise ConfigurationError(f"wheel {wheel!r} is unknown; allowed: {', '.join(CORNERS.values())}")
-    if resample_hz is not None and not LOWEST_RATE <= resample_hz < np.inf:
-        raise ConfigurationError(
-            f"--resample {resample_hz:g} Hz: allowed from {LOWEST_RATE:g} Hz on (samples a second)"
-        )
+    resample = None if choice is None else choice.resample
+    if resample is not None and not LOWEST_RATE <= resample < np.inf:
+        raise ConfigurationError(f"--resample {resample:g} Hz: allowed from {LOWEST_RATE:g} Hz on (samples a second)")
     wanted = Wanted(
         needed=NEEDED,
         key=lambda header: plate_columns(header, wheel)["time"][0],
         missing="fill" if interpolate else "refuse",
         remedy="repair the cell, or ask for interpolation (--interpolate)",
     )
-    plain = choice is None and is_table(path)
-    table = read_table(path, wanted) if plain else chosen_plates(path, choice, wheel)
+    plain = (choice is None or choice == Choice(resample=resample)) and is_table(path)
+    table, band_rate = (read_table(path, wanted), math.inf) if plain else chosen_plates(path, choice, wheel)
     plates = plate_columns(table.header, wheel)
     del plates["time"]
     units = {driven: unit for driven, (_, unit) in plates.items()}
@@ -92,8 +99,10 @@ def read_signal(
             continue  # a run records the plate that it did not drive, too
         notices.extend([*filled, *pauses(driven, time, values)])
         columns[driven] = values * _LENGTH_UNITS[unit]
-    timestep, columns, resampled = _uniform_columns(table, time, columns, resample_hz)
-    notices.extend(resampled)
+    timestep, columns, recorded, brought = _uniform_columns(table, time, columns, resample)
+    notices.extend(brought)
+    band_rate = min(band_rate, recorded)
+    notices.extend(check_rate(path, band_rate))
     if time[0] != 0.0:
         notices.append(f"time begins at {time[0]:.9g} s in the file and was shifted to 0")
     if remove_mean:
@@ -104,7 +113,7 @@ def read_signal(
         raise DataError(f"{path}: no plate moves: every column holds one value only; give a record with motion")
     notices.extend(drifts(columns))
     try:
-        check_level(path, columns, timestep, units if plain else dict.fromkeys(units, ""))
+        notices.extend(check_level(path, columns, timestep, units if plain else dict.fromkeys(units, "")))
     except DataError as error:
         if not accept_implausible:
             raise
@@ -117,6 +126,7 @@ def read_signal(
         notices=(*notices, *ramped),
         source=path.name,
         sha256=table.sha256,
+        highest=USABLE * band_rate if band_rate < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE) else None,
     )
 
 
@@ -199,28 +209,38 @@ def _is_number(cell: str) -> bool:
 
 
 def _uniform_columns(
-    table: Table, time: Vector, columns: dict[str, Vector], resample_hz: float | None
-) -> tuple[float, dict[str, Vector], list[str]]:
-    """Check the time grid, or make a new one on request: step [s], columns and notices."""
-    path = table.header.path
+    table: Table, time: Vector, columns: dict[str, Vector], rate: float | None
+) -> tuple[float, dict[str, Vector], float, list[str]]:
+    """Check the time grid, or make a new one.
+
+    Args:
+        table: for messages.
+        time: increasing times [s], shape (n,).
+        columns: wheel -> displacement [m], shape (n,).
+        rate: wanted sampling rate [Hz]; None for that of the file.
+
+    Returns:
+        Step [s], columns, the rate for which their band stands [Hz], and notices.
+    """
     time, rounded = without_rounding(time)
     notices = list(rounded)
-    rate = 1.0 / float(np.median(np.diff(time)))
-    if resample_hz is None:
-        check_uniform(table, time, "resample it (--resample HZ)")
+    if rate is None:
+        check_uniform(table, time, f"set {' '.join(clock_options(time)) or '--resample HZ'}")
     uniform = is_uniform(time)
-    if uniform:
-        rate = (time.size - 1) / float(time[-1] - time[0])
-    notices.extend(check_rate(path, rate))
-    if resample_hz is None or (uniform and abs(rate / resample_hz - 1.0) < 1e-9):
-        return 1.0 / rate, columns, [*notices, *aliasing_notices(columns, 1.0 / rate)]
-    notices.extend(check_rate(path, resample_hz))
-    factor, fine = refine(table, time, columns, resample_hz)
-    notices.extend(aliasing_notices(fine, 1.0 / (factor * resample_hz)))
-    shape = "uniform" if uniform else "non-uniform"
-    how = f" and an anti-alias FIR filter from {0.4 * resample_hz:g} Hz on" if factor > 1 else ""
-    notices.append(f"resampled from {shape} times at {rate:.6g} Hz to {resample_hz:g} Hz by a cubic spline{how}")
-    return 1.0 / resample_hz, {wheel: decimate(z, factor) for wheel, z in fine.items()}, notices
+    held = (time.size - 1) / float(time[-1] - time[0]) if uniform else 1.0 / float(np.median(np.diff(time)))
+    notices.extend(aliasing_notices(columns, 1.0 / held))
+    lowest = held
+    wanted = [] if rate is None else [rate]
+    if (rate or held) < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE):
+        wanted.append(FINE_RATE)
+    for target in wanted:
+        if uniform and abs(held / target - 1.0) < 1e-9:
+            continue
+        columns, said = resampled(time, columns, target, table.place, uniform)
+        notices.append(said)
+        time = time[0] + np.arange(next(iter(columns.values())).size) / target
+        lowest, held, uniform = min(lowest, target), target, True
+    return 1.0 / held, columns, lowest, notices
 
 
 def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = ()) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -10,40 +9,43 @@ import scipy
 
 from vehicle.errors import DataError
 from vehicle.excitation.signal import MINIMUM_SAMPLES
-from vehicle.records.clock import UNIFORM_TOLERANCE
-from vehicle.records.table import Table, Vector
+from vehicle.records.clock import UNIFORM_TOLERANCE, longest_gap
+from vehicle.records.table import USABLE, Table, Vector
 
-LOWEST_RATE = 125.0
-"""Lowest sampling rate [Hz]: 2.5 samples for each period of 50 Hz, the upper end of the range of interest."""
+LOWEST_RATE = 10.0
+"""Lowest sampling rate [Hz]: usable up to 4 Hz, the bounce and pitch of a body."""
+
+SMOOTH_RATE, FINE_RATE = 125.0, 1000.0
+"""A plate sampled below the first rate [Hz] is brought to the second: the cubic spline between its samples would add
+images of its upper band, 16 % of a sine at 0.4 of the rate."""
 
 FULL_RATE = 250.0
 """From this sampling rate on the whole range up to 100 Hz of the weighting filters is covered [Hz]."""
 
-SAMPLES_PER_PERIOD = 2.5
-"""Samples needed for each period of the highest frequency that is used [-]."""
-
-LONGEST_GAP = 0.010
-"""Longest gap [s] that is interpolated over: half a period of 50 Hz."""
-
-LARGEST_GRID = 20_000_000
-"""Most samples that resampling may make."""
-
 
 def check_rate(path: Path, rate: float) -> tuple[str, ...]:
-    """Refuse a sampling rate [Hz] below `LOWEST_RATE`; below `FULL_RATE` return a notice with the usable band."""
+    """Reject a sampling rate below `LOWEST_RATE`; below `FULL_RATE` return a notice with the usable band.
+
+    Args:
+        path: file, for messages.
+        rate: at which the file was sampled [Hz].
+
+    Raises:
+        DataError: the rate is too low.
+    """
     if rate < LOWEST_RATE * (1.0 - 1e-9):  # a rate computed from rounded times
-        hint = "; the time looks like ms" if LOWEST_RATE <= rate * 1000.0 <= 1e4 else ""
+        hint = "; the time looks like ms" if FULL_RATE <= rate * 1000.0 <= 5e3 else ""
         raise DataError(
-            f"{path}: sampling rate {rate:.6g} Hz; allowed from {LOWEST_RATE:g} Hz ({SAMPLES_PER_PERIOD:g} samples "
-            "per period of "
-            f"50 Hz){hint}; measure or export with a higher rate"
+            f"{path}: sampling rate {rate:.6g} Hz; allowed from {LOWEST_RATE:g} Hz (usable up to "
+            f"{USABLE * LOWEST_RATE:g} Hz){hint}; measure or export with a higher rate"
         )
-    if rate < FULL_RATE * (1.0 - 1e-9):
-        return (
-            f"sampling rate {rate:.6g} Hz: usable up to {rate / SAMPLES_PER_PERIOD:.4g} Hz, from {FULL_RATE:g} Hz "
-            "on up to 100 Hz",
-        )
-    return ()
+    if rate >= FULL_RATE * (1.0 - UNIFORM_TOLERANCE):
+        return ()
+    ends = "; FRFs and comfort end there" if rate < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE) else ""
+    return (
+        f"sampling rate {rate:.6g} Hz: usable up to {USABLE * rate:.4g} Hz, from {FULL_RATE:g} Hz on up to "
+        f"100 Hz{ends}",
+    )
 
 
 def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[str]]:
@@ -83,59 +85,3 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     filled[~valid] = scipy.interpolate.CubicSpline(time[valid], values[valid])(time[~valid])
     count = int(np.count_nonzero(~valid))
     return filled, [f"{count} missing values of {name} interpolated by a cubic spline, the first in {table.row(first)}"]
-
-
-def refine(table: Table, time: Vector, columns: Mapping[str, Vector], rate: float) -> tuple[int, dict[str, Vector]]:
-    """Interpolate onto a uniform grid of `factor * rate`, the lowest multiple that is not below the recorded rate.
-
-    Cubic spline (not-a-knot) through the recorded samples; the first half of resampling, `decimate` is the second.
-
-    Args:
-        table: for messages.
-        time: increasing times [s], shape (n,).
-        columns: wheel -> displacement [m], shape (n,).
-        rate: wanted sampling rate [Hz].
-
-    Returns:
-        The factor and the columns on the fine grid, shape (m,).
-
-    Raises:
-        DataError: a gap too long to be interpolated, a rate out of range.
-    """
-    recorded = 1.0 / float(np.median(np.diff(time)))
-    gap = int(np.argmax(np.diff(time))) + 1
-    length = float(time[gap] - time[gap - 1])
-    limit = longest_gap(1.0 / recorded)
-    if length > limit * (1.0 + UNIFORM_TOLERANCE):
-        raise DataError(
-            f"{table.place(gap)}: gap of {length:.6g} s; resampling bridges at most {limit:.6g} s; use the part before "
-            "or after it"
-        )
-    factor = max(1, int(np.ceil(recorded / rate * (1.0 - 1e-6))))
-    samples = int(np.floor((time[-1] - time[0]) * rate * factor * (1.0 + 1e-12))) + 1
-    if samples > LARGEST_GRID:
-        raise DataError(
-            f"{table.header.path}: resampling to {rate:g} Hz makes {samples} samples; allowed {LARGEST_GRID}; choose a "
-            "lower rate"
-        )
-    fine = np.minimum(time[0] + np.arange(samples) / (rate * factor), time[-1])
-    return factor, {wheel: scipy.interpolate.CubicSpline(time, values)(fine) for wheel, values in columns.items()}
-
-
-def decimate(values: Vector, factor: int) -> Vector:
-    """Keep each `factor`-th sample after an anti-alias filter: shape (m,) -> (ceil(m / factor),).
-
-    Linear-phase FIR (Kaiser, 80 dB): flat up to 0.8 of the new Nyquist frequency, closed from it on; no delay. Beyond
-    both ends the record is continued along the straight line between its ends.
-    """
-    if factor == 1:
-        return values
-    # Kaiser's formula: 80 dB over a transition of 0.2 / factor need (80 - 7.95) / (2.285 pi 0.2) = 50.2 factor taps.
-    taps = scipy.signal.firwin(52 * factor + 1, 0.9 / factor, window=("kaiser", 7.857))
-    kept: Vector = scipy.signal.resample_poly(values, 1, factor, window=taps, padtype="line")
-    return kept
-
-
-def longest_gap(timestep: float) -> float:
-    """Longest distance of two valid samples that is interpolated over [s]: `LONGEST_GAP`, or one missing sample."""
-    return max(LONGEST_GAP, 2.0 * timestep)

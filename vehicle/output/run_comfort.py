@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.analysis.comfort import settling
+from vehicle.analysis.comfort import COMFORT_BAND, settling
 from vehicle.analysis.evaluation import evaluate
 from vehicle.analysis.seat_value import seat_value
 from vehicle.car import Run
@@ -43,7 +43,7 @@ def comfort_notices(run: Run) -> list[str]:
     found = [
         f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
         f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
-        for axis, part in zip(AXES, settling(run.recording.timestep, xyz), strict=True)
+        for axis, part in zip(AXES, settling(run.recording.timestep, xyz, run.signal.band(COMFORT_BAND)), strict=True)
         if not part.settled
     ]
     return found + bare
@@ -56,7 +56,10 @@ def _recorded(run: Run, place: str) -> bool:
 def _at(run: Run, place: str) -> dict[str, Any]:
     value = run.comfort(place)
     xyz = [run[f"{place}_acc_{axis}"] for axis in AXES]
+    rms = {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall}
+    whole = run.signal.highest is None
     return {
-        "rms_2_50_hz": {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall},
-        "iso2631": evaluate(run.recording.timestep, xyz, from_rest=True),
+        "rms_2_50_hz": rms if whole else dict.fromkeys(rms),
+        **({} if whole else {"rms_of_band": {"band_hz": list(value.band), **rms}}),
+        "iso2631": evaluate(run.recording.timestep, xyz, from_rest=True, highest=run.signal.highest),
     }

@@ -57,7 +57,7 @@ def require_plates(signal: Signal) -> None:
         return
     plates = np.array([signal.displacement[wheel] for wheel in moving])
     try:
-        common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], FRF_BAND)
+        common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], signal.band(FRF_BAND))
     except DependentInputsError as error:
         raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
 
@@ -239,6 +239,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "rms_m": run.signal.rms(run.wheel),
             "plate_rms_m": {wheel: run.signal.rms(wheel) for wheel in wheels},
             "duration_s": run.signal.duration,
+            "highest_hz": run.signal.highest,
             "wheel": run.wheel,
         },
         "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},

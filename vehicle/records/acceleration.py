@@ -11,9 +11,9 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.names import AXES
 from vehicle.records.choice import Choice, choose
-from vehicle.records.clock import is_uniform
 from vehicle.records.formats import is_table, read_columns
 from vehicle.records.integration import filtered
+from vehicle.records.rare_events import rare_events
 from vehicle.records.reader import read_record
 from vehicle.records.table import Record, Vector
 from vehicle.records.units import STANDARD_GRAVITY
@@ -49,13 +49,13 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
     measurement = read_record(path, choice.databases)
     roles = {role: wanted for role, wanted in choice.channels.items() if role != "time"}
     held = {one.name for one in measurement.channels}
-    if not roles and held.issuperset(names):
-        roles = dict(zip(AXES, names, strict=True))
-    if set(roles) != set(AXES):
+    if not roles:
+        roles = {axis: name for axis, name in zip(AXES, names, strict=True) if name in held}
+    if not roles or not set(roles) <= set(AXES):
         listed = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
         raise DataError(
-            f"{path}: needed are three axes: --channel x=NAME --channel y=NAME --channel z=NAME, each a number, exact "
-            f"name or a pattern with *; the file has {listed}"
+            f"{path}: needed are the axes: --channel x=NAME --channel y=NAME --channel z=NAME, or one or two of them, "
+            f"each a number, exact name or a pattern with *; the file has {listed}"
         )
     chosen = choose(measurement, replace(choice, channels={**choice.channels, **roles}))
     wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)
@@ -64,25 +64,30 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
             f"{path}: channel {roles[wrong]!r} for {wrong} is no acceleration but a {chosen.quantities[wrong]}; choose "
             f"another, or give --unit {wrong}=m/s2 or {wrong}=g if the file is wrong"
         )
+    chosen.require_uniform(path)
     values, notices = dict(chosen.values), chosen.notices
     if choice.highpass is not None:
         values, notices = filtered(chosen, choice.highpass)
-    channels = {name: values[axis] for name, axis in zip(names, AXES, strict=True)}
-    if not is_uniform(chosen.time):
-        raise DataError(f"{path}: times are not uniform; give --rate HZ if the samples are and their stamps are not")
-    return Record(time=chosen.time, channels=channels, units=dict.fromkeys(names, "m/s2"), notices=notices)
+    channels = {name: values[axis] for name, axis in zip(names, AXES, strict=True) if axis in values}
+    return Record(
+        time=chosen.time,
+        channels=channels,
+        units=dict.fromkeys(channels, "m/s2"),
+        notices=notices,
+        highest=chosen.highest,
+    )
 
 
 def read_acceleration(path: str | Path, place: str | None = None, choice: Choice | None = None) -> Record:
-    """Read an acceleration in three axes.
+    """Read the acceleration of a point, in all three axes or in those that were measured.
 
     Args:
         path: a record, as of `read_columns`.
         place: point of a run, as "seat_rail", for the channels `seat_rail_acc_x|y|z`; None for columns x, y, z.
-        choice: channels of a measurement file for the roles x, y and z, and what is done to them.
+        choice: channels of a measurement file for the roles x, y and z, one of them or more, and what is done to them.
 
     Returns:
-        Channels x, y, z [m/s2], with remarks on what is odd.
+        Channels x, y, z [m/s2], those that are there, with remarks on what is odd.
 
     Raises:
         ConfigurationError: no such file.
@@ -95,8 +100,14 @@ def read_acceleration(path: str | Path, place: str | None = None, choice: Choice
         record = _chosen(file, choice or Choice(), axes)
     else:
         record = read_columns(file, needed)
-    xyz = {}
+    # A record of the vertical axis alone is usual; any other missing axis must be meant.
+    here = [name for name in axes if name in record.channels]
+    partial = here == axes[2:] or (choice is not None and bool({*AXES} & {*choice.channels}))
+    xyz: dict[str, Vector] = {}
+    events = []
     for axis, name in zip(AXES, axes, strict=True):
+        if name not in record.channels and partial:
+            continue
         if name not in record.channels:
             places = dict.fromkeys(one[:-6] for one in record.channels if one.endswith("_acc_x"))
             places_shown = f"; give --channel with one of {', '.join(places)}" if places else ""
@@ -108,12 +119,20 @@ def read_acceleration(path: str | Path, place: str | None = None, choice: Choice
                 f"{', '.join(f'[{one}]' for one in UNITS)}; write the header as {needed}"
             )
         values = record.channels[name] * UNITS[unit]
-        swing = float(np.abs(values - values.mean()).max())
-        if swing > LARGEST_ACCELERATION:
+        about = np.abs(values - values.mean())
+        swing = float(about.max())
+        if swing > LARGEST_ACCELERATION and rare_events(about, LARGEST_ACCELERATION):
+            events.append(
+                f"{axis}: swings by {swing:.4g} m/s2 about its mean at t = {record.time[int(np.argmax(about))]:.6g} s, "
+                f"beyond {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
+            )
+        elif swing > LARGEST_ACCELERATION:
             raise DataError(
                 f"{file}: column {name!r} swings by {swing:g} m/s2 about its mean, allowed are "
                 f"{LARGEST_ACCELERATION:g}; looks like mm/s2 or a spike? correct the unit in the header or the record"
             )
         xyz[axis] = values
-    notices = (*record.notices, *_notices(xyz, 1.0 / record.step))
-    return Record(time=record.time, channels=xyz, units=dict.fromkeys(AXES, "m/s2"), notices=notices)
+    notices = (*record.notices, *events, *_notices(xyz, 1.0 / record.step))
+    return Record(
+        time=record.time, channels=xyz, units=dict.fromkeys(xyz, "m/s2"), notices=notices, highest=record.highest
+    )

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.records.channel import Channel, Measurement
-from vehicle.records.clock import longest_step, without_rounding
-from vehicle.records.table import Vector
+from vehicle.records.channel import Channel, Measurement, uniform_axis
+from vehicle.records.clock import clock_options, is_uniform, longest_step, without_rounding
+from vehicle.records.resampled import resampled
+from vehicle.records.table import USABLE, Vector
 from vehicle.records.units import allowed_units, find_ratio, find_unit
 
 
@@ -30,6 +31,7 @@ class Choice:
         detrend: subtract the straight line of least squares.
         highpass: corner frequency [Hz]; needed to integrate velocities and accelerations.
         databases: files of the form DBC, which decode the log of a CAN bus.
+        resample: sampling rate [Hz] to which the record is brought before anything else is done to it.
     """
 
     channels: Mapping[str, str] = field(default_factory=dict)
@@ -40,9 +42,10 @@ class Choice:
     detrend: bool = False
     highpass: float | None = None
     databases: tuple[Path, ...] = ()
+    resample: float | None = None
 
     def __post_init__(self) -> None:
-        for name, value in (("--rate", self.rate), ("--highpass", self.highpass)):
+        for name, value in (("--rate", self.rate), ("--highpass", self.highpass), ("--resample", self.resample)):
             if value is not None and not 0.0 < value < math.inf:
                 raise ConfigurationError(f"{name} {value:g} Hz: allowed is above 0")
         for name, value in (("--from", self.first), ("--to", self.last)):
@@ -69,12 +72,33 @@ class Chosen:
         values: role to samples in SI, (n,).
         quantities: role to what they are.
         notices: a sentence for everything that was done.
+        highest: highest frequency that the samples hold [Hz]: `USABLE` of the lower of the rates before and after
+            resampling.
     """
 
     time: Vector
     values: Mapping[str, Vector]
     quantities: Mapping[str, str]
     notices: tuple[str, ...]
+    highest: float
+
+    def require_uniform(self, where: object) -> None:
+        """Check that the times are uniform.
+
+        Args:
+            where: file, for the message.
+
+        Raises:
+            DataError: with the options that make them uniform.
+        """
+        if not is_uniform(self.time):
+            steps = np.diff(self.time)
+            jitter = 100.0 * float(np.max(np.abs(steps / np.median(steps) - 1.0)))
+            raise DataError(
+                f"{where}: times are not uniform, steps deviate by up to {jitter:.3g} % of the median; set "
+                f"{' '.join(clock_options(self.time))}, or --rate HZ if the samples are uniform and their stamps are "
+                "not"
+            )
 
 
 def pairs(option: str, texts: Sequence[str], role: str) -> dict[str, str]:
@@ -193,6 +217,14 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
             raise DataError(f"{path}: {role}: {missing} missing values, the first at {at:.6g} s; cut them off with "
                             "--from and --to, or repair the file")  # fmt: skip
     time = _uniform(path, time, notices)
+    highest = USABLE / float(np.median(np.diff(time)))
+    if choice.resample is not None and not _has_rate(time, choice.resample):
+        values, said = resampled(
+            time, values, choice.resample, lambda row: f"{path}: sample {row + 1}", is_uniform(time)
+        )
+        notices.append(said)
+        time = uniform_axis(next(iter(values.values())).size, 1.0 / choice.resample, float(time[0]))
+        highest = min(highest, USABLE * choice.resample)
     for role in values:
         if choice.detrend:
             count = np.arange(time.size)
@@ -205,6 +237,7 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
         values=values,
         quantities={role: one.quantity for role, one in channels.items()},
         notices=tuple(notices),
+        highest=highest,
     )
 
 
@@ -232,6 +265,11 @@ def _times(measurement: Measurement, choice: Choice, channel: Channel, notices: 
             "holds them, with --unit time=s"
         )
     return channel.axis
+
+
+def _has_rate(time: Vector, rate: float) -> bool:
+    """True if times [s], shape (n,), are uniform at a rate [Hz]."""
+    return is_uniform(time) and abs((time.size - 1) / float(time[-1] - time[0]) / rate - 1.0) < 1e-9
 
 
 def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:

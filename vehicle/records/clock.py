@@ -11,6 +11,9 @@ from vehicle.records.table import Table, Vector
 PAUSE = 0.5
 """A step of the time, or a stretch without motion, from this length on is a pause of the record [s]."""
 
+LONGEST_GAP = 0.010
+"""Longest gap [s] that is interpolated over: half a period of 50 Hz."""
+
 UNIFORM_TOLERANCE = 1e-3
 """Largest |dt - median dt| / median dt of a uniform record [-]."""
 
@@ -118,24 +121,77 @@ def _worst_step(time: Vector) -> tuple[float, int]:
 
 
 def time_remarks(time: Vector) -> tuple[str, ...]:
-    """Sentences on what is odd with the times [s], shape (n,), of a channel: rounded, not rising, pauses, jitter."""
+    """Return sentences on irregular times: rounded, not increasing, pauses, gaps, jitter; each with the remedy.
+
+    Args:
+        time: times of a channel [s], shape (n,).
+    """
     steps = np.diff(time)
     if steps.size < 2:
         return ()
+    remedy = " ".join(clock_options(time))
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0])
-        return (f"times do not increase behind {time[at]:.9g} s: cut with --from and --to",)
+        cure = f"set {remedy} for the longest increasing part" if remedy else "split the file there"
+        return (f"times do not increase behind {time[at]:.9g} s: {cure}",)
     median = float(np.median(steps))
-    gaps = np.flatnonzero(steps > longest_step(median))
+    gaps = np.flatnonzero(steps > longest_gap(median) * (1.0 + UNIFORM_TOLERANCE))
     shown = ", ".join(f"{time[at]:.9g} to {time[at + 1]:.9g} s" for at in gaps[:4])
     if gaps.size:
-        return (f"{gaps.size} pause{'s' if gaps.size > 1 else ''}: {shown}; cut with --from and --to",)
+        word = "pause" if float(steps.max()) > longest_step(median) else "gap"
+        plural = "s" if gaps.size > 1 else ""
+        return (f"{gaps.size} {word}{plural}: {shown}; set {remedy} for the longest part without",)
     rounded = without_rounding(time)[1]
     if rounded or is_uniform(time):
         return rounded
-    return (f"times are not uniform: steps of {steps.min():.6g} to {steps.max():.6g} s; give --resample HZ",)
+    return (
+        f"times are not uniform: steps of {steps.min():.6g} to {steps.max():.6g} s; set {remedy}, or --rate HZ if the "
+        "samples are uniform and their stamps are not",
+    )
+
+
+def clock_options(time: Vector) -> tuple[str, ...]:
+    """Return the options with which every command takes a record of these times; none for uniform times.
+
+    The longest part without a gap is cut out by --from and --to; jittered times are made uniform by --resample at the
+    rate of the median step.
+
+    Args:
+        time: times of a channel [s], shape (n,).
+    """
+    steps = np.diff(time)
+    if steps.size < 2 or not (steps > 0.0).any():
+        return ()
+    limit = longest_gap(float(np.median(steps[steps > 0.0]))) * (1.0 + UNIFORM_TOLERANCE)
+    ends = np.concatenate([[0], np.flatnonzero(~((steps > 0.0) & (steps <= limit))) + 1, [time.size]])
+    part = int(np.argmax(np.diff(ends)))
+    kept = time[ends[part] : ends[part + 1]]
+    if kept.size < 3:
+        return ()
+    cut: tuple[str, ...] = ()
+    if kept.size < time.size:
+        first, last = f"{kept[0]:.9g}", f"{kept[-1]:.9g}"
+        inside = np.flatnonzero((time >= float(first)) & (time <= float(last)))
+        if np.any(np.diff(inside) != 1) or inside[0] < ends[part] or inside[-1] >= ends[part + 1]:
+            return ()  # another part of the file has the same times
+        cut = ("--from", first, "--to", last)
+    if is_uniform(kept) or clock_of_rounded(kept) is not None:
+        return cut
+    rate = 1.0 / float(np.median(np.diff(kept)))
+    return (*cut, "--resample", f"{round(rate)}" if rate >= 20.0 else f"{rate:.3g}")
 
 
 def longest_step(median: float) -> float:
     """Step [s] beyond which a record of this median step [s] pauses: two samples are missing, or half a second."""
     return max(2.5 * median, min(PAUSE, 100.0 * median))
+
+
+def longest_gap(timestep: float) -> float:
+    """Return the longest distance of two samples that is interpolated over [s]: `LONGEST_GAP`, or one missing sample.
+
+    One missing sample makes a step of 2 T, two make 3 T; 2.5 T leaves room for jitter.
+
+    Args:
+        timestep: median sampling interval [s].
+    """
+    return max(LONGEST_GAP, 2.5 * timestep)

@@ -7,7 +7,6 @@ from scipy import fft
 
 from vehicle.errors import DataError
 from vehicle.records.choice import Choice, Chosen
-from vehicle.records.clock import is_uniform
 from vehicle.records.table import Vector
 
 ORDER = 4
@@ -48,11 +47,7 @@ def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, 
                 )
             found[role] = values
             continue
-        if not is_uniform(chosen.time):
-            raise DataError(
-                f"{where}: --highpass needs uniform times, those of the file are not; give --rate if the samples are "
-                "uniform and their stamps are not"
-            )
+        chosen.require_uniform(where)
         found[role] = integrate(values, step, orders[quantity], choice.highpass)
         how = f"{quantity} integrated in the frequency domain, " if orders[quantity] else ""
         notices.append(

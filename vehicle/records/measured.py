@@ -15,7 +15,6 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.records.channel import Measurement
 from vehicle.records.choice import Choice, choose, pick
-from vehicle.records.clock import is_uniform
 from vehicle.records.frf import FrfData
 from vehicle.records.integration import displacement, filtered
 from vehicle.records.measured_frf import is_response, measured_frfs
@@ -150,10 +149,7 @@ def _same_names(file: Measurement, known: Sequence[str]) -> dict[str, str]:
 def _record(file: Measurement, choice: Choice, turned: Collection[str]) -> Record:
     """Time histories in SI at uniform times."""
     chosen = choose(file, choice)
-    if not is_uniform(chosen.time):
-        raise DataError(
-            f"{file.path}: times are not uniform; give --rate HZ if the samples are and their stamps are not"
-        )
+    chosen.require_uniform(file.path)
     units = channel_units(chosen.values)
     moves = {name: values for name, values in chosen.values.items() if units[name] == "m"}
     others = {name: values for name, values in chosen.values.items() if name not in moves}
@@ -176,7 +172,7 @@ def _record(file: Measurement, choice: Choice, turned: Collection[str]) -> Recor
         if name in every:
             every[name] = -every[name]
             notices.append(f"{name}: sign turned on request")
-    return Record(time=chosen.time, channels=every, units=units, notices=tuple(notices))
+    return Record(time=chosen.time, channels=every, units=units, notices=tuple(notices), highest=chosen.highest)
 
 
 def estimated_frf(record: Record, window: float | None = None) -> tuple[FrfData, str] | None:
@@ -199,7 +195,7 @@ def estimated_frf(record: Record, window: float | None = None) -> tuple[FrfData,
         return None
     inputs = np.array([record.channels[name] for name in plates])
     outputs = np.array([record.channels[name] for name in names])
-    highest = min(FRF_BAND[1], 0.4 / record.step)
+    highest = min(FRF_BAND[1], record.usable)
     about = {"band": (FRF_BAND[0], highest), "names": names, "input_names": plates}
     if window is None:
         found = local_rational_responses(record.step, inputs, outputs, **about)[0]  # type: ignore[arg-type]

@@ -11,12 +11,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.analysis import samples
 from vehicle.errors import DataError
 
 Vector = NDArray[np.float64]
 
 TIME = "time [s]"
 """Head of the column of sample times."""
+
+USABLE = samples.USABLE
+"""Highest frequency that a record holds, as a share of its sampling rate [-]."""
 
 _HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 
@@ -105,6 +109,7 @@ class Record:
         channels: name to samples, (n,) each, in the order of the file and in the units as found.
         units: name to unit; empty where the file tells none.
         notices: what was accepted although it is unusual.
+        highest: highest frequency that a resampled record holds [Hz]; None for 0.4 of its rate.
 
     Raises:
         DataError: a channel of another length, or with a value that is not finite.
@@ -114,6 +119,7 @@ class Record:
     channels: Mapping[str, Vector]
     units: Mapping[str, str]
     notices: tuple[str, ...] = ()
+    highest: float | None = None
 
     def __post_init__(self) -> None:
         for name, values in self.channels.items():
@@ -132,6 +138,12 @@ class Record:
     def step(self) -> float:
         """Sampling interval [s]."""
         return float(self.time[-1] - self.time[0]) / (self.time.size - 1)
+
+    @property
+    def usable(self) -> float:
+        """Highest frequency that the samples hold [Hz]."""
+        own = USABLE / self.step
+        return own if self.highest is None else min(self.highest, own)
 
 
 def name_and_unit(cell: str) -> tuple[str, str | None]:

@@ -11,10 +11,10 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import MINIMUM_SAMPLES, uniform_time
-from vehicle.excitation.time_grid import SAMPLES_PER_PERIOD
 from vehicle.records.choice import Choice, choose
 from vehicle.records.integration import filtered
 from vehicle.records.reader import read_record
+from vehicle.records.table import USABLE
 from vehicle.replication.inverse import Lines, Vector
 
 LEAST_PERIODS = 2.0
@@ -75,6 +75,7 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     measurement = read_record(path, choice.databases)
     times = {role: name for role, name in choice.channels.items() if role == "time"}
     chosen = choose(measurement, replace(choice, channels={**times, **names}))
+    chosen.require_uniform(path)
     for role, quantity in chosen.quantities.items():
         if quantity != "acceleration":
             raise DataError(
@@ -89,7 +90,7 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     if count < MINIMUM_SAMPLES:
         raise DataError(f"{path}: {count} samples; allowed from {MINIMUM_SAMPLES} on; this is no record of a vibration")
     step = float(chosen.time[-1] - chosen.time[0]) / (count - 1)
-    _check_band(path, band, step, count)
+    _check_band(path, band, step, count, chosen.highest)
     found, said_of_band = _on_samples(np.array([values[name] for name in names]), step, band, rate)
     lines = Lines(found.shape[1], 1.0 / rate, band)
     notices += [*said_of_band, *_outside(names, np.array([values[name] for name in names]), found, lines, band)]
@@ -111,8 +112,8 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     )
 
 
-def _check_band(path: Path, band: tuple[float, float], step: float, count: int) -> None:
-    lowest, highest = LEAST_PERIODS / (step * (count - 1)), min(1.0 / (SAMPLES_PER_PERIOD * step), HIGHEST)
+def _check_band(path: Path, band: tuple[float, float], step: float, count: int, held: float) -> None:
+    lowest, highest = LEAST_PERIODS / (step * (count - 1)), min(USABLE / step, held, HIGHEST)
     if not lowest <= band[0] < band[1] <= highest * (1.0 + 1e-9):
         raise ConfigurationError(
             f"--band {band[0]:g}:{band[1]:g}: {path} holds {step * (count - 1):.4g} s at {1.0 / step:.6g} Hz, so the "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from vehicle.analysis.comfort import COMFORT_BAND
 from vehicle.report.comfort_class import REACTIONS, reactions
 from vehicle.report.finished_run import FinishedRun
 from vehicle.report.markup import Markup, joined, number, table, tag
@@ -13,7 +14,8 @@ def comfort(run: FinishedRun) -> Markup:
     """Weighted and unweighted accelerations, and the table of reactions with this run in it."""
     parts, totals = [], {}
     for place, value in run.summary["comfort"].items():
-        iso, raw = value["iso2631"], value["rms_2_50_hz"]
+        iso, raw = value["iso2631"], value.get("rms_of_band", value["rms_2_50_hz"])
+        low, high = raw.get("band_hz", COMFORT_BAND)
         totals[PLACES.get(place, place)] = iso["vector_sum"]["weighted_rms"]
         heads = (
             "axis",
@@ -23,7 +25,7 @@ def comfort(run: FinishedRun) -> Markup:
             "crest factor",
             "VDV [m/s¹·⁷⁵]",
             "MSDV [m/s¹·⁵]",
-            "RMS 2 to 50 Hz [m/s²]",
+            f"RMS {low:g} to {high:g} Hz [m/s²]",
         )
         rows = [
             (

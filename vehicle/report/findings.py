@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.analysis.comfort import COMFORT_BAND
 from vehicle.linear.modes import Mode
 from vehicle.names import side_of
 from vehicle.report.body_modes import body_modes
@@ -132,13 +133,14 @@ def _comfort(summary: Mapping[str, Any]) -> list[str]:
         value = summary["comfort"].get(place)
         if value is None:
             continue
-        iso = value["iso2631"]
+        iso, rms = value["iso2631"], value.get("rms_of_band", value["rms_2_50_hz"])
+        low, high = rms.get("band_hz", COMFORT_BAND)
         total = iso["vector_sum"]["weighted_rms"]
         axis = max("xyz", key=lambda one: iso[one]["multiplying_factor"] * iso[one]["weighted_rms"])
         found.append(
             f"At the {words} the weighted acceleration is {number(total)} m/s²: {' to '.join(reactions(total))} in the "
-            f"words of ISO 2631-1, annex C. Most of it acts along {axis}. Unweighted, 2 to 50 Hz: "
-            f"{number(value['rms_2_50_hz']['overall'])} m/s². Lower is better."
+            f"words of ISO 2631-1, annex C. Most of it acts along {axis}. Unweighted, {low:g} to {high:g} "
+            f"Hz: {number(rms['overall'])} m/s². Lower is better."
         )
         factor = max((iso[one]["crest_factor"] or 0.0) for one in "xyz")
         if factor > CREST_FACTOR_LIMIT:
