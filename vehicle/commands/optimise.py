@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs
+from vehicle.commands.inputs import chosen_inputs, chosen_skip
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -99,7 +99,7 @@ def parser() -> Parser:
         help="of their numbers that counts, 0.5 to 1 (the worst); their mean by default",
     )
     engine_option(found, "reduced")
-    skip_option(found)
+    skip_option(found, 2.0)
     jobs_option(found)
     executor_option(found)
     found.add_argument("--check", action="store_true", help="run the named cars with MuJoCo and tell the difference")
@@ -197,8 +197,9 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
     names = [source.name for source in inputs]
     if len(set(names)) < len(names):
         raise ConfigurationError(f"inputs {', '.join(names)}: two have one name; rename a file, or give each once")
+    skip = chosen_skip(options, {source.name: source for source in inputs}, 2.0)
     wishes = parsed_wishes(options.minimise, options.maximise, options.limit, names)
-    measure = ride_measure(vehicle, tuple(wish.number for wish in wishes), options.skip)
+    measure = ride_measure(vehicle, tuple(wish.number for wish in wishes), skip)
     wishes = tuple(replace(wish, unit=measure.units[wish.number]) for wish in wishes)
     problem = problem_of(vehicle, [parsed_range(text) for text in options.vary], wishes, names)
     require_bounds(options.vehicle, options.overrides, problem)

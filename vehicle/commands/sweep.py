@@ -10,7 +10,7 @@ from pathlib import Path
 
 from vehicle.commands.command_line import Parser, ProgressLine, command
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs
+from vehicle.commands.inputs import chosen_inputs, chosen_skip
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -43,7 +43,7 @@ def parser() -> Parser:
     )
     vehicle_options(found)
     engine_option(found, "auto")
-    skip_option(found)
+    skip_option(found, 2.0)
     jobs_option(found)
     executor_option(found)
     output_options(found, Path("runs/sweep"))
@@ -72,13 +72,14 @@ def _job(options: argparse.Namespace) -> None:
     vehicle = load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
     inputs = chosen_inputs(options, vehicle)
+    skip = chosen_skip(options, {source.name: source for source in inputs}, 2.0)
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
     folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=ROWS)
     try:
         table = sweep(
             cases,
-            ComfortMeasure(skip=options.skip, seat=vehicle.seated),
+            ComfortMeasure(skip=skip, seat=vehicle.seated),
             executor=make,
             folder=folder,
             retry_failed=options.retry_failed,
