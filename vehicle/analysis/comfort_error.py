@@ -8,7 +8,8 @@ W = sum X_k^H X_k. For a stationary Gaussian vibration the lines are independent
 with the cross spectra S_ij of the axes: correlated axes count with their coherence. Neighbouring lines are independent
 and have the same S, so E |X_k^H X_(k+1)|^2 = tr(S_k S_k) df^2, and the sum of |X_k^H X_(k+1)|^2 estimates Var W. This
 holds for a record of a Gaussian road, and for one whose lines have fixed amplitudes and random phases, for which the
-squares |X_k|^4 would have half the expectation. With rms = sqrt(W), the normalised standard error is sqrt(Var W) / (2 W).
+squares |X_k|^4 would have half the expectation. With rms = sqrt(W), the normalised standard error is
+sqrt(Var W) / (2 W).
 
 For two cars on one road, Z = [X_a; X_b] and J = diag(1, -1) give Var(W_a - W_b) = tr(J S J S) df^2 in the same way: the
 products of neighbours are subtracted before they are squared. A sum of products at the distance m,
@@ -33,7 +34,7 @@ Complex = npt.NDArray[np.complex128]
 
 WAVES = 3
 """Number of stored C_m. They reach 3/T, 0.4 Hz for 8 s: about the half-power bandwidth of the modes from 2 Hz on. With
-6 it is 0.75 Hz, and the error of a difference in records of 8 s is a third too small (`tests/benchmarks/coverage.py`)."""
+6 it is 0.75 Hz, and the error of a difference in records of 8 s is a third too small (`tests.benchmarks.coverage`)."""
 
 
 def overall_error(lines: Complex) -> Vector:

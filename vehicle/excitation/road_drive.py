@@ -20,8 +20,8 @@ USUAL_DURATION = 60.0
 
 
 SKIP_S = 2.0
-"""Minimum default of --skip on a road [s]: the rise from rest and 1 s more, in which a motion of 1 Hz with a damping ratio
-of 0.2 decays to 28 %, its power to 8 %."""
+"""Minimum default of --skip on a road [s]: the rise from rest and 1 s more, in which a motion of 1 Hz with a damping
+ratio of 0.2 decays to 28 %, its power to 8 %."""
 
 AFTER_RISE_S = 0.5
 """Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
