@@ -179,10 +179,12 @@ WHISKERS = "; whiskers: 95 % intervals (bootstrap)"
 
 def _sobol(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
     """Bars of first-order and total indices with their 95 % intervals, the largest on top."""
-    found = sobol_indices(RANGES, comfort, seed=seed)
+    found = sobol_indices(RANGES, comfort)
     order = np.argsort(found.total)
     place = np.arange(len(order))
-    with figure_file(folder / "indices.png", (9.0, 5.6), "", caption + WHISKERS) as figure:
+    with figure_file(
+        folder / "indices.png", (9.0, 5.6), "", f"{caption}; whiskers: 95 % intervals ({found.scramblings} scramblings)"
+    ) as figure:
         axes = figure.add_subplot()
         for values, errors, shift, label, colour in (
             (found.first, found.first_error, -0.2, "S1, alone", COLOURS[0]),
@@ -193,13 +195,20 @@ def _sobol(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: in
         axes.set_xlabel("share of the variance of the comfort value [-]")
         axes.axvline(0.0, color="#444444", linewidth=0.8)
         axes.legend(loc="lower right")
+    left = (
+        f" {found.left_out} of {found.base} base points have a failed run and do not count: the indices are those of "
+        "the cars that could be run."
+        if found.left_out
+        else ""
+    )
     columns = (found.first, found.first_error, found.total, found.total_error)
     rows = [[found.paths[i], *(f"{column[i]:.3f}" for column in columns)] for i in np.argsort(-found.total)]
     return asdict(found), (
         f"{markdown(('parameter', 'S1', '+-', 'ST', '+-'), rows)}\n\n"
         "S1: share of the variance that the parameter explains alone; ST: with all its interactions; +-: half "
-        "width of the 95 % interval (bootstrap). From half the sample to the whole, no ST moved by more than "
-        f"{found.drift:.3f}. Sum of S1 {np.sum(found.first):.2f}."
+        f"width of the 95 % interval, from {found.scramblings} independent scramblings of the Sobol sequence "
+        "(jackknife, Student's t). From half the sample to the whole, no ST moved by more than "
+        f"{found.drift:.3f}. Sum of S1 {np.sum(found.first):.2f}." + left
     )
 
 

@@ -114,6 +114,12 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
     given = [*TRADE, *more, "--quantile", "1", "--cars", "8", "--beside", str(searched)]
     assert main(arguments(road, folder, *given)) == 0
     said = capsys.readouterr().out
+    assert "each number: worst of 2 cars within the tolerances" in said
+    assert "knee: of 64 new cars " in said and " % are as good in comfort, " in said
+    made = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["made_cars"]
+    assert made["statistic"] == "worst of 2 cars" and made["new_cars"] == 64
+    # Two thirds to three quarters are expected to be no worse than the worst of two.
+    assert 0.3 < made["share_as_good"]["knee"]["comfort"] < 1.0
     assert f"front of {searched}: hypervolume +" in said
     assert "8 cars, " in said and "knee: --set damper.coulomb_friction=10 --set front.damper.viscous=" in said
     for row in rows_of(folder / "front.csv"):
@@ -143,6 +149,11 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
         (["--minimise", "comfort", "--cars", "2"], 2, "--cars 2: must be at least 8"),
         (["--minimise", "comfort", "--samples", "4"], 2, "--samples: belongs to --tolerance PATH=SIZE"),
         (["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "2"], 2, "--quantile 2: allowed are"),
+        (
+            ["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "0.99", "--samples", "8"],
+            2,
+            "--quantile 0.99: needs at least 128 cars, found --samples 8; give --samples 128",
+        ),
         (["--minimise", "comfort", "--beside", "nowhere"], 3, "--beside nowhere: holds no front.csv with the columns"),
         (
             ["--minimise", "comfort", "--limit", "travel<=1e-9", "--cars", "8"],

@@ -14,7 +14,7 @@ from vehicle.excitation.bump import bump_shape
 from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.sweeps.case import Case
 from vehicle.sweeps.evaluation import evaluate
-from vehicle.sweeps.measure import ComfortMeasure
+from vehicle.sweeps.measure import WAVE_NAMES, ComfortMeasure
 
 MEASURE = ComfortMeasure(skip=0.2)
 ROADS = [ShortRoad(name="one"), ShortRoad(name="two", seed=2)]
@@ -49,6 +49,8 @@ def test_rows_are_those_of_the_runs_by_themselves(cases, together):
         for name, value in MEASURE(run).items():
             # What the longer step costs. A second of road has 800 samples behind the lead: a share moves by one.
             slack = {"rel": 2e-3} if name.startswith("comfort") else {"abs": 1.5 / 800}
+            if name in WAVE_NAMES:  # parts of a complex number, which may be near zero
+                slack = {"abs": 2e-3 * result.values["comfort_overall"]}
             assert result.values[name] == pytest.approx(value, nan_ok=True, **slack)
         fine = replace(MEASURE, timestep=1.25e-4)
         (near,) = evaluate([case], fine)

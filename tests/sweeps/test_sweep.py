@@ -23,7 +23,7 @@ from vehicle.sweeps import executors
 from vehicle.sweeps.case import SignalFile, table_cases
 from vehicle.sweeps.crew import DIED
 from vehicle.sweeps.executors import executor_factory
-from vehicle.sweeps.measure import ComfortMeasure
+from vehicle.sweeps.measure import WAVE_NAMES, ComfortMeasure
 from vehicle.sweeps.sweep import case_keys, sweep
 
 FRICTION = {"damper.coulomb_friction": [100.0, 125.0]}
@@ -60,7 +60,7 @@ def test_numbers_are_those_of_the_run():
     run = Car.load(None, ["damper.coulomb_friction=80"]).run(source, engine="reduced")
     (swept,) = [result.values for result in table.results]
     values = measure(run)
-    assert set(values) == set(swept) == set(measure.units)
+    assert set(values) == set(swept) == {*measure.units, *WAVE_NAMES}
     # A sweep marches with a longer step (`tests/sweeps/test_evaluation.py`).
     assert swept["comfort_overall"] == pytest.approx(values["comfort_overall"], rel=2e-3)
     rate = 1.0 / run.recording.timestep

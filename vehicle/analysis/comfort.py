@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.analysis.comfort_error import overall_error, overall_waves
 from vehicle.analysis.samples import checked_rows
-from vehicle.analysis.spectra import PowerSpectralDensity, band_periodogram, band_rms, rms_of
+from vehicle.analysis.spectra import band_periodogram, band_rms, rms_of
 from vehicle.errors import DataError
 
 COMFORT_BAND = (2.0, 50.0)
@@ -56,7 +57,9 @@ class ComfortValues:
     overall: NDArray[np.float64]
     """sqrt(x^2 + y^2 + z^2) [m/s2], shape (r,)"""
     error: NDArray[np.float64]
-    """normalised standard error of each axis, as of `rms_standard_error` [-], shape (r, 3)"""
+    """normalised standard error of `overall`, see `vehicle.analysis.comfort_error` [-], shape (r,)"""
+    waves: NDArray[np.complex128]
+    """slow variations of `overall`, see `vehicle.analysis.comfort_error` [m/s2], shape (r, WAVES)"""
 
 
 def comfort_values(
@@ -76,9 +79,16 @@ def comfort_values(
     if array.ndim != 3 or array.shape[1] != 3:
         raise DataError(f"acceleration: found shape {array.shape}, needed is (r, 3, n) with the three axes x, y, z")
     spectrum = band_periodogram(time_step, array.reshape(-1, array.shape[2]), band)
-    axes, error = rms_of(spectrum).reshape(-1, 3), _standard_error(spectrum).reshape(-1, 3)
+    axes = rms_of(spectrum).reshape(-1, 3)
     x, y, z = axes.T
-    return ComfortValues(axes=axes, overall=np.sqrt(x * x + y * y + z * z), error=error)
+    assert spectrum.lines is not None  # a periodogram
+    lines = spectrum.lines.reshape(*axes.shape, -1)
+    return ComfortValues(
+        axes=axes,
+        overall=np.sqrt(x * x + y * y + z * z),
+        error=overall_error(lines),
+        waves=overall_waves(lines),
+    )
 
 
 def comfort_value(
@@ -122,11 +132,7 @@ def rms_standard_error(
 
     Source: Bendat and Piersol, Random Data, 4th ed., chapter 8 (bandwidth-time product).
     """
-    return _standard_error(band_periodogram(time_step, signals, band))
-
-
-def _standard_error(spectrum: PowerSpectralDensity) -> NDArray[np.float64]:
-    """`rms_standard_error` from the periodogram in the band."""
+    spectrum = band_periodogram(time_step, signals, band)
     mean_square = spectrum.density.sum(axis=1) * spectrum.resolution_hz
     # df = 1/T, so int S^2 df / T is the sum over the lines times df^2
     variance = 0.5 * (spectrum.density**2).sum(axis=1) * spectrum.resolution_hz**2

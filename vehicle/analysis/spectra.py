@@ -30,6 +30,8 @@ class PowerSpectralDensity:
     """distance of the lines [Hz]"""
     averages: float
     """effective independent averages [-]"""
+    lines: NDArray[np.complex128] | None = None
+    """complex lines of a periodogram [unit], |line|^2 = S df, shape (k, m); None for an averaged density"""
 
 
 def power_spectral_density(
@@ -98,6 +100,7 @@ def _periodogram(step: float, array: NDArray[np.float64], lines: slice) -> Power
         density=density,
         resolution_hz=1.0 / (samples * step),
         averages=1.0,
+        lines=spectra * (np.sqrt(sides[lines]) / samples),
     )
 
 

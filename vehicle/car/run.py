@@ -41,12 +41,14 @@ class Run:
         signal: displacement of the plates.
         recording: channels over time, and how the engine fared.
         engine_reason: why that engine.
+        skip: time [s] at the beginning that `comfort` and `slip_share` leave out.
     """
 
     car: Car
     signal: Signal
     recording: Recording
     engine_reason: str = "asked for"
+    skip: float = 0.0
 
     def __repr__(self) -> str:
         """One line."""
@@ -80,6 +82,11 @@ class Run:
     def time(self) -> npt.NDArray[np.float64]:
         """Sample times [s]."""
         return self.recording.time
+
+    @property
+    def evaluated(self) -> slice:
+        """Samples of the evaluated span, from `skip` to the end."""
+        return slice(round(self.skip / self.recording.timestep), None)
 
     @property
     def wheel(self) -> str:
@@ -128,14 +135,18 @@ class Run:
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
         """Return the RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2].
 
-        The band ends where that of the signal ends; see `ComfortValue.band`.
+        The evaluated span counts. The band ends where that of the signal ends; see `ComfortValue.band`.
         """
-        xyz = [self.recording[f"{place}_acc_{axis}"] for axis in AXES]
-        return comfort_value(self.recording.timestep, xyz, self.signal.band(COMFORT_BAND))
+        return comfort_value(self.recording.timestep, self.at(place), self.signal.band(COMFORT_BAND))
+
+    def at(self, place: str) -> list[npt.NDArray[np.float64]]:
+        """Accelerations of a place in x, y, z [m/s2] over the evaluated span."""
+        return [self.recording[f"{place}_acc_{axis}"][self.evaluated] for axis in AXES]
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
-        """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""
-        return slip_share(*self._damper(wheel, velocity))
+        """Share of the evaluated span with |damper velocity| above one [m/s]; that of the parameters by default."""
+        history, limit = self._damper(wheel, velocity)
+        return slip_share(history[self.evaluated], limit)
 
     def first_slip(self, wheel: str, velocity: float | None = None) -> float | None:
         """First time [s] with |damper velocity| above a velocity [m/s], by default as `slip_share`; None for never."""

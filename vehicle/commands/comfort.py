@@ -214,6 +214,7 @@ def _table(result: dict[str, Any]) -> str:
     if "seat_value" in result:
         ratio = result["seat_value"]
         lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")
+    lines.append("values of this record; no statistical error is given (repeat the ride to see the spread)")
     return "\n".join(lines)
 
 

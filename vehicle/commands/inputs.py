@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from vehicle.commands.input_options import drives_on_road
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.excitation.signal import Signal
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
@@ -15,32 +17,56 @@ if TYPE_CHECKING:
 
 
 def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
-    """The inputs that the options ask for, each longer than what is left out at its start.
+    """The inputs that the options ask for.
 
     Args:
-        options: as of `signal_options` with several, and `skip_option`.
+        options: as of `signal_options` with several.
         vehicle: the car.
 
     Raises:
-        ConfigurationError: none, two of one name, a speed for no road, or a --skip that leaves nothing.
+        ConfigurationError: none, two of one name, or a speed for no road.
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
     from vehicle.sweeps.case import signal_of
 
-    inputs = _roads(options, vehicle) if drives_on_road(options) else _files(options)
+    if drives_on_road(options):
+        return _roads(options, vehicle)
+    inputs = _files(options)
     for source in inputs:
-        signal = signal_of(source)
-        if signal.highest is not None:
+        if (highest := signal_of(source).highest) is not None:
             raise DataError(
-                f"{source.name}: holds vibration up to {signal.highest:g} Hz alone, comfort in 2 to 50 Hz needs a record "
+                f"{source.name}: holds vibration up to {highest:g} Hz alone, comfort in 2 to 50 Hz needs a record "
                 "of at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
             )
-        duration = signal.duration
-        if not 0.0 <= options.skip < duration:
-            raise ConfigurationError(
-                f"--skip {options.skip:g} s: allowed is 0 s to less than {source.name}, {duration:g} s"
-            )
     return inputs
+
+
+def chosen_skip(options: argparse.Namespace, inputs: Mapping[str, Input | Signal], of_a_file: float) -> float:
+    """Return the start of the evaluation, the same for all inputs.
+
+    Args:
+        options: as of `skip_option`.
+        inputs: name to input.
+        of_a_file: default where no road is driven [s].
+
+    Returns:
+        --skip, or the latest default of the roads [s].
+
+    Raises:
+        ConfigurationError: negative, not finite, or not shorter than an input.
+        DataError: an input cannot be read.
+    """
+    from vehicle.excitation.road_drive import RoadDrive
+    from vehicle.sweeps.case import signal_of
+
+    drives = [one for one in inputs.values() if isinstance(one, RoadDrive)]
+    skip = max((one.skip for one in drives), default=of_a_file) if options.skip is None else options.skip
+    for name, source in inputs.items():
+        duration = source.duration if isinstance(source, Signal) else signal_of(source).duration
+        if not 0.0 <= skip < duration:
+            default = " (the default)" if options.skip is None else ""
+            raise ConfigurationError(f"--skip {skip:g} s{default}: allowed is 0 s to less than {name}, {duration:g} s")
+    return float(skip)
 
 
 def _roads(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs
+from vehicle.commands.inputs import chosen_inputs, chosen_skip
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -29,7 +29,7 @@ from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.optimisation.closer_look import Differences
+    from vehicle.optimisation.closer_look import Differences, Shares
     from vehicle.optimisation.outcome import Outcome
     from vehicle.optimisation.trials import Trials
     from vehicle.parameters.vehicle import Vehicle
@@ -96,16 +96,21 @@ def parser() -> Parser:
         active=lambda options: bool(options.tolerance),
     )
     made.add_argument(
-        "--samples", type=int, metavar="K", help="cars within the tolerances for each car tried; 8 by default"
+        "--samples",
+        type=int,
+        metavar="K",
+        help="cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
     )
     made.add_argument(
         "--quantile",
         type=float,
         metavar="Q",
-        help="of their numbers that counts, 0.5 to 1 (the worst); their mean by default",
+        help="of their numbers that counts, 0.5 to below 1; 1 is the worst of the K cars; their mean by default. A "
+        "quantile Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its "
+        "numbers",
     )
     engine_option(found, "reduced")
-    skip_option(found)
+    skip_option(found, 2.0)
     jobs_option(found)
     executor_option(found)
     found.add_argument("--check", action="store_true", help="run the named cars with MuJoCo and tell the difference")
@@ -121,7 +126,14 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.optimisation.car_table import CARS
-    from vehicle.optimisation.closer_look import chosen_cars, compared, left_validity, without_tolerances
+    from vehicle.optimisation.closer_look import (
+        NEW_CARS,
+        chosen_cars,
+        compared,
+        left_validity,
+        new_cars,
+        without_tolerances,
+    )
     from vehicle.optimisation.kept_search import kept_search
     from vehicle.optimisation.outcome import outcome
     from vehicle.optimisation.search import pymoo
@@ -156,6 +168,7 @@ def _job(options: argparse.Namespace) -> None:
         found = outcome(trials.problem, base, generations)
         cars = chosen_cars(trials, found)
         nominal = without_tolerances(trials, found) if options.tolerance else None
+        reached = new_cars(trials, found, options.search_seed) if trials.spread.quantile > 0.0 else None
         checked = compared(trials, found) if options.check else None
     notices = left_validity(trials, cars)
     write_search(
@@ -172,10 +185,13 @@ def _job(options: argparse.Namespace) -> None:
             "engine": options.engine,
             "notices": notices,
             "mujoco": checked,
+            "made_cars": None
+            if nominal is None
+            else {"statistic": trials.spread.words, "new_cars": NEW_CARS if reached else 0, "share_as_good": reached},
         },
     )
     if not options.quiet:
-        _tell(folder, found, trials, checked)
+        _tell(folder, found, trials, checked, reached)
         if beside is not None:
             far = agreement(found, beside)
             print(
@@ -202,18 +218,17 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
     names = [source.name for source in inputs]
     if len(set(names)) < len(names):
         raise ConfigurationError(f"inputs {', '.join(names)}: two have one name; rename a file, or give each once")
+    skip = chosen_skip(options, {source.name: source for source in inputs}, 2.0)
     wishes = parsed_wishes(options.minimise, options.maximise, options.limit, names)
-    measure = ride_measure(vehicle, tuple(wish.number for wish in wishes), options.skip)
+    measure = ride_measure(vehicle, tuple(wish.number for wish in wishes), skip)
     wishes = tuple(replace(wish, unit=measure.units[wish.number]) for wish in wishes)
     problem = problem_of(vehicle, [parsed_range(text) for text in options.vary], wishes, names)
     require_bounds(options.vehicle, options.overrides, problem)
     spread = ALONE
     if options.tolerance:
-        quantile = math.nan if options.quantile is None else options.quantile
-        if options.quantile is not None and not 0.5 <= quantile <= 1.0:
-            raise ConfigurationError(f"--quantile {quantile:g}: allowed are 0.5 to 1, which is the worst")
+        quantile, samples = _quantile_and_samples(options)
         tolerances = toleranced(vehicle, [parsed_tolerance(text) for text in options.tolerance])
-        places = bands(len(tolerances), 8 if options.samples is None else options.samples, options.search_seed)
+        places = bands(len(tolerances), samples, options.search_seed)
         spread = Spread(tolerances=tolerances, bands=places, quantile=quantile)
     trials = Trials(
         problem=problem,
@@ -228,22 +243,44 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
     return trials, vehicle
 
 
+def _quantile_and_samples(options: argparse.Namespace) -> tuple[float, int]:
+    """Return the quantile, NaN for the mean, and the number of made cars for each car tried.
+
+    Raises:
+        ConfigurationError: out of range, or too few cars for the quantile.
+    """
+    from vehicle.optimisation.trials import samples_for
+
+    quantile = math.nan if options.quantile is None else options.quantile
+    if options.quantile is not None and not 0.5 <= quantile <= 1.0:
+        raise ConfigurationError(f"--quantile {quantile:g}: allowed are 0.5 to below 1, and 1 for the worst car")
+    needed = samples_for(quantile) if quantile < 1.0 else 2
+    if options.samples is None:
+        return quantile, max(8, needed)
+    if options.samples < needed:
+        raise ConfigurationError(
+            f"--quantile {quantile:g}: needs at least {needed} cars, found --samples {options.samples}; give "
+            f"--samples {needed}, a lower quantile, or --quantile 1 for the worst of {options.samples} cars"
+        )
+    return quantile, options.samples
+
+
 def _caption(options: argparse.Namespace, trials: Trials, vehicle: Vehicle, cars: int) -> str:
     """What the picture says below it."""
     limits = ", ".join(wish.words for wish in trials.problem.limits)
     count = len(trials.spread.bands)
-    how = "mean" if math.isnan(trials.spread.quantile) else f"quantile {trials.spread.quantile:g}"
     return (
         f"{vehicle.name} on {', '.join(trials.problem.inputs)}; engine {options.engine}, {cars} cars, seed "
         f"{options.search_seed}"
         + (f"; limits {limits}" if limits else "")
-        + (f"; {how} of {count} cars within the tolerances" if count > 1 else "")
+        + (f"; {trials.spread.words} within the tolerances" if count > 1 else "")
     )
 
 
-def _tell(folder: Path, found: Outcome, trials: Trials, checked: Differences | None) -> None:
+def _tell(folder: Path, found: Outcome, trials: Trials, checked: Differences | None, reached: Shares | None) -> None:
     """Print the named cars beside the car as it is."""
     from vehicle.optimisation.car_table import columns
+    from vehicle.optimisation.closer_look import NEW_CARS
 
     problem, tried = found.problem, found.tried
     failed = [reason for reason in tried.reasons if reason]
@@ -263,6 +300,14 @@ def _tell(folder: Path, found: Outcome, trials: Trials, checked: Differences | N
             f"{head:<{width}}"
             + "".join(f"  {numbers[number]:{max(len(name), 11)}.5g}" for name, numbers in rows.items())
         )
+    if trials.spread.tolerances:
+        print(f"each number: {trials.spread.words} within the tolerances")
+    for name, shares in (reached or {}).items():
+        print(
+            f"{name}: of {NEW_CARS} new cars "
+            + ", ".join(f"{100 * share:.0f} % are as good in {label}" for label, share in shares.items())
+            + f" (standard error {100 * _share_error(trials.spread.quantile, NEW_CARS):.0f} %)"
+        )
     if checked is not None:
         for name, each in checked.items():
             said = [f"{label} {100 * one:+.2f} %" for label, one in each.items() if one is not None]
@@ -273,6 +318,12 @@ def _tell(folder: Path, found: Outcome, trials: Trials, checked: Differences | N
     for name, row in found.named.items():
         words = [*trials.fixed, *(f"{path}={value!r}" for path, value in problem.changes(tried.points[row]).items())]
         print(f"{name}: " + " ".join(f"--set {shlex.quote(word)}" for word in words))
+
+
+def _share_error(quantile: float, cars: int) -> float:
+    """Return the standard error of a share of cars, as large as that of the quantile or of 0.9 [-]."""
+    share = min(quantile, 0.9)
+    return math.sqrt(share * (1.0 - share) / cars)
 
 
 main = command(parser, _job)

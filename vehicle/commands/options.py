@@ -107,10 +107,18 @@ def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
     )
 
 
-def skip_option(parser: argparse.ArgumentParser) -> None:
-    """Add --skip: the car starts at rest."""
-    text = "seconds left out at the start; %(default)g by default"
-    parser.add_argument("--skip", type=float, default=2.0, metavar="S", help=text)
+def skip_option(parser: argparse.ArgumentParser, of_a_file: float) -> None:
+    """Add --skip: start of the evaluation, see `vehicle.commands.inputs.chosen_skip`.
+
+    Args:
+        parser: of the command.
+        of_a_file: default for signals of a file [s].
+    """
+    text = (
+        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
+        f"default, more below 19 km/h, since a road rises from rest during the first second; {of_a_file:g} with --input"
+    )
+    parser.add_argument("--skip", type=float, metavar="S", help=text)
 
 
 def resume_options(parser: Parser) -> None:

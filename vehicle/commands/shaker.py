@@ -13,6 +13,7 @@ from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.compare import measured_beside, measured_options
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import drives_on_road, record_choice, record_options, signal_options, unit_option
+from vehicle.commands.inputs import chosen_skip
 from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
     command_parser,
@@ -20,6 +21,7 @@ from vehicle.commands.options import (
     film_name,
     message_options,
     output_options,
+    skip_option,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
@@ -47,6 +49,7 @@ def parser() -> Parser:
     output_options(found, "runs/<input stem>, or runs/road_C_80,")
     vehicle_options(found)
     engine_option(found, "mujoco")
+    skip_option(found, 0.0)
     found.add_argument(
         "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
     )
@@ -152,6 +155,7 @@ def _job(options: argparse.Namespace) -> None:
     else:
         signal = drive.signal()
     _check_signal(options, signal)
+    skip = chosen_skip(options, {stem: signal if drive is None else drive}, 0.0)
     channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)
     measured = measured_beside(options, channels or car.vehicle.channels, choice.units if choice else ())
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
@@ -163,7 +167,7 @@ def _job(options: argparse.Namespace) -> None:
     with output_folder(output, force=options.force, protect=inputs) as folder:
         try:
             progress = ProgressLine("simulation", enabled=not options.quiet)
-            run = car.run(signal, progress, engine=engine, channels=channels)
+            run = replace(car.run(signal, progress, engine=engine, channels=channels), skip=skip)
         except SimulationError as error:
             raise save_last_state(error, output) from None
 

@@ -27,8 +27,11 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
     plates = summary["input"]["plate_rms_m"]
     moved = [f"{1e3 * rms:.4g} mm ({side_of(wheel, plates)})" for wheel, rms in plates.items() if rms > 0.0]
+    begin, end = summary["evaluated_s"]
+    span = f", evaluated from {begin:g} to {end:g} s" if begin > 0.0 else ""
     lines = [
-        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s, plate RMS {', '.join(moved)}",
+        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, plate RMS "
+        f"{', '.join(moved)}",
         f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
         f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
         f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",

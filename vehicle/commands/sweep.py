@@ -11,7 +11,7 @@ from pathlib import Path
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs
+from vehicle.commands.inputs import chosen_inputs, chosen_skip
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -46,7 +46,7 @@ def parser() -> Parser:
     )
     vehicle_options(found)
     engine_option(found, "auto")
-    skip_option(found)
+    skip_option(found, 2.0)
     jobs_option(found)
     executor_option(found)
     output_options(found, "runs/sweep")
@@ -73,13 +73,14 @@ def _job(options: argparse.Namespace) -> None:
     vehicle = load_vehicle(options.vehicle, options.overrides)
     check_paths(options.vehicle, options.overrides, paths, rows[0])
     inputs = chosen_inputs(options, vehicle)
+    skip = chosen_skip(options, {source.name: source for source in inputs}, 2.0)
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, Path("runs/sweep"), rows=ROWS)
     try:
         table = sweep(
             cases,
-            ComfortMeasure(skip=options.skip, seat=vehicle.seated),
+            ComfortMeasure(skip=skip, seat=vehicle.seated),
             executor=make,
             folder=folder,
             retry_failed=options.retry_failed,

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.iso_road import CLASSES, IsoRoad, Road, Side, drive
+from vehicle.excitation.iso_road import CLASSES, RISE_S, IsoRoad, Road, Side, drive
 from vehicle.excitation.measured_road import read_road
 from vehicle.excitation.signal import Signal
 
@@ -17,6 +17,14 @@ FASTEST = 400.0
 
 USUAL_DURATION = 60.0
 """Length of a drive over a class [s] where none is asked for."""
+
+
+SKIP_S = 2.0
+"""Minimum default of --skip on a road [s]: the rise from rest and 1 s more, in which a motion of 1 Hz with a damping
+ratio of 0.2 decays to 28 %, its power to 8 %."""
+
+AFTER_RISE_S = 0.5
+"""Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,6 +73,12 @@ class RoadDrive:
     def name(self) -> str:
         """Of its results: "road_C_80"."""
         return f"road_{self.road.stem if isinstance(self.road, Path) else self.road}_{self.speed:g}"
+
+    @property
+    def skip(self) -> float:
+        """Default start of the evaluation [s]: 2 s, or 0.5 s after the rise of the last wheel, whichever is later."""
+        last = max(behind for _, behind, _ in self.wheels) / (self.speed / 3.6)
+        return max(SKIP_S, math.ceil(10.0 * (RISE_S + AFTER_RISE_S + last)) / 10.0)
 
     def signal(self) -> Signal:
         """The plate signals.

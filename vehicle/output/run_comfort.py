@@ -31,7 +31,7 @@ def seat_values(run: Run) -> dict[str, Any] | None:
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
     seat, rail = (run[f"{place}_acc_z"] for place in (SEAT, RAIL))
-    return asdict(seat_value(run.recording.timestep, seat, rail)) if np.any(rail) else None
+    return asdict(seat_value(run.recording.timestep, seat, rail, skip=run.skip)) if np.any(rail) else None
 
 
 def comfort_notices(run: Run) -> list[str]:
@@ -39,11 +39,12 @@ def comfort_notices(run: Run) -> list[str]:
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if not _recorded(run, RAIL):
         return bare
-    xyz = [run[f"{RAIL}_acc_{axis}"] for axis in AXES]
     found = [
         f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
         f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
-        for axis, part in zip(AXES, settling(run.recording.timestep, xyz, run.signal.band(COMFORT_BAND)), strict=True)
+        for axis, part in zip(
+            AXES, settling(run.recording.timestep, run.at(RAIL), run.signal.band(COMFORT_BAND)), strict=True
+        )
         if not part.settled
     ]
     return found + bare
@@ -61,5 +62,5 @@ def _at(run: Run, place: str) -> dict[str, Any]:
     return {
         "rms_2_50_hz": rms if whole else dict.fromkeys(rms),
         **({} if whole else {"rms_of_band": {"band_hz": list(value.band), **rms}}),
-        "iso2631": evaluate(run.recording.timestep, xyz, from_rest=True, highest=run.signal.highest),
+        "iso2631": evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest),
     }

@@ -151,12 +151,16 @@ def write_run(
 
 def _write_psd(path: Path, run: Run) -> None:
     """One-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
-    window, recording = min(PSD_WINDOW, run.signal.duration), run.recording
-    each = [power_spectral_density(recording.timestep, one, window_s=window) for one in recording.channels.values()]
+    window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
+    each = [
+        power_spectral_density(recording.timestep, one[run.evaluated], window_s=window)
+        for one in recording.channels.values()
+    ]
     found = each[0]
     inside = found.frequency <= PSD_HIGHEST
     cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]
     method = f"one-sided power spectral density: Hann windows of {window:g} s, {found.averages:.3g} averages"
+    method += f"; from {run.skip:g} s on"
     write_table(
         path, cells, [found.frequency[inside], *(one.density[0, inside] for one in each)], [method, f"frame: {FRAME}"]
     )
@@ -242,6 +246,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "highest_hz": run.signal.highest,
             "wheel": run.wheel,
         },
+        "evaluated_s": [run.skip, run.signal.duration],
         "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},
         "first_slip_s": {wheel: run.first_slip(wheel) for wheel in wheels},
         "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},

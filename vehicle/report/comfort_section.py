@@ -10,6 +10,13 @@ from vehicle.report.markup import Markup, joined, number, table, tag
 PLACES = {"seat_rail": "seat rail", "seat": "seat"}
 
 
+NO_ERROR = (
+    "No statistical error is given for MTVV, VDV, crest factor and SEAT value: they are those of this record, and "
+    "another road of the same class gives others. Repeat the run with other seeds to see their spread."
+)
+"""Sentence below the tables."""
+
+
 def comfort(run: FinishedRun) -> Markup:
     """Weighted and unweighted accelerations, and the table of reactions with this run in it."""
     parts, totals = [], {}
@@ -48,7 +55,9 @@ def comfort(run: FinishedRun) -> Markup:
                 number(raw["overall"]),
             )
         )
-        parts.append(table(heads, rows, caption=f"{PLACES.get(place, place).capitalize()}, {iso['standard']}", words=2))
+        span = f", {run.span} of the run" if run.span else ""
+        caption = f"{PLACES.get(place, place).capitalize()}, {iso['standard']}{span}"
+        parts.append(table(heads, rows, caption=caption, words=2))
         parts += [tag("p", text) for text in iso["reasons"]]
     here = {word: [place for place, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
     body = [
@@ -82,6 +91,7 @@ def comfort(run: FinishedRun) -> Markup:
     if seat is not None:
         words = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: below 1 the seat isolates."
         parts.append(tag("p", words))
+    parts.append(tag("p", NO_ERROR))
     parts.append(tag("p", "The standard weights the vibration on the seat surface; the seat rail lies below it."))
     return joined(parts)
 

@@ -70,6 +70,12 @@ class FinishedRun:
         """The excited wheel."""
         return str(self.summary["input"]["wheel"])
 
+    @property
+    def span(self) -> str:
+        """Evaluated span in words, empty for the whole record."""
+        begin, end = self.summary.get("evaluated_s") or (0.0, 0.0)
+        return f"{begin:g} to {end:g} s" if begin > 0.0 else ""
+
     @cached_property
     def signal(self) -> PlateSignal:
         """What drove it."""

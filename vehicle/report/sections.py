@@ -76,6 +76,8 @@ def what_was_run(run: FinishedRun) -> Markup:
         (f"plate {wheel}", f"RMS {1e3 * rms:.4g} mm" if rms else "at rest")
         for wheel, rms in given["plate_rms_m"].items()
     ]
+    if run.span:
+        signal.append(("comfort, slip shares, densities of", run.span))
     road = given.get("road") or {}
     signal += [(word, str(road[key])) for key, word in ROAD_WORDS.items() if road.get(key) is not None]
     engine = [
@@ -216,5 +218,7 @@ def repeating(run: FinishedRun) -> Markup:
 def _signal_again(run: FinishedRun) -> list[str]:
     """What puts the same displacements under the wheels: of a road, those that the run recorded."""
     if run.summary["input"].get("road"):
-        return ["--input", f"{run.place}/{run.summary['files']['time']}", "--any-level"]
-    return ["--input", run.summary["input"]["file"]]
+        again = ["--input", f"{run.place}/{run.summary['files']['time']}", "--any-level"]
+    else:
+        again = ["--input", run.summary["input"]["file"]]
+    return [*again, "--skip", f"{run.summary['evaluated_s'][0]:g}"] if run.span else again

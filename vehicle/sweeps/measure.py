@@ -10,6 +10,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from vehicle.analysis.comfort import comfort_values
+from vehicle.analysis.comfort_error import WAVES
 from vehicle.analysis.seat_value import seat_value, weighted_rms_of
 from vehicle.analysis.slip import first_slips, slip_shares
 from vehicle.car import SATURATED_VELOCITY, Run
@@ -53,6 +54,9 @@ def of_one(measure: BatchMeasure, run: Run) -> dict[str, float]:
     """The numbers of a run alone."""
     return {name: float(values[0]) for name, values in measure.of(single(run)).items()}
 
+
+WAVE_NAMES = tuple(f"comfort_wave_{number}_{part}" for number in range(1, WAVES + 1) for part in ("re", "im"))
+"""Stored numbers C_m of `vehicle.analysis.comfort_error`, which have no column in the table."""
 
 FRONT = tuple(CORNERS.values())[:2]
 """Wheels that every car has."""
@@ -101,17 +105,17 @@ class ComfortMeasure:
     def of(self, runs: Runs) -> dict[str, Vector]:
         """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, the seat where it is asked for, slip.
 
-        Slip is above `damper.slip_velocity`, the saturated share above 1 mm/s. The first slip is that of the whole run,
-        as in `summary.json`; NaN where there is none.
+        The standard error is that over Gaussian roads of this class and length, see `vehicle.analysis.comfort_error`;
+        weighted values, SEAT value and slip have none. Slip is above `damper.slip_velocity`, the saturated share above
+        1 mm/s. The first slip is that of the whole run, as in `summary.json`; NaN where there is none.
         """
         interval = runs.timestep
         kept = slice(round(self.skip / interval), None)
         value = comfort_values(interval, runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))[:, :, kept])
-        squares = value.axes**2
-        # Errors of the axes as if they were independent: d(overall)/overall = sum(rms_i^2 error_i) / overall^2 at most.
-        error = np.sqrt(np.sum((squares * value.error) ** 2, axis=1)) / np.maximum(np.sum(squares, axis=1), 1e-300)
         numbers = {f"comfort_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)}
-        numbers |= {"comfort_overall": value.overall, "comfort_error": error}
+        numbers |= {"comfort_overall": value.overall, "comfort_error": value.error}
+        # Not in `units`, so in no table: for the error of the difference of two cars.
+        numbers |= dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True))
         if self.seat:
             seat = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES))
             weighted = np.array([weighted_rms_of(interval, one, skip=self.skip) for one in seat])

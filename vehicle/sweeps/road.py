@@ -46,9 +46,9 @@ class RoadMeasure:
     """Turns a run on a road into numbers.
 
     `comfort` is sqrt(RMSx^2 + RMSy^2 + RMSz^2) of the seat rail, unfiltered, 2 to 50 Hz; `gaussian_error` its standard
-    error for a Gaussian road, from the spectrum; `slip` and `slip_left` are shares of the time above the slip velocity,
-    right and left damper; `saturated` is the share above 1 mm/s, right damper; `lowest_load` that of the tyre on the
-    shaker; `pulling` the share of the time with a negative load there.
+    error over Gaussian roads of this spectrum, see `vehicle.analysis.comfort_error`; `slip` and `slip_left` are shares
+    of the time above the slip velocity, right and left damper; `saturated` is the share above 1 mm/s, right damper;
+    `lowest_load` that of the tyre on the shaker; `pulling` the share of the time with a negative load there.
 
     Attributes:
         lead: seconds at the beginning that are left out.
@@ -90,8 +90,7 @@ class RoadMeasure:
         limit = runs.slip_velocity
         return {
             "comfort": found.overall,
-            # The axes share the road, so their errors add up.
-            "gaussian_error": np.sum(found.axes**2 * found.error, axis=1) / found.overall,
+            "gaussian_error": found.error * found.overall,
             "slip": slip_shares(right, limit),
             "slip_left": slip_shares(left, limit),
             "saturated": slip_shares(right, np.full_like(limit, SATURATED_VELOCITY)),

@@ -1,0 +1,128 @@
+"""Coverage of the stated errors by Monte Carlo: `python -m tests.benchmarks.coverage [PART ...] [--repetitions N]`.
+
+Parts: `comfort`, comfort_error and the error of a difference, of a linear car on generated and on Gaussian roads;
+`length`, comfort of 10, 30 and 60 s of one class with the reduced engine; `quantile`, quantiles of made cars; `sobol`,
+intervals of Sobol indices; `tuning`, standard errors of fitted parameters.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from vehicle.analysis.comfort import comfort_values
+from vehicle.analysis.comfort_error import WAVES, difference_error
+from vehicle.car import Car
+from vehicle.commands.road import road_drive
+from vehicle.excitation.iso_road import CLASSES, REFERENCE, isotropic_coherence
+from vehicle.names import AXES
+
+Vector = npt.NDArray[np.float64]
+Rows = list[dict[str, Any]]
+
+RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
+RATE = 250.0
+SKIP = 2.0
+PERIOD = 32
+"""Length of the road whose cut is Gaussian, over that of the record."""
+
+
+class LinearRide:
+    """Seat rail of a linear car with sliding dampers on roads of a class, in steady state.
+
+    Args:
+        name: of the car.
+        road: class of ISO 8608.
+        speed: [km/h].
+        overrides: other parameters of the car.
+    """
+
+    def __init__(self, name: str, road: str, speed: float, overrides: Sequence[str] = ()) -> None:
+        car = Car.load(name, overrides)
+        numbers = argparse.Namespace(speed=speed, duration=None, rate=None, seed=1, coherence=None, patch=None)
+        self.drive = road_drive(road, numbers, car.vehicle)
+        self.level, self.speed = CLASSES[road], speed / 3.6
+        self.grid = np.arange(0.5, 60.0, 0.02)
+        self.to_wheel = {
+            wheel: car.matrix_frf(RAIL, self.grid, damper="sliding", wheel=wheel) for wheel in car.vehicle.wheels
+        }
+
+    def record(self, duration: float, period: float, seed: int) -> Vector:
+        """Accelerations of the last `duration` [s] of a generated road of `period` [s]; (axes, samples)."""
+        lines = np.arange(int(np.ceil(0.5 * period)), int(59.9 * period))
+        frequency = lines / period
+        related = isotropic_coherence(frequency / self.speed, self.drive.track)
+        phase = np.exp(2j * np.pi * np.random.default_rng(seed).random((2, lines.size)))
+        density = self.level * (frequency / self.speed / REFERENCE) ** -2.0 / self.speed
+        tracks = np.sqrt(density / period * np.array([1.0 + related, 1.0 - related])) * phase
+        spectrum = np.zeros((3, round(period * RATE) // 2 + 1), dtype=np.complex128)
+        for wheel, behind, side in self.drive.wheels:
+            plate = tracks[0] + (1.0 if side == "right" else -1.0) * tracks[1]
+            late = plate * np.exp(-2j * np.pi * frequency * behind / self.speed)
+            for axis, response in enumerate(self.to_wheel[wheel]):
+                real, imaginary = (np.interp(frequency, self.grid, part) for part in (response.real, response.imag))
+                spectrum[axis, lines] += (real + 1j * imaginary) * late
+        history = np.fft.irfft(spectrum, round(period * RATE), axis=1) * (0.5 * round(period * RATE))
+        return np.asarray(history[:, -round(duration * RATE) :])
+
+
+def comfort(repetitions: int) -> Rows:
+    """Stated error of comfort and of the difference of two cars, against their scatter over roads."""
+    cars = [LinearRide("focus_road", "A", 80.0, more) for more in ((), ("*.damper.viscous=1500",))]
+    factor = float(scipy.stats.t.ppf(0.975, 2 * WAVES))
+    rows: Rows = []
+    for duration in (10.0, 30.0, 60.0):
+        for kind, length in (("generated road", 1), ("Gaussian road", PERIOD)):
+            seconds = duration - SKIP
+            found = [
+                comfort_values(1.0 / RATE, np.array([car.record(seconds, length * duration, seed) for car in cars]))
+                for seed in range(repetitions)
+            ]
+            values = np.array([one.overall for one in found])
+            error = np.array([one.error[0] * one.overall[0] for one in found])
+            apart = np.array([difference_error(*one.waves) for one in found])
+            gap = values[:, 0] - values[:, 1]
+            rows.append(
+                {
+                    "road": kind,
+                    "duration": duration,
+                    "comfort": values[:, 0].mean(),
+                    "scatter": values[:, 0].std(ddof=1),
+                    "stated": np.sqrt(np.mean(error**2)),
+                    "covers_95": np.mean(np.abs(values[:, 0] - values[:, 0].mean()) < 1.96 * error),
+                    "difference": gap.mean(),
+                    "its_scatter": gap.std(ddof=1),
+                    "its_error": np.sqrt(np.mean(apart**2)),
+                    "it_covers_95": np.mean(np.abs(gap - gap.mean()) < factor * apart),
+                }
+            )
+    return rows
+
+
+PARTS: dict[str, Callable[[int], Rows]] = {"comfort": comfort}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(prog="tests.benchmarks.coverage", description=(__doc__ or "").split(":")[0])
+    parser.add_argument("parts", nargs="*", default=[*PARTS], metavar="PART", help=", ".join(PARTS))
+    parser.add_argument("--repetitions", type=int, default=200, metavar="N", help="%(default)s by default")
+    options = parser.parse_args(arguments)
+    for part in options.parts:
+        print(part)
+        for row in PARTS[part](options.repetitions):
+            cells = (
+                f"{name} {value:.4g}" if isinstance(value, float) else f"{name} {value}" for name, value in row.items()
+            )
+            print("  " + ", ".join(cells), flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

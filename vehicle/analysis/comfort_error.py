@@ -1,0 +1,81 @@
+"""Standard error of an overall RMS over roads of one class, and of the difference of two cars on one road.
+
+On the lines of the periodogram of the evaluated record, X_k (axes), |X_k|^2 = S_k df, the mean square over all axes is
+W = sum X_k^H X_k. For a stationary Gaussian vibration the lines are independent complex Gaussian vectors, so that
+
+    Var W = sum tr(S_k S_k) df^2 = sum_ij int |S_ij|^2 df / T
+
+with the cross spectra S_ij of the axes: correlated axes count with their coherence. Neighbouring lines are independent
+and have the same S, so E |X_k^H X_(k+1)|^2 = tr(S_k S_k) df^2, and the sum of |X_k^H X_(k+1)|^2 estimates Var W. This
+holds for a record of a Gaussian road, and for one whose lines have fixed amplitudes and random phases, for which the
+squares |X_k|^4 would have half the expectation. With rms = sqrt(W), the normalised standard error is
+sqrt(Var W) / (2 W).
+
+For two cars on one road, Z = [X_a; X_b] and J = diag(1, -1) give Var(W_a - W_b) = tr(J S J S) df^2 in the same way: the
+products of neighbours are subtracted before they are squared. A sum of products at the distance m,
+
+    C_m = sum X_k^H X_(k+m) / (2 sqrt(W)),  m = 1, 2, ...,
+
+is the Fourier line at m/T of the instantaneous mean square over 2 rms. Its spectrum is flat near 0 Hz, so each C_m has
+the variance of the mean itself. A few of them are stored with each run, and mean |C_m,a - C_m,b|^2 is the variance of
+rms_a - rms_b with two degrees of freedom for each m.
+
+Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and Welch, Communications of the ACM 24
+(1981): variance of a mean from the spectrum near zero frequency.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+WAVES = 3
+"""Number of stored C_m. They reach 3/T, 0.4 Hz for 8 s: about the half-power bandwidth of the modes from 2 Hz on. With
+6 it is 0.75 Hz, and the error of a difference in records of 8 s is a third too small (`tests.benchmarks.coverage`)."""
+
+
+def overall_error(lines: Complex) -> Vector:
+    """Return the normalised standard error of an overall RMS for a stationary Gaussian vibration.
+
+    Args:
+        lines: of the periodogram, |line|^2 = S df; (r, axes, m).
+
+    Returns:
+        sqrt(Var W) / (2 W) [-], 0 without vibration; (r,).
+    """
+    square = np.sum(np.abs(lines) ** 2, axis=(1, 2))
+    products = np.sum(lines[:, :, :-1].conj() * lines[:, :, 1:], axis=1)
+    variance = np.sum(np.abs(products) ** 2, axis=1)
+    return np.divide(np.sqrt(variance), 2.0 * square, out=np.zeros_like(square), where=square > 0.0)
+
+
+def overall_waves(lines: Complex) -> Complex:
+    """Return the slow variations C_m of an overall RMS, m = 1 to `WAVES`.
+
+    Args:
+        lines: as in `overall_error`.
+
+    Returns:
+        C_m [unit of the lines], 0 where the record has too few lines; (r, WAVES).
+    """
+    rms = np.sqrt(np.sum(np.abs(lines) ** 2, axis=(1, 2)))
+    waves = np.zeros((len(lines), WAVES), dtype=np.complex128)
+    for number in range(min(WAVES, lines.shape[2] - 1)):
+        shift = number + 1
+        waves[:, number] = np.sum(lines[:, :, :-shift].conj() * lines[:, :, shift:], axis=(1, 2))
+    return np.divide(waves, 2.0 * rms[:, None], out=np.zeros_like(waves), where=rms[:, None] > 0.0)
+
+
+def difference_error(first: Complex, second: Complex) -> Vector:
+    """Return the standard error of the difference of two overall RMS values on the same road.
+
+    Args:
+        first, second: C_m of both runs, see `overall_waves`; (..., WAVES).
+
+    Returns:
+        In the unit of the C_m, with 2 `WAVES` degrees of freedom; (...).
+    """
+    return np.asarray(np.sqrt(np.mean(np.abs(first - second) ** 2, axis=-1)))
