@@ -41,6 +41,7 @@ class BodyChange:
         move: known coordinates over the new ones where only the origin of the body moves; (n, n).
         whole: the same with its modes; (n, n).
         shift: way of the CoG d [m]; (3,).
+        modes: velocity coordinates of the flexible modes.
         hanging: d(torque)/d(rotation) of a unit force along z at the new CoG, about the old one; (n, n).
     """
 
@@ -50,6 +51,7 @@ class BodyChange:
     whole: Vector | None = None
     shift: Vector = field(default_factory=lambda: np.zeros(3))
     hanging: Vector | float = 0.0
+    modes: slice = field(default_factory=lambda: slice(0))
 
     @property
     def same(self) -> bool:
@@ -62,6 +64,16 @@ class BodyChange:
             return rows
         size = len(self.whole)
         return np.concatenate([rows[..., :size] @ self.whole, rows[..., size:]], axis=-1)
+
+    def rotations(self, turned: Vector) -> Vector:
+        """Return rotations over the known coordinates, (..., n), over the new ones.
+
+        Where a body model has no rotation of a node, an element there turns with the rigid coordinates alone.
+        """
+        if self.whole is None or self.move is None:
+            return turned
+        known = np.any(turned[..., self.modes] != 0.0, axis=-1, keepdims=True)
+        return np.where(known, turned @ self.whole, turned @ self.move)
 
     def both(self, matrix: Vector) -> Vector:
         """Return T' A T of a matrix over the known coordinates, (n, n)."""
@@ -118,7 +130,9 @@ def body_change(vehicle: Vehicle, known: CarModel, trimmed: Superelement) -> Bod
     whole = move.copy()
     whole[modes, modes] = elastic
     whole[first : first + 6, modes] = np.vstack([shapes[:, 0].T, rotations.T]) @ rigid
-    return BodyChange(trimmed=scaled, body=after.body, move=move, whole=whole, shift=shift, hanging=hanging)
+    return BodyChange(
+        trimmed=scaled, body=after.body, move=move, whole=whole, shift=shift, hanging=hanging, modes=modes
+    )
 
 
 def _cross(d: Vector) -> Vector:

@@ -117,7 +117,9 @@ class Terms:
             dof = rows.model.joint(name).dofadr[0]
             springs[dof], dampers[dof] = stiffness, damping
         moved, parts = change.columns, self._masses(every, change)
-        rest = AtRest(jacobian=moved(self.rest.jacobian), turned=moved(self.rest.turned), weight=parts.weight)
+        rest = AtRest(
+            jacobian=moved(self.rest.jacobian), turned=change.rotations(self.rest.turned), weight=parts.weight
+        )
         settled = settle(rows, rest, springs)
         if _on_a_corner(rows):
             return None

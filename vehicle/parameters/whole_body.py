@@ -42,13 +42,24 @@ def varied_table(
     if body_moves(table, found):
         texts = (text.partition("=")[0].strip() for text in (*before, *overrides))
         given = {place for text in dict.fromkeys(texts) for place in meant(found, text, optional)}
-        for path, value in followers(table["body"], found["body"], given).items():
-            *parents, name = path.split(".")
-            inner = found
-            for key in parents:
-                inner = inner.setdefault(key, {})
-            inner[name] = value
+        put(found, followers(table["body"], found["body"], given))
     return found
+
+
+def put(table: dict[str, Any], values: Mapping[str, float]) -> None:
+    """Put numbers into a vehicle file.
+
+    Args:
+        table: the file; its tables on the way to a value are replaced by copies.
+        values: whole path to value.
+    """
+    for path, value in values.items():
+        *parents, name = path.split(".")
+        inner = table
+        for key in parents:
+            inner[key] = dict(inner.get(key, {}))
+            inner = inner[key]
+        inner[name] = value
 
 
 def body_moves(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
