@@ -13,7 +13,7 @@ from vehicle.flexbody.rigid_body import cog_inertia
 from vehicle.parameters.body import MOMENTS
 from vehicle.parameters.toml_file import write_text
 from vehicle.parameters.vehicle import load_vehicle, vehicle_of
-from vehicle.parameters.whole_body import body_notices, followers
+from vehicle.parameters.whole_body import body_notices, body_rules, followers
 
 RNG = np.random.default_rng(5)
 PARTICLES, PLACES = RNG.uniform(5.0, 40.0, 12), RNG.uniform(-1.0, 1.0, (12, 3)) * (2.0, 0.8, 0.6) + (2.0, 0.02, 1.0)
@@ -86,15 +86,19 @@ def test_what_followed_is_said():
     changes = ["body.mass=829.26"]
     (said,) = body_notices(load_vehicle("focus", changes), changes)
     assert said.startswith(
-        "body.mass=829.26: the whole body is scaled, CoG and radii of gyration stay: ixx 1020, iyy 53"
+        "body.mass=829.26: the whole body is scaled, radii of gyration stay; ixx 1020, iyy 5373.36, "
     )
     assert said.endswith("masses of the body model times 1.02, its frequencies times 0.990148")
     (said,) = body_notices(load_vehicle("sedan", ["body.cog.z=1"]), ["body.cog.z=1"])
     assert (
         said
-        == "body.cog.z=1: the inertia about the CoG stays: ixx 556.49, iyy 1923.74, izz 2199.25 kg m2 about the CoG"
+        == "body.cog.z=1: the inertia about the CoG stays; ixx 556.49, iyy 1923.74, izz 2199.25 kg m2 about the CoG"
     )
     assert body_notices(load_vehicle("sedan"), ["front.damper.gas_force=1"]) == []
+    assert body_rules(load_vehicle("sedan"), ["body.mass", "body.inertia.ixx", "cog.x"]) == [
+        "body.mass: the whole body is scaled, radii of gyration stay, but for what is given of body.inertia",
+        "cog.x: the inertia about the CoG stays, but for what is given of body.inertia",
+    ]
 
 
 def test_a_car_over_another_follows_too_and_earlier_keys_are_refused(tmp_path):

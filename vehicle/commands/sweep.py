@@ -59,6 +59,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.output.folder import prepare_folder
     from vehicle.parameters.vehicle import load_vehicle
+    from vehicle.parameters.whole_body import body_rules
     from vehicle.sweeps.case import table_cases
     from vehicle.sweeps.executors import executor_factory
     from vehicle.sweeps.measure import ComfortMeasure
@@ -75,6 +76,8 @@ def _job(options: argparse.Namespace) -> None:
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
     folder = prepare_folder(options.output, force=options.force, resume=options.resume, rows=ROWS)
+    for text in () if options.quiet else body_rules(vehicle, paths):
+        print(f"note        {text}")
     try:
         table = sweep(
             cases,

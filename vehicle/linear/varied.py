@@ -130,6 +130,7 @@ class Terms:
         require_standing(vehicle, rows, static)
         laws, known = law_matrices(rows, rest.jacobian, dampers), self.matrices.system
         stiffness = parts.turning + self._stiffness(rows, springs, preload, rest, change)
+        stiffness += change.carried(rest.weight)
         system = replace(
             known,
             mass=parts.mass,
