@@ -6,9 +6,9 @@ elastic modes Phi of the body alone: u = R r + (Phi X - R Y) q. So, of the known
 
     q_0 = A q,  A = X_0^-1 X f^-1/2;    r_0 = r + D r + R (Y_0 A - Y f^-1/2) q,    D: v_0 = v + d x omega
 
-with d the way of the CoG. Forces in the axes of the body turn with r and not with q, so that the geometric stiffness of
-preloads differs to the second order: by 5e-11 of the largest entry of K and 4e-8 of a frequency of the Focus with 2 % of
-mass, by 5e-10 and 4e-7 with 16 %.
+with d the way of the CoG. Forces in the axes of the body turn with r and not with q, so that the geometric stiffness
+of preloads differs by the rigid part of the modes: by 5e-11 of the largest entry of K and 4e-8 of a frequency of the
+Focus with 2 % of mass, by 5e-10 and 4e-7 with 16 %. Without parts that are fixed to the body there is no such part.
 """
 
 from __future__ import annotations
