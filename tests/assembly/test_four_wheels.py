@@ -190,10 +190,11 @@ def test_a_car_turned_around_answers_turned_around():
     turned["hardpoints"] = {key: flip(point) for key, point in turned["hardpoints"].items()}
     body, x = turned["body"], table["body"]["cog"][0]
     body["cog"] = flip(body["cog"])
-    body["iyy"] += body["mass"] * ((span - x) ** 2 - x**2)
-    body["izz"] += body["mass"] * ((span - x) ** 2 - x**2)
-    body["izx"] = span * body["mass"] * body["cog"][2] - body["izx"]
-    body["ixy"] = span * body["mass"] * body["cog"][1] - body["ixy"]
+    inertia = body["inertia"]
+    inertia["iyy"] += body["mass"] * ((span - x) ** 2 - x**2)
+    inertia["izz"] += body["mass"] * ((span - x) ** 2 - x**2)
+    inertia["izx"] = span * body["mass"] * body["cog"][2] - inertia["izx"]
+    inertia["ixy"] = span * body["mass"] * body["cog"][1] - inertia["ixy"]
     same_answers(table, turned, {"fr": "rr", "fl": "rl", "rr": "fr", "rl": "fl"})
 
 

@@ -150,9 +150,12 @@ def test_reactions_are_those_of_the_standard():
 
 
 def test_changed_parameters_are_those_that_were_set():
-    cars = [Car.load().vehicle, Car.load(overrides=["damper.coulomb_friction=100", "body.mass=900"]).vehicle]
+    cars = [
+        Car.load().vehicle,
+        Car.load(overrides=["damper.coulomb_friction=100", "engine.parts.engine.mass=200"]).vehicle,
+    ]
     assert [(path, unit, values) for path, unit, values in changed_parameters(cars)] == [
-        ("body.mass", "kg", ["813", "900"]),
+        ("engine.parts.engine.mass", "kg", ["220", "200"]),
         ("front.damper.coulomb_friction", "N", ["125", "100"]),
     ]
     assert changed_parameters([cars[0], cars[0]]) == []

@@ -120,12 +120,15 @@ def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
 
 def modes_table(car: Any, damper: str) -> dict[str, Any]:
     """Modes of the car and of its free body, in plain numbers and texts."""
+    from vehicle.parameters.whole_body import body_notices
+
     body = car.model.superelement
     trimmed = car.trimmed_body
     found = car.modes(damper)
     return {
         "damper": damper,
         "inertia_about": car.vehicle.body.inertia.about,
+        "notices": body_notices(car.vehicle, car.overrides),
         "modes": [
             {
                 "frequency_hz": mode.frequency,
@@ -148,7 +151,7 @@ def report(found: dict[str, Any]) -> str:
     """The table as text."""
     width = max((len(mode["description"]) for mode in found["modes"]), default=0)
     lines = [
-        f"assembled car, dampers {found['damper']}, inertia of the body about its {found['inertia_about']}",
+        f"assembled car, dampers {found['damper']}",
         f"{'Hz':>8} {'damping':>8}  {'description':<{width}} energy",
     ]
     for mode in found["modes"]:
@@ -159,6 +162,7 @@ def report(found: dict[str, Any]) -> str:
         )
     if found["growing"]:
         lines.append(f"this car does not stand: {', '.join(found['growing'])} grows by itself (negative damping above)")
+    lines += [f"note     {text}" for text in found["notices"]]
     free = found["free_body"]
     if free["frequency_hz"]:
         lines.append("free trimmed body")

@@ -191,7 +191,7 @@ def _job(options: argparse.Namespace) -> None:
         },
     )
     if not options.quiet:
-        _tell(folder, found, trials, checked, reached)
+        _tell(folder, found, trials, vehicle, checked, reached)
         if beside is not None:
             far = agreement(found, beside)
             print(
@@ -277,12 +277,18 @@ def _caption(options: argparse.Namespace, trials: Trials, vehicle: Vehicle, cars
     )
 
 
-def _tell(folder: Path, found: Outcome, trials: Trials, checked: Differences | None, reached: Shares | None) -> None:
+def _tell(
+    folder: Path, found: Outcome, trials: Trials, vehicle: Vehicle, checked: Differences | None, reached: Shares | None
+) -> None:
     """Print the named cars beside the car as it is."""
     from vehicle.optimisation.car_table import columns
     from vehicle.optimisation.closer_look import NEW_CARS
+    from vehicle.parameters.whole_body import body_rules
 
     problem, tried = found.problem, found.tried
+    varied = [*(one.path for one in problem.ranges), *(one.path for one, _ in trials.spread.tolerances)]
+    for text in body_rules(vehicle, varied):
+        print(f"note        {text}")
     failed = [reason for reason in tried.reasons if reason]
     print(
         f"{folder}: {len(tried.reasons)} cars, {found.whole} on the front, {len(failed)} failed; front.csv, "

@@ -60,6 +60,7 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.parameters.vehicle import load_vehicle
+    from vehicle.parameters.whole_body import body_rules
     from vehicle.sweeps.case import table_cases
     from vehicle.sweeps.executors import executor_factory
     from vehicle.sweeps.measure import ComfortMeasure
@@ -77,6 +78,8 @@ def _job(options: argparse.Namespace) -> None:
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, Path("runs/sweep"), rows=ROWS)
+    for text in () if options.quiet else body_rules(vehicle, paths):
+        print(f"note        {text}")
     try:
         table = sweep(
             cases,

@@ -117,7 +117,9 @@ class Terms:
             dof = rows.model.joint(name).dofadr[0]
             springs[dof], dampers[dof] = stiffness, damping
         moved, parts = change.columns, self._masses(every, change)
-        rest = AtRest(jacobian=moved(self.rest.jacobian), turned=moved(self.rest.turned), weight=parts.weight)
+        rest = AtRest(
+            jacobian=moved(self.rest.jacobian), turned=change.rotations(self.rest.turned), weight=parts.weight
+        )
         settled = settle(rows, rest, springs)
         if _on_a_corner(rows):
             return None
@@ -128,6 +130,7 @@ class Terms:
         require_standing(vehicle, rows, static)
         laws, known = law_matrices(rows, rest.jacobian, dampers), self.matrices.system
         stiffness = parts.turning + self._stiffness(rows, springs, preload, rest, change)
+        stiffness += change.carried(rest.weight)
         system = replace(
             known,
             mass=parts.mass,

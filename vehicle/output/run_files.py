@@ -235,6 +235,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             **run.car.origin,
             "inertia_about": run.car.vehicle.body.inertia.about,
             "inertia": body.report,
+            **_loads(run),
             "superelement": run.car.model.superelement.provenance,
         },
         "input": {
@@ -290,6 +291,16 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
         "notices": notices,
         "files": files,
     }
+
+
+def _loads(run: Run) -> dict[str, Any]:
+    """Loads on the parts of the car, where it has any."""
+    loads = run.car.vehicle.composition.loads
+    each = {
+        one.path.partition(".")[2]: {"mass_kg": one.numbers.mass, "at_m": list(one.cog), "on": one.parent}
+        for one in loads
+    }
+    return {"loads": each} if each else {}
 
 
 def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> dict[str, list[dict[str, float | None]]]:

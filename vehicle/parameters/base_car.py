@@ -7,14 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.body import MOMENTS
 from vehicle.parameters.shipped import CARS, vehicle_file
 from vehicle.parameters.toml_file import convert, read_table
+from vehicle.parameters.whole_body import body_moves, followers, put
 
 
 def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
     """Read a vehicle file; with `base = "focus_road"` it holds only what differs from that car.
 
-    Tables are laid over those of the base, key by key; one that names a template takes the place of the base's.
+    Tables are laid over those of the base, key by key; one that names a template takes the place of the base's. The
+    inertia of the body follows another mass or CoG (`vehicle.parameters.whole_body`).
 
     Args:
         path: of the file, or the name of a shipped car.
@@ -36,7 +39,25 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
     base = beside if beside.is_file() else vehicle_file(name)
     if base.resolve() in (*above, file.resolve()):
         raise ConfigurationError(f"base: {file} builds on itself; name another car")
-    return _over(vehicle_table(base, (*above, file.resolve())), table)
+    return with_body(vehicle_table(base, (*above, file.resolve())), table)
+
+
+def with_body(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a vehicle file laid over its base; what it does not give of the inertia follows its mass and CoG.
+
+    Args:
+        below: the base.
+        above: the file. Where it gives all three moments of [body.inertia], that table takes the place of the base's.
+    """
+    body, base = (convert(dict, one.get("body", {}), "body") for one in (above, below))
+    inertia = convert(dict, body.get("inertia", {}), "body.inertia")
+    if set(MOMENTS[:3]) <= set(inertia):
+        below = {**below, "body": {key: value for key, value in base.items() if key != "inertia"}}
+    found = _over(below, above)
+    if "inertia" in base and body_moves({"body": base}, found):
+        given = {f"body.{key}" for key in body} | {f"body.inertia.{key}" for key in inertia}
+        put(found, followers(base, found["body"], given))
+    return found
 
 
 def _over(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,14 +9,18 @@ it was made for as `body.model_mass`, which `vehicle.toml` of a run repeats (`Tr
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 from vehicle.parameters.body import MOMENTS
 from vehicle.parameters.paths import Optional, meant, override
+
+if TYPE_CHECKING:
+    from vehicle.parameters.vehicle import Vehicle
 
 _PRODUCTS = {"ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
 
@@ -42,13 +46,24 @@ def varied_table(
     if body_moves(table, found):
         texts = (text.partition("=")[0].strip() for text in (*before, *overrides))
         given = {place for text in dict.fromkeys(texts) for place in meant(found, text, optional)}
-        for path, value in followers(table["body"], found["body"], given).items():
-            *parents, name = path.split(".")
-            inner = found
-            for key in parents:
-                inner = inner.setdefault(key, {})
-            inner[name] = value
+        put(found, followers(table["body"], found["body"], given))
     return found
+
+
+def put(table: dict[str, Any], values: Mapping[str, float]) -> None:
+    """Put numbers into a vehicle file.
+
+    Args:
+        table: the file; its tables on the way to a value are replaced by copies.
+        values: whole path to value.
+    """
+    for path, value in values.items():
+        *parents, name = path.split(".")
+        inner = table
+        for key in parents:
+            inner[key] = dict(inner.get(key, {}))
+            inner = inner[key]
+        inner[name] = value
 
 
 def body_moves(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
@@ -112,34 +127,46 @@ def _of_point(mass: float, at: Sequence[float]) -> dict[str, float]:
     return moments | {name: mass * at[i] * at[j] for name, (i, j) in _PRODUCTS.items()}
 
 
-def body_notices(vehicle: Any, overrides: Iterable[str]) -> list[str]:
+def body_notices(vehicle: Vehicle, overrides: Iterable[str]) -> list[str]:
     """Return a sentence for each override of the mass or CoG of the body: what followed.
 
     Args:
         vehicle: the car.
         overrides: texts "path=value" that it was made with.
     """
-    body, said = vehicle.body, []
-    texts = {text.partition("=")[0].strip(): text.strip() for text in overrides}
-    places = {}
-    for path, text in texts.items():
-        try:
-            places |= dict.fromkeys(meant(vehicle.table, path), text)
-        except ConfigurationError:
-            continue  # an optional one that has its default again
-    given = any(path.startswith("body.inertia.") for path in places)
+    body, texts = vehicle.body, {text.partition("=")[0].strip(): text.strip() for text in overrides}
+    said = _said(vehicle, texts)
     moments = ", ".join(f"{name} {getattr(body.inertia, name):.6g}" for name in MOMENTS[:3])
     now = f"{moments} kg m2 about the {'CoG' if body.inertia.about == 'cog' else 'origin'}"
-    if "body.mass" in places:
-        model = (
-            f", masses of the body model times {body.model_factor:.6g}, its frequencies times "
-            f"{body.model_factor**-0.5:.6g}"
-            if body.flexible and body.model_mass is not None
-            else ""
-        )
-        follows = "what is given of body.inertia stays, the rest follows" if given else "CoG and radii of gyration stay"
-        said.append(f"{places['body.mass']}: the whole body is scaled, {follows}: {now}{model}")
-    elif moved := [text for path, text in places.items() if path == "body.cog" or path.startswith("body.cog.")]:
-        follows = "what is given of body.inertia stays" if given else "the inertia about the CoG stays"
-        said.append(f"{', '.join(dict.fromkeys(moved))}: {follows}: {now}")
-    return said
+    if body.flexible and body.model_mass is not None:
+        root = body.model_factor**-0.5
+        now += f"; masses of the body model times {body.model_factor:.6g}, its frequencies times {root:.6g}"
+    return [f"{text}; {now}" for text in said]
+
+
+def body_rules(vehicle: Vehicle, paths: Iterable[str]) -> list[str]:
+    """Return a sentence for the mass and the CoG of the body where many cars vary them: what follows.
+
+    Args:
+        vehicle: the car.
+        paths: what is varied.
+    """
+    return _said(vehicle, {path: path for path in paths})
+
+
+def _said(vehicle: Vehicle, texts: Mapping[str, str]) -> list[str]:
+    """What follows, by what stands for each path."""
+    places: dict[str, str] = {}
+    for path, text in texts.items():
+        # An optional one may have its default again.
+        with contextlib.suppress(ConfigurationError):
+            places |= dict.fromkeys(meant(vehicle.table, path), text)
+    given = any(path.startswith("body.inertia.") for path in places)
+    apart = ", but for what is given of body.inertia" if given else ""
+    moved = dict.fromkeys(text for path, text in places.items() if path == "body.cog" or path.startswith("body.cog."))
+    found = (
+        [f"{places['body.mass']}: the whole body is scaled, radii of gyration stay{apart}"]
+        if ("body.mass" in places)
+        else []
+    )
+    return found + ([f"{', '.join(moved)}: the inertia about the CoG stays{apart}"] if moved else [])
