@@ -102,7 +102,7 @@ def interfaces(
     if faults:
         raise DataError(
             f"{'. '.join(faults)}. Choose nodes with --map, a larger radius with --spread, or a --tolerance up to "
-            "50 mm; check frame and unit of the model with --axes, --origin and --length-unit."
+            "50 mm; check the frame of the model with --axes and --origin, and its unit of length."
         )
     return found
 

@@ -84,7 +84,8 @@ def modes_of_matrices(
     moved, count = [place.moved for place in places], len(found.frequencies)
     limit = attachments_to or ATTACHMENTS_TO * up_to
     frequencies, vectors = found.frequencies, found.vectors
-    names, notices = [f"mode {number}" for number in range(1, count + 1)], ()
+    names = [f"mode {number}" for number in range(1, count + 1)]
+    notices: tuple[str, ...] = ()
     if method == "rubin":
         added = attachment_modes(body, found, moved, limit)
         frequencies = np.concatenate([frequencies, added.frequencies])
