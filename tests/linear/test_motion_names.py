@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,7 +32,7 @@ def named(vertical, frequency=12.0):
     wheels = np.array(vertical) / np.linalg.norm(vertical)
     rigid = {f"wheel_{name}": np.eye(6)[2] * value for name, value in zip(CORNERS, wheels, strict=True)}
     energy = {group: float(np.sum(np.abs(motion) ** 2)) for group, motion in rigid.items()}
-    shares = motion_shares(rigid, energy, np.zeros(0), (), frequency)
+    shares = motion_shares(rigid, energy, np.zeros(0, dtype=complex), (), frequency)
     assert sum(shares.values()) == pytest.approx(1.0, abs=1e-12)
     return description(shares)
 
@@ -57,9 +58,9 @@ def test_wheels_in_phase_opposite_and_alone(vertical, name):
 
 def test_two_names_where_no_motion_holds_half():
     thirds = motion_shares(
-        {"body": np.sqrt([0.0, 0.0, 0.45, 0.0, 0.0, 0.0])},
+        {"body": np.sqrt(np.array([0.0, 0.0, 0.45, 0.0, 0.0, 0.0], dtype=complex))},
         {"body": 0.45, "flexible": 0.55},
-        np.sqrt([0.2, 0.35]),
+        np.sqrt(np.array([0.2, 0.35], dtype=complex)),
         ("torsion", "mode 2"),
         20.0,
     )
@@ -82,7 +83,7 @@ def test_rigid_rows_of_a_unit_against_its_bodies():
         root = rng.normal(size=(3, 3))
         masses[body] = np.diag([*[rng.uniform(1.0, 20.0)] * 3, 0.0, 0.0, 0.0])
         masses[body][3:, 3:] = root @ root.T
-    matrices = SimpleNamespace(
+    matrices: Any = SimpleNamespace(
         body_rows={body: rng.normal(size=(6, freedom)) for body in bodies},
         body_masses=masses,
         body_places=places,
