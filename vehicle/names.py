@@ -13,9 +13,6 @@ CORNERS = {"front_right": "fr", "front_left": "fl", "rear_right": "rr", "rear_le
 SIDE_SIGN = {"right": 1.0, "left": -1.0}
 """Sign of y of each side: +y points to the driver's right."""
 
-SIDE_OF_WHEEL = {"fr": "right", "fl": "left", "rr": "rear right", "rl": "rear left"}
-"""Words for wheels in pictures."""
-
 ENGINES = ("mujoco", "reduced", "auto")
 """What computes a run: the complete car, its poles, or the poles where they are valid."""
 
@@ -49,6 +46,16 @@ def wheel_words(wheel: str, wheels: Iterable[str]) -> str:
     """A wheel in a sentence: "right front wheel" of a car with one axle there, else "rear right wheel"."""
     side = side_of(wheel, wheels)
     return f"{side} front wheel" if side in SIDE_SIGN and wheel.startswith("f") else f"{side} wheel"
+
+
+def axle_and_side(wheel: str) -> tuple[str, str]:
+    """Axle and side of a wheel in words: "front", "right" of fr, "middle", "left" of middle_l.
+
+    Args:
+        wheel: its name, as of `is_wheel`.
+    """
+    axle = wheel[:-1].rstrip("_").replace("_", " ")
+    return {"f": "front", "r": "rear"}.get(axle, axle), {"r": "right", "l": "left"}[wheel[-1]]
 
 
 def is_wheel(name: str) -> bool:

@@ -189,8 +189,15 @@ def test_far_nodes_are_listed_with_their_distances(box):
         interfaces(box, {"far": (0.0, -0.5, 1.8)}, tolerance=1e-3, named={"far": "5"})
     with pytest.raises(DataError, match="no point 'nose' of the car"):
         interfaces(box, {"far": (0.0, -0.5, 1.8)}, tolerance=1e-3, named={"nose": "11"})
-    with pytest.raises(DataError, match="2 nodes within the radius lie on one line"):
+    with pytest.raises(DataError, match="2 nodes on one line, which hold no rotation"):
         interfaces(box, {"edge": (1.0, -0.5, 0.4)}, tolerance=1e-3, spread=1.05)
+    # All faults in one message: a chosen node, a far point, two points without enough nodes.
+    several = {"edge": (1.0, -0.5, 0.4), "far": (0.0, -0.5, 9.0), "lost": (0.0, 0.0, 0.0), "other": (1.0, 0.5, 0.4)}
+    with pytest.raises(DataError) as caught:
+        interfaces(box, several, tolerance=1e-3, spread=1.05, named={"lost": "5"})
+    said = str(caught.value)
+    assert "no node '5' for lost" in said and "1 points of the car have no node" in said
+    assert "2 points are not held" in said and "edge: 2 nodes on one line" in said and "other: 2 nodes" in said
 
 
 def given(box, scale=1.0, phase=0.0, imaginary=0.0):

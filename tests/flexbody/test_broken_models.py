@@ -199,6 +199,14 @@ CASES = {
     "origin of two": option("--origin", "1,2", says="needed are three numbers in metres"),
     "origin nan": option("--origin", "1,nan,0", says="needed are three numbers in metres"),
     "unit": option("--length-unit", "furlong", says="invalid choice: 'furlong'"),
+    "unit of a universal file": option("--length-unit", "mm", says="modes.uff states its own units (dataset 164)"),
+    "matrices in mm": Case("K.mtx", nothing, (*MARKET, "--length-unit", "mm"), "Set --length-unit m."),
+    "matrices in t": Case("K.mtx", nothing, (*MARKET, "--mass-unit", "t"), 'Set --mass-unit "kg".'),
+    "job in g": Case(
+        "job.sti", nothing, (*JOB, "--mass-unit", "g"), "mass: found 0.275 kg with lengths in m, masses in g"
+    ),
+    "frd in mm": Case("modes.frd", nothing, ("import", "FILE", "--length-unit", "mm"), "Set --length-unit m."),
+    "frd in t": Case("modes.frd", nothing, ("import", "FILE", "--mass-unit", "t"), 'Set --mass-unit "kg".'),
     "method of modes": option("--method", "rubin", says="--method rubin: needs stiffness and mass"),
     "attachment modes": option("--attachment-modes", "200", says="choose rubin or craig-bampton"),
     "output as text": option("--output", "body.txt", says="a body model is written as .toml or .npz"),

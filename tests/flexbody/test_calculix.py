@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from collections import defaultdict
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from vehicle.flexbody.sources.interfaces import interfaces
 from vehicle.flexbody.sources.mode_shapes import normalised
 from vehicle.flexbody.sources.reduction import free_modes
 from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
+from vehicle.flexbody.sources.units import units_of
 from vehicle.flexbody.superelement_file import read_superelement
 from vehicle.parameters.vehicle import load_vehicle
 
@@ -130,12 +132,69 @@ def test_the_command_writes_the_model_and_lists_the_points(job, modes, places, t
     said = capsys.readouterr().out
     assert "points of the car" in said and "strut_top_fr" in said
     written = read_superelement(output)
-    want = superelement_of(modes, places, name="stored", damping=0.02)
+    units = f"{modes.body.source}, {units_of(None, None).words}"
+    want = superelement_of(replace(modes, body=replace(modes.body, source=units)), places, name="stored", damping=0.02)
     np.testing.assert_array_equal(written.shapes, want.shapes)
     assert written.provenance == want.provenance
     assert command.main(options) == 2 and "exists" in capsys.readouterr().err
     assert command.main(["import", str(job / "stored.sti"), "--output", str(tmp_path / "b.npz")]) == 3
     assert "points of the car have no node within 1 mm; the nearest are" in capsys.readouterr().err
+
+
+def test_millimetres_tonnes_and_newtons_are_the_same_body(job, tmp_path, capsys):
+    """K in N/mm, M in t, places in mm: the mass follows from the length, and the stiffness with it."""
+    for suffix, factor in (("sti", 1e-3), ("mas", 1e-3)):
+        table = np.loadtxt(job / f"stored.{suffix}")
+        np.savetxt(tmp_path / f"mm.{suffix}", table * [1.0, 1.0, factor], fmt=["%d", "%d", "%.17g"])
+    shutil.copy(job / "stored.dof", tmp_path / "mm.dof")
+    deck = (job / "stored.inp").read_text()
+    head, rest = deck.split("*ELEMENT", 1)
+    rows = [[float(word) for word in line.split(",")] for line in head.splitlines()[1:]]
+    places = [f"{int(row[0])},{','.join(repr(1e3 * value) for value in row[1:])}" for row in rows]
+    (tmp_path / "mm.inp").write_text("\n".join(["*NODE", *places]) + "\n*ELEMENT" + rest)
+    common = ["--spread", "300", "--up-to", "40", "--force", "--output"]
+    assert command.main(["import", str(job / "stored.sti"), *common, str(tmp_path / "m.npz")]) == 0
+    capsys.readouterr()
+    millimetres = ["import", str(tmp_path / "mm.sti"), "--length-unit", "mm"]
+    assert command.main([*millimetres, *common, str(tmp_path / "mm.npz")]) == 0
+    notice = "lengths in mm, masses in t, which follows from mm, N and s"
+    assert f"note: {notice}" in capsys.readouterr().out
+    one, other = (read_superelement(tmp_path / f"{name}.npz") for name in ("m", "mm"))
+    assert notice in other.provenance
+    assert other.mass == pytest.approx(one.mass, rel=1e-9)
+    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-7)
+    for name, flexibility in one.residual.items():
+        np.testing.assert_allclose(other.residual[name], flexibility, rtol=0.0, atol=1e-5 * flexibility.max())
+    # The old reading of the same options: 0.86 kg.
+    assert command.main([*millimetres, "--mass-unit", "kg", *common, str(tmp_path / "kg.npz")]) == 3
+    said = capsys.readouterr().err
+    assert "mass: found 0.8592 kg" in said and 'Set --mass-unit "t".' in said
+    assert command.main(["import", str(tmp_path / "mm.sti"), *common, str(tmp_path / "kg.npz")]) == 3
+    assert "Set --length-unit mm." in capsys.readouterr().err
+
+
+def test_incompatible_modes_are_kept(tmp_path):
+    """Bricks C3D8I: three nodes for each, with mass and without a place; the frequencies are those of CalculiX."""
+    numbers = np.arange(1, 61).reshape(3, 4, 5)  # z, y, x
+    lines = ["*NODE"]
+    lines += [f"{numbers[k, j, i]},{0.6 * i},{0.4 * j},{0.4 * k}" for k in range(3) for j in range(4) for i in range(5)]
+    lines.append("*ELEMENT,TYPE=C3D8I,ELSET=EALL")
+    for n, (k, j, i) in enumerate(np.ndindex(2, 3, 4), 1):
+        face = [(j, i), (j, i + 1), (j + 1, i + 1), (j + 1, i)]
+        lines.append(",".join(map(str, [n, *(numbers[k + up, a, b] for up in (0, 1) for a, b in face)])))
+    lines += ["*MATERIAL,NAME=S", "*ELASTIC", "2e7,0.3", "*DENSITY", "200.", "*SOLID SECTION,ELSET=EALL,MATERIAL=S"]
+    for name, solver in (("stored", ",SOLVER=MATRIXSTORAGE"), ("modes", "")):
+        end = ["*STEP", f"*FREQUENCY{solver}", "12", "*END STEP"]
+        (tmp_path / f"{name}.inp").write_text("\n".join([*lines, *end]) + "\n")
+        solid_frame.run(tmp_path, name)
+    body = read_calculix(tmp_path / "stored.sti").scaled(1.0, 1.0).placed("-x,-y,z", (2.0, 0.0, 0.0))
+    want = printed(tmp_path)
+    found = free_modes(body, float(want[4]) * 1.01)
+    np.testing.assert_allclose(found.frequencies[:5], want[:5], rtol=1e-6)
+    assert found.rigid.mass == pytest.approx(2.4 * 1.2 * 0.8 * 200.0, rel=1e-9)
+    assert np.sum(body.direction >= 6) == 9 * 24
+    inch = read_calculix(tmp_path / "stored.sti").scaled(0.0254, 1.0)
+    np.testing.assert_allclose(free_modes(inch, float(want[4]) * 1.01).frequencies[:5], want[:5], rtol=1e-6)
 
 
 def test_a_support_is_refused(job, tmp_path):

@@ -8,7 +8,10 @@ import scipy
 
 from tests.flexbody.box_body import MASSES, POSITIONS, box_matrices, box_stiffness
 from vehicle.flexbody.modes import free_free_modes
+from vehicle.flexbody.sources import superelement_of
+from vehicle.flexbody.sources.craig_bampton import craig_bampton
 from vehicle.flexbody.sources.interfaces import interfaces
+from vehicle.flexbody.sources.reduction import free_modes
 from vehicle.flexbody.sources.superelement_of import modes_of_matrices
 
 PLACES = {"a": tuple(POSITIONS[1]), "b": tuple(POSITIONS[6])}
@@ -59,7 +62,8 @@ def test_craig_bampton_with_all_modes_of_the_held_body_is_the_body(box):
 def test_craig_bampton_is_the_classical_reduction_of_partitioned_matrices(box):
     """T = [[1, 0], [-K_ii^-1 K_ib, Phi]] of three corners b and the rest i, Phi of K_ii, M_ii up to a frequency."""
     places = interfaces(box, {f"{i}": tuple(POSITIONS[i]) for i in (0, 3, 5)}, tolerance=1e-3)
-    found = modes_of_matrices(box, 20.0, places, "craig-bampton", 1e6)
+    free = free_modes(box, 20.0)
+    found, _ = craig_bampton(box, free, [place.moved for place in places], 1e6, 20.0)
     stiffness, mass = box.stiffness.toarray(), box.mass.toarray()
     b = np.isin(box.node, (0, 3, 5)) & (box.direction < 3)
     inner = np.ix_(~b, ~b)
@@ -72,3 +76,19 @@ def test_craig_bampton_is_the_classical_reduction_of_partitioned_matrices(box):
     values = scipy.linalg.eigh(reduction.T @ stiffness @ reduction, reduction.T @ mass @ reduction, eigvals_only=True)
     assert 0 < held.shape[1] < 10
     np.testing.assert_allclose(found.frequencies, np.sqrt(values[6:]) / (2.0 * np.pi), rtol=1e-7)
+
+
+def test_craig_bampton_keeps_enough_modes_or_says_how_wrong_they_are(box, monkeypatch):
+    """The stated error is that of the frequencies; more modes of the held body are taken where it is too large."""
+    places = interfaces(box, PLACES, tolerance=1e-3)
+    free = free_modes(box, 20.0)
+    count, errors = len(free.frequencies), {}
+    monkeypatch.setattr(superelement_of, "HELD_TO", (1.0, 50.0))
+    for near in (0.01, 0.001):
+        monkeypatch.setattr(superelement_of, "NEAR", near)
+        found = modes_of_matrices(box, 20.0, places, "craig-bampton", 60.0)
+        error = errors[near] = float(np.max(found.frequencies[:count] / free.frequencies - 1.0))
+        assert found.notices[0].startswith(f"Craig-Bampton: the modes to 20 Hz are up to {error:.2%} too high")
+        assert f"up to {error:.2%} above the {count} of the free body" in found.remarks[0]
+    assert 0.001 < errors[0.01] < 0.01 and errors[0.001] < 0.1 * errors[0.01]
+    assert not modes_of_matrices(box, 20.0, places).notices

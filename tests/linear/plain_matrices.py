@@ -22,6 +22,7 @@ def plain_matrices(
     outputs,
     body_rows,
     body_masses,
+    body_places=None,
     constraints=(),
     branches=(),
     branch_stiffness=(),
@@ -57,6 +58,7 @@ def plain_matrices(
         tyre_damping=tyre_damping,
         body_rows=body_rows,
         body_masses=body_masses,
+        body_places=body_places or {name: np.zeros(3) for name in body_masses},
         carried_by={},
         modal=slice(0, 0),
     )

@@ -9,7 +9,8 @@ from tests.linear.plain_matrices import plain_matrices
 from vehicle.errors import ConfigurationError
 from vehicle.linear import response
 from vehicle.linear.first_order import first_order, free_basis
-from vehicle.linear.modes import car_modes, group_of
+from vehicle.linear.modes import car_modes
+from vehicle.linear.part_motions import group_of
 from vehicle.linear.response import frequency_response
 
 SPRUNG, UNSPRUNG, SUSPENSION, TYRE = 180.0, 45.0, 3e4, 2.5e5  # the quarter car of source 1
@@ -66,7 +67,7 @@ def test_sliding_has_the_roots_of_the_characteristic_polynomial():
         assert mode.frequency == pytest.approx(frequency, rel=1e-10)
         assert mode.damping_ratio == pytest.approx(ratio, rel=1e-9)
         assert sum(mode.energy.values()) == pytest.approx(1.0, rel=1e-12)
-    assert modes[1].description == "right wheel vertical"
+    assert modes[1].description == "right front wheel hop"
     assert (
         car_modes(matrices, stuck=False, highest=5.0) == [] or len(car_modes(matrices, stuck=False, highest=5.0)) == 1
     )

@@ -123,10 +123,10 @@ def test_modes_command(capsys):
     frequencies = [mode["frequency_hz"] for mode in found["modes"]]
     assert frequencies == sorted(frequencies) and frequencies[-1] < 60.0
     for mode in found["modes"]:
-        assert set(mode) == {"frequency_hz", "damping_ratio", "description", "energy"}
+        assert set(mode) == {"frequency_hz", "damping_ratio", "description", "energy", "motions"}
         assert sum(mode["energy"].values()) == pytest.approx(1.0, rel=1e-9)  # shares of one sum
     assert main(["--damper", "sliding"]) == 0
-    assert "right wheel vertical" in capsys.readouterr().out
+    assert "front wheel hop, sides in phase" in capsys.readouterr().out
 
 
 def test_a_run_of_an_own_template_and_body_repeats_from_its_folder(shaker, short_signal, tmp_path):

@@ -135,6 +135,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
                 "damping_ratio": mode.damping_ratio,
                 "description": mode.description,
                 "energy": mode.energy,
+                "motions": mode.motions,
             }
             for mode in found
         ],

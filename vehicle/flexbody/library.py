@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import BodyDesign, read_design
 from vehicle.flexbody.body_frame import design_superelement, skeleton
 from vehicle.flexbody.loads import body_loads, with_loads
+from vehicle.flexbody.mass_difference import require_unit_of_mass
 from vehicle.flexbody.rigid_body import rigid_body
 from vehicle.flexbody.superelement import Superelement, attached_nodes
 from vehicle.flexbody.superelement_file import read_superelement
@@ -40,7 +41,7 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
 
     Raises:
         ConfigurationError: no such file and the vehicle needs one; a bad design, or one that does not fit the vehicle.
-        DataError: the superelement is bad.
+        DataError: the superelement is bad, or its mass is in another unit.
     """
     body, points = vehicle.body, vehicle.points
     file = None if body.superelement is None else _find(body.superelement, folder)
@@ -55,6 +56,7 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
     status = file.stat()
     source = _read_once(file, status.st_mtime_ns, status.st_size)
     if isinstance(source, Superelement):
+        require_unit_of_mass(source, body)
         return _as_in(vehicle, source) if body.flexible else source.without_modes()
     try:
         if not body.flexible:

@@ -13,6 +13,7 @@ import numpy as np
 
 from vehicle.flexbody.loads import BodyLoad, loaded_properties
 from vehicle.flexbody.mass_properties import MassProperties
+from vehicle.errors import DataError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.body import TrimmedBody
 
@@ -24,6 +25,36 @@ COG_DISTANCE = 0.02
 """Distance of two centres of gravity of one trimmed body from which they are not the same [m]. Wheel loads tell the
 place along and across it to millimetres; the height, about 1 m, follows from a lifted axle within a few percent
 (ISO 10392:2011, scope)."""
+
+_ROUND_OFF = 1e-9
+"""Share of the largest component below which one is round-off of a symmetric body: files have seven digits."""
+
+
+def powers_of_thousand(mass: float, other: float) -> int:
+    """Power of 1000 that is nearest to the ratio of two masses: not zero of one body in two units.
+
+    Args:
+        mass, other: [kg].
+    """
+    return round(float(np.log10(mass / other)) / 3.0)
+
+
+def require_unit_of_mass(model: Superelement, body: TrimmedBody) -> None:
+    """Refuse a body model whose mass is in another unit than kg.
+
+    Args:
+        model: body model without what is fixed to it.
+        body: of the vehicle file.
+
+    Raises:
+        DataError: the masses are about a power of 1000 apart.
+    """
+    if body.flexible and len(model.frequencies) and powers_of_thousand(model.mass, body.mass):
+        raise DataError(
+            f"superelement {model.name!r}, mass: found {model.mass:.4g} kg, body.mass is {body.mass:.4g} kg: another "
+            "unit of mass. Import the model again with --mass-unit (t of matrices in mm, N and s), or give its "
+            "vehicle's body.mass."
+        )
 
 
 def mass_difference(model: Superelement, body: TrimmedBody, loads: Sequence[BodyLoad] = ()) -> list[str]:
@@ -53,10 +84,12 @@ def mass_difference(model: Superelement, body: TrimmedBody, loads: Sequence[Body
 
 def vehicle_lines(model: Superelement) -> list[str]:
     """Mass properties of a body model as a vehicle file has them: inertia about the CoG, products as integrals."""
+    cog, tensor = (np.asarray(own, dtype=float) for own in (model.cog, model.inertia))
+    cog, tensor = (np.where(np.abs(own) < _ROUND_OFF * np.abs(own).max(), 0.0, own) for own in (cog, tensor))
     places = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
-    moments = [f"{name} = {(1.0 if i == j else -1.0) * model.inertia[i, j]:z.6g}" for name, (i, j) in places.items()]
+    moments = [f"{name} = {(1.0 if i == j else -1.0) * tensor[i, j]:z.6g}" for name, (i, j) in places.items()]
     return [
         f"mass = {model.mass:.6g}",
-        f"cog = [{', '.join(f'{value:.5g}' for value in model.cog)}]",
+        f"cog = [{', '.join(f'{value:.5g}' for value in cog)}]",
         f"inertia = {{ {', '.join(moments)} }}",
     ]

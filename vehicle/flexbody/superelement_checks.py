@@ -27,7 +27,10 @@ HIGHEST_DAMPING = 0.3
 """Largest damping ratio [1]: trimmed bodies have 0.01 to 0.08; ten times that is no vibration any more."""
 LARGEST_TOLERANCE = 0.05
 """Largest distance of a node from its point [m]: half that of the two interface nodes nearest to each other."""
-_HIGHEST_FIRST_MODE = 90.0  # Hz; trimmed bodies begin between 15 and 60 Hz, which is 94 rad/s and more
+HIGHEST_FIRST_MODE = 90.0
+"""Highest first mode of a trimmed body [Hz]: they begin between 15 and 60 Hz, which is 94 rad/s and more."""
+LOWEST_FIRST_MODE = 5.0
+"""Frequency [Hz] below which no elastic mode of a road vehicle's body lies: convertibles have 12, vans and buses 8."""
 
 
 def check_superelement(body: Superelement) -> None:
@@ -109,8 +112,9 @@ def _check_residual(body: Superelement, node: str, flexibility: FloatArray) -> N
     if largest > _SOFTEST_RESIDUAL:
         _refuse(
             body,
-            f"residual of {node!r}: {largest:.4g} m/N, at most {_SOFTEST_RESIDUAL:g} is a car's; looks like mm/N. "
-            "Give m/N.",
+            f"residual of {node!r}: {largest:.4g} m/N, at most {_SOFTEST_RESIDUAL:g} is a car's; looks like mm/N, "
+            "or a node on a soft spot. Give m/N in a file, [mm/N] in the head of a --residual table; import matrices "
+            "with their --length-unit and --mass-unit, and points on more nodes with --spread.",
         )
 
 
@@ -165,10 +169,10 @@ def _check_units(body: Superelement) -> None:
     if extent < _SMALLEST_BODY:
         _refuse(body, f"positions: the body is {extent:g} m long, at least {_SMALLEST_BODY:g} m. Give metres.")
     first = float(body.frequencies[0]) if body.frequencies.size else 0.0
-    if first > _HIGHEST_FIRST_MODE:
+    if first > HIGHEST_FIRST_MODE:
         _refuse(
             body,
-            f"frequencies: the first mode is at {first:g} Hz, at most {_HIGHEST_FIRST_MODE:g} Hz is expected; looks "
+            f"frequencies: the first mode is at {first:g} Hz, at most {HIGHEST_FIRST_MODE:g} Hz is expected; looks "
             f"like rad/s ({first / (2.0 * np.pi):.4g} Hz). Give Hz.",
         )
 

@@ -63,6 +63,7 @@ class CarMatrices:
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
         body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
+        body_places: centre of gravity of each body in the design position [m]; (3,).
         one_sided: wheels whose tyres do not pull.
         carried_by: body that each body is fixed to, itself where it can move on its parent.
         modal: velocity coordinates of the flexible modes.
@@ -78,6 +79,7 @@ class CarMatrices:
     tyre_damping: Vector
     body_rows: dict[str, Vector]
     body_masses: dict[str, Vector]
+    body_places: dict[str, Vector]
     carried_by: dict[str, str]
     modal: slice
 
@@ -105,6 +107,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
     jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
     dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
     laws = law_matrices(rows, jacobian, joint_dampers(model))
+    rows_of_bodies = _body_rows(model, data)
     return CarMatrices(
         system=LinearSystem(
             coordinates=(),
@@ -126,8 +129,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
         one_sided=frozenset(
             wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in e.bushings.one_sided
         ),
-        body_rows=_body_rows(model, data),
+        body_rows=rows_of_bodies,
         body_masses=_body_masses(model, data),
+        body_places={name: data.xipos[model.body(name).id].copy() for name in rows_of_bodies},
         carried_by={
             str(model.body(i).name): str(model.body(int(root)).name) for i, root in enumerate(model.body_weldid)
         },

@@ -12,9 +12,10 @@ from vehicle.errors import ConfigurationError
 from vehicle.linear.first_order import first_order
 from vehicle.linear.matrices import CarMatrices
 from vehicle.linear.modal_scale import modal_a
+from vehicle.linear.motion_names import description, motion_shares
 from vehicle.linear.natural_modes import grows, natural_modes
+from vehicle.linear.part_motions import group_of, rigid_rows
 from vehicle.linear.strained_part import holding_parameter
-from vehicle.names import SIDE_OF_WHEEL
 from vehicle.simulation.car_model import CarModel
 
 
@@ -29,7 +30,8 @@ class Mode:
         energy: share of the kinetic energy by group of parts; sums to 1.
         growth: Re(s) [1/s].
         grows: whether the motion grows by itself, beyond round-off.
-        description: what moves.
+        motions: share of the kinetic energy by named motion, largest first; sums to 1. See `motion_names`.
+        description: name of the motion that holds half of it, else of the two largest.
         modal_a: as of `vehicle.linear.modal_scale`, of this shape [kg/s].
     """
 
@@ -39,6 +41,7 @@ class Mode:
     grows: bool
     shape: npt.NDArray[np.complex128]
     energy: dict[str, float]
+    motions: dict[str, float]
     description: str
     modal_a: complex
 
@@ -56,11 +59,18 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0, name
         Modes sorted by natural frequency; overdamped motions (real poles) are left out. What grows is listed at any
         frequency, real poles too, with "grows: " before its description.
     """
-    modes = natural_modes(first_order(matrices.system, stuck=stuck))
+    modes, rows = natural_modes(first_order(matrices.system, stuck=stuck)), rigid_rows(matrices)
     found = []
     for index in np.flatnonzero((modes.frequency <= highest) | grows(modes.pole)):
         shape, growing = modes.motion[index], bool(grows(modes.pole)[index])
-        energy = _energy(matrices, shape)
+        energy, scale = _energy(matrices, shape)
+        motions = motion_shares(
+            {group: own @ shape / scale for group, own in rows.items()},
+            energy,
+            shape[matrices.modal] / scale,
+            names,
+            float(modes.frequency[index]),
+        )
         found.append(
             Mode(
                 frequency=float(modes.frequency[index]),
@@ -69,30 +79,16 @@ def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0, name
                 grows=growing,
                 shape=shape,
                 energy=energy,
-                description=("grows: " if growing else "") + _describe(matrices, shape, energy, names),
+                motions=motions,
+                description=("grows: " if growing else "") + description(motions),
                 modal_a=modal_a(matrices.system, modes.pole[index], shape),
             )
         )
     return found
 
 
-def group_of(matrices: CarMatrices, body: str) -> str:
-    """Group of parts that a rigid body belongs to in the energy shares.
-
-    Args:
-        matrices: of the car.
-        body: its name.
-    """
-    if matrices.carried_by.get(body) == "body":
-        return "body"
-    if body.startswith("stabilizer"):
-        return "stabilizer"
-    wheel = next((wheel for wheel in matrices.system.inputs if body.endswith(f"_{wheel}")), None)
-    return body if wheel is None else f"wheel_{wheel}"
-
-
-def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> dict[str, float]:
-    """Shares of the kinetic energy, v^H M v of each group."""
+def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> tuple[dict[str, float], float]:
+    """Shares of the kinetic energy, v^H M v of each group; the root of its sum, which scales the shape."""
     energy: dict[str, float] = {}
     for body, rows in matrices.body_rows.items():
         velocity = rows @ shape
@@ -101,47 +97,7 @@ def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> dict[st
         energy[group] = energy.get(group, 0.0) + value
     energy["flexible"] = float(np.sum(np.abs(shape[matrices.modal]) ** 2))
     total = sum(energy.values())
-    return {name: value / total for name, value in energy.items()}
-
-
-def _describe(
-    matrices: CarMatrices, shape: npt.NDArray[np.complex128], energy: dict[str, float], names: Sequence[str]
-) -> str:
-    """Words for a mode: the group with the largest share and the direction in which it moves."""
-    leader = max(energy, key=lambda name: energy[name])
-    if leader == "flexible":
-        amplitudes = np.abs(shape[matrices.modal]) ** 2
-        number = int(np.argmax(amplitudes)) + 1
-        words = f"flexible body, {mode_words(number, names)}"
-    elif leader in ("body", "engine"):
-        words = f"{leader} {_rigid_direction(matrices, leader, shape)}"
-    elif leader.startswith("wheel"):
-        wheel = leader.removeprefix("wheel_")
-        own = [body for body in matrices.body_rows if group_of(matrices, body) == leader]
-        heaviest = max(own, key=lambda body: float(matrices.body_masses[body][0, 0]))
-        velocity = np.abs(matrices.body_rows[heaviest][:3] @ shape)
-        direction = ("longitudinal", "lateral", "vertical")[int(np.argmax(velocity))]
-        side = SIDE_OF_WHEEL.get(wheel, wheel)
-        words = f"{side} wheel {direction}"
-    else:
-        words = leader.replace("_", " ")
-    others = [name for name, share in sorted(energy.items(), key=lambda item: -item[1]) if share > 0.2]
-    partners = ["flexible body" if name == "flexible" else name.replace("_", " ") for name in others if name != leader]
-    return words + (f", with {', '.join(partners)}" if partners else "")
-
-
-def mode_words(number: int, names: Sequence[str]) -> str:
-    """Number of a mode of the free body, and its name where it has another one."""
-    name = names[number - 1] if names else ""
-    return f"mode {number}" + (f" ({name})" if name not in ("", f"mode {number}") else "")
-
-
-def _rigid_direction(matrices: CarMatrices, body: str, shape: npt.NDArray[np.complex128]) -> str:
-    """Direction of a rigid body's motion that holds most of its kinetic energy."""
-    velocity = matrices.body_rows[body] @ shape
-    weights = np.real(np.conj(velocity) * (matrices.body_masses[body] @ velocity))
-    names = ("longitudinal (x)", "lateral (y)", "heave (z)", "roll (Rx)", "pitch (Ry)", "yaw (Rz)")
-    return names[int(np.argmax(weights))]
+    return {name: value / total for name, value in energy.items()}, float(np.sqrt(total))
 
 
 def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.complex128]) -> None:

@@ -27,7 +27,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.linear.dynamic_stiffness import SteadyMotion, steady_motion
 from vehicle.linear.load_rows import LoadRows
 from vehicle.linear.matrices import CarMatrices
-from vehicle.linear.modes import mode_words
+from vehicle.linear.motion_names import RIGID_WORDS, mode_words
 from vehicle.names import AXES
 from vehicle.simulation.car_model import CarModel
 from vehicle.simulation.layout import numeric
@@ -35,14 +35,7 @@ from vehicle.simulation.layout import numeric
 Complex = npt.NDArray[np.complex128]
 Vector = npt.NDArray[np.float64]
 
-RIGID = (
-    "body fore-aft (x)",
-    "body lateral (y)",
-    "body heave (z)",
-    "body roll (Rx)",
-    "body pitch (Ry)",
-    "body yaw (Rz)",
-)
+RIGID = tuple(f"body {word}" for word in RIGID_WORDS)
 """The rigid motions of the trimmed body: of its centre of gravity, and about it."""
 
 REST = "moments, turning preloads"

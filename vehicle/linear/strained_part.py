@@ -67,7 +67,10 @@ def holding_parameter(car: CarModel, pole: complex, shape: Complex) -> str:
     for path, value in listed:
         work[path] = max(work.get(path, 0.0), float(value))
     inside = joint_springs(car.model) * np.abs(shape) ** 2
-    work["body.frequency_scale"] = float(np.sum(inside[e.modes.velocities]))
+    # Unscaled modes are as stiff as their file says.
+    scaled = car.vehicle.body.frequency_scale != 1.0
+    modes = "body.frequency_scale" if scaled else f"the modes of body.superelement = {car.vehicle.body.superelement}"
+    work[modes] = float(np.sum(inside[e.modes.velocities]))
     for spring in placed.joint_springs:
         work[f"{spring.path}.{spring.parameter}"] = float(inside[car.model.joint(spring.joint).dofadr[0]])
     path = max(work, key=lambda name: work[name])

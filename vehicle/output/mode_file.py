@@ -35,7 +35,8 @@ def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
                 modal_a=mode.modal_a / scale**2,
                 points=places,
                 shape=shape,
-                name=mode.description,
+                # A line of a universal file has 80 characters: the leading motion where two do not fit.
+                name=mode.description if len(mode.description) <= 80 else next(iter(mode.motions)),
                 is_complex=True,
             )
         )

@@ -6,6 +6,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError
 from vehicle.flexbody.superelement import Superelement
+from vehicle.flexbody.superelement_checks import LOWEST_FIRST_MODE
 from vehicle.names import AXES
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.simulation.rows import Rows
@@ -13,9 +14,6 @@ from vehicle.simulation.static_trim import StaticTrim, ground_contacts
 
 LARGEST_SAG = 0.5
 """Static deflection [m] that no spring of a road vehicle has: a soft car spring sags by 0.2 m, an engine by 5 mm."""
-
-LOWEST_BODY_MODE = 5.0
-"""Frequency [Hz] below which no elastic mode of a road vehicle's body lies: convertibles have 12, vans and buses 8."""
 
 
 def element_parameter(vehicle: Vehicle, name: str, kind: str, axis: str) -> str:
@@ -41,12 +39,18 @@ def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
         ConfigurationError: naming the mode and the parameters.
     """
     scale, first = vehicle.body.frequency_scale, float(np.min(body.frequencies, initial=np.inf))
-    if vehicle.body.flexible and first * scale < LOWEST_BODY_MODE:
+    if not vehicle.body.flexible or first * scale >= LOWEST_FIRST_MODE:
+        return
+    allowed = f"allowed are {LOWEST_FIRST_MODE:g} Hz and more (a convertible has 12 Hz)"
+    model = f"body.superelement = {vehicle.body.superelement}"
+    if scale == 1.0:
         raise ConfigurationError(
-            f"body.frequency_scale: found {scale:g} -, which puts the first mode of the body ({first:g} Hz in "
-            f"body.superelement = {vehicle.body.superelement}) at {first * scale:.3g} Hz, allowed are "
-            f"{LOWEST_BODY_MODE:g} Hz and more (a convertible has 12 Hz)"
+            f"{model}: its first mode is at {first:.3g} Hz, {allowed}; check the units of its stiffness and mass"
         )
+    raise ConfigurationError(
+        f"body.frequency_scale: found {scale:g} -, which puts the first mode of the body ({first:g} Hz in {model}) at "
+        f"{first * scale:.3g} Hz, {allowed}"
+    )
 
 
 def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +13,14 @@ from vehicle.commands.body.model_file import output_options, require_output, wri
 from vehicle.commands.body.show_body import report
 from vehicle.commands.options import message_options, vehicle_options
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.flexbody.sources import METHODS
+from vehicle.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
 
 if TYPE_CHECKING:
+    from vehicle.flexbody.mass_properties import MassProperties
+    from vehicle.flexbody.sources.mode_shapes import GivenModes
+    from vehicle.flexbody.sources.units import Units
+    from vehicle.parameters.hardpoints import Point
     from vehicle.parameters.vehicle import Vehicle
-
-LENGTHS = {"m": 1.0, "mm": 1e-3, "in": 0.0254}
-MASSES = {"kg": 1.0, "t": 1000.0, "g": 1e-3, "lbf s2/in": 175.126835}
-"""Units of mass that go with them: in mm, s and N a mass is in tonnes, in inches, s and lbf in lbf s2/in."""
 
 _ANSYS = (
     "in /AUX2 read it with FILE,JOB,full and write HBMAT,k,matrix,,ASCII,STIFF,NO,YES and "
@@ -55,8 +57,18 @@ def add(tasks: Any) -> None:
         help="of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
     )
     taken.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z; deck with *NODE; .bdf with GRID")
-    taken.add_argument("--length-unit", choices=LENGTHS, default="m", help="unit of length of matrices and .frd; m")
-    taken.add_argument("--mass-unit", choices=MASSES, default="kg", help="unit of mass of the matrices; kg, with mm: t")
+    taken.add_argument(
+        "--length-unit",
+        choices=LENGTHS,
+        help="unit of length of matrices and .frd; m by default. A universal file states its own units (dataset 164)",
+    )
+    follows = ", ".join(f"{mass} with {length}" for length, mass in FOLLOWING.items())
+    taken.add_argument(
+        "--mass-unit",
+        choices=MASSES,
+        help=f"unit of mass of matrices and .frd; by default that of consistent units with N (lbf) and s: {follows}; "
+        "a stiffness in N/mm belongs to masses in t",
+    )
     taken.add_argument(
         "--axes",
         default="x,y,z",
@@ -119,6 +131,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     from vehicle.flexbody.sources.interfaces import interfaces, read_map
     from vehicle.flexbody.sources.residual_table import read_residuals
     from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
+    from vehicle.flexbody.sources.units import require_first_mode, require_mass, require_size, units_of
 
     require_output(options)
     _check_numbers(options)
@@ -134,20 +147,28 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         raise ConfigurationError(f"--method {options.method}: needs stiffness and mass; {options.file} holds modes")
     if matrices is not None and options.residual:
         raise ConfigurationError(f"--residual {options.residual}: follows from stiffness and mass; leave it out")
+    units, weight = units_of(options.length_unit, options.mass_unit), _vehicle_mass(vehicle)
+    notices = []
     if matrices is not None:
-        body = matrices.scaled(LENGTHS[options.length_unit], MASSES[options.mass_unit]).placed(options.axes, origin)
+        body = matrices.scaled(*units.sizes).placed(options.axes, origin)
+        body = replace(body, source=f"{body.source}, {units.words}")
+        notices.append(units.words)
+        require_size(body.positions, places, units)
+        require_mass(body.mass_properties().mass, weight.mass, units)
         found = interfaces(body, places, **near)
         modes = modes_of_matrices(body, options.up_to, found, options.method, options.attachment_modes)
+        require_first_mode(float(modes.frequencies[0]), units)
     else:
         from vehicle.flexbody.sources.mode_shapes import normalised
 
-        given = _given_modes(options).placed(options.axes, origin)
+        given = _given_modes(options, units, weight.mass, places).placed(options.axes, origin)
+        notices += [units.words] if options.file.suffix == ".frd" else []
         found = interfaces(given.body, places, **near)
         residual = read_residuals(options.residual, places) if options.residual else {}
-        modes = normalised(given, _vehicle_mass(vehicle), options.modal_mass, options.up_to, residual)
+        modes = normalised(given, weight, options.modal_mass, options.up_to, residual)
     model = superelement_of(modes, found, name=options.name or options.file.stem, damping=options.damping)
     write(options, model)
-    print("\n".join(report(model, vehicle)))
+    print("\n".join([*(f"note: {notice}" for notice in (*notices, *modes.notices)), *report(model, vehicle)]))
     print("points of the car")
     for place in found:
         which = f"{place.nodes} nodes, the nearest" if place.nodes > 1 else "a node"
@@ -175,19 +196,28 @@ def _matrices(options: argparse.Namespace) -> Any:
     return read_matrices(file, options.mass, options.dofs, options.nodes)
 
 
-def _given_modes(options: argparse.Namespace) -> Any:
+def _given_modes(options: argparse.Namespace, units: Units, mass: float, places: Mapping[str, Point]) -> GivenModes:
+    """The modes of a file: of CalculiX in the stated units, of a universal file in its own."""
     from vehicle.flexbody.sources.frd import read_frd
     from vehicle.flexbody.sources.mode_shapes import modes_of_measurement
+    from vehicle.flexbody.sources.units import require_level, require_size
     from vehicle.records.reader import read_record
 
     if options.file.suffix == ".frd":
-        return read_frd(options.file, LENGTHS[options.length_unit])
+        given = read_frd(options.file, *units.sizes)
+        require_size(given.body.positions, places, units)
+        require_level(given.vectors, given.modal_mass, mass, units)
+        return given
     if options.file.suffix in (".mtx", ".mat"):
         raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs beside it")
-    return modes_of_measurement(read_record(options.file))
+    given = modes_of_measurement(read_record(options.file))
+    for name, value in (("--length-unit", options.length_unit), ("--mass-unit", options.mass_unit)):
+        if value is not None:
+            raise ConfigurationError(f"{name} {value}: {options.file} states its own units (dataset 164); leave it out")
+    return given
 
 
-def _vehicle_mass(vehicle: Vehicle) -> Any:
+def _vehicle_mass(vehicle: Vehicle) -> MassProperties:
     """Mass properties of the trimmed body in the vehicle file."""
     from vehicle.flexbody.mass_properties import MassProperties
     from vehicle.flexbody.rigid_body import rigid_body

@@ -12,6 +12,11 @@ from vehicle.flexbody.sources.deck import Deck, read_deck
 from vehicle.flexbody.sources.matrices import BodyMatrices, IntArray
 from vehicle.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole_numbers
 
+INSIDE = 3
+"""Nodes that CalculiX adds to a brick C3D8I: their displacements are the amplitudes of its nine incompatible modes,
+with mass, along the global axes (CalculiX CrunchiX user's manual, section "Eight-node brick element with
+incompatible modes")."""
+
 
 def read_calculix(path: Path) -> BodyMatrices:
     """The matrices of a job, in the units of its deck.
@@ -60,6 +65,13 @@ def assembled(
     """
     numbers = np.unique(identity)
     missing = [int(number) for number in numbers if int(number) not in deck.places]
+    places = dict(deck.places)
+    if missing and program == "CalculiX" and len(missing) == INSIDE * deck.incompatible:
+        # Amplitudes of incompatible modes have no place; that of the mean node keeps the extent of the body.
+        middle = np.mean([places[int(number)] for number in numbers if int(number) in places], axis=0)
+        places |= dict.fromkeys(missing, (float(middle[0]), float(middle[1]), float(middle[2])))
+        direction = np.where(np.isin(identity, missing), direction + 6, direction)
+        missing = []
     if missing:
         raise DataError(
             f"{path}: node {missing[0]} of the matrices has no place in the list of nodes ({len(missing)} so). Give "
@@ -73,7 +85,7 @@ def assembled(
             stiffness=stiffness,
             mass=mass,
             nodes=tuple(str(number) for number in numbers),
-            positions=np.array([deck.places[int(number)] for number in numbers]),
+            positions=np.array([places[int(number)] for number in numbers]),
             node=np.array([index[int(number)] for number in identity]),
             direction=direction,
             edges=np.array(edges, dtype=int).reshape(-1, 2),

@@ -19,17 +19,20 @@ import scipy
 from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.sources.attachment_modes import DEPENDENT, ReducedModes, kept_modes
 from vehicle.flexbody.sources.matrices import BodyMatrices
-from vehicle.flexbody.sources.reduction import DENSE, REFINEMENTS, SHIFT, FreeModes, lowest_modes
+from vehicle.flexbody.sources.reduction import DENSE, REFINEMENTS, SHIFT, FreeModes, lowest_modes, modes_below
 
 
-def craig_bampton(body: BodyMatrices, free: FreeModes, places: Sequence[Any], up_to: float) -> tuple[ReducedModes, int]:
+def craig_bampton(
+    body: BodyMatrices, free: FreeModes, places: Sequence[Any], up_to: float, held_to: float
+) -> tuple[ReducedModes, int]:
     """Modes of the reduced body.
 
     Args:
         body: K and M.
-        free: its rigid motions, the solver of (K + s M) x = b, and the highest frequency of modes of the held body.
+        free: its rigid motions and the solver of (K + s M) x = b.
         places: how the degrees of freedom move each attachment, u = N' x; sparse, shape (dofs, 3).
         up_to: highest mode of the reduced pair that is kept [Hz]; those above are residual flexibility.
+        held_to: highest mode of the held body that is taken [Hz].
 
     Returns:
         Modes of the reduced pair; number of modes of the held body in it.
@@ -47,20 +50,27 @@ def craig_bampton(body: BodyMatrices, free: FreeModes, places: Sequence[Any], up
         return np.asarray(found - answer @ (constraint.T @ found))
 
     static = answer.copy()  # N' x = 1, to be made a solution of K x = N lambda
+    last = np.inf
     for _ in range(REFINEMENTS):
         change = -held(body.stiffness @ static)
-        static += change
-        if np.abs(change).max() <= 1e-12 * np.abs(static).max():
+        size_of_change = float(np.abs(change).max())
+        # Passes gain a factor of 100 until the digits of K, whose rigid motions are not quite free of force, stop them.
+        if size_of_change > 0.5 * last:
             break
-    limit = (2.0 * np.pi * free.up_to) ** 2
-    shift = SHIFT**2 * limit
+        static, last = static + change, size_of_change
+        if last <= 1e-12 * np.abs(static).max():
+            break
+    limit = (2.0 * np.pi * held_to) ** 2
+    shift = (2.0 * np.pi * SHIFT * free.up_to) ** 2
     if len(body.node) <= DENSE:
         space = scipy.linalg.null_space(constraint.T)
         moved = body.stiffness + shift * body.mass
         inverse, mix = scipy.linalg.eigh(space.T @ (body.mass @ space), space.T @ (moved @ space))
         fixed = space @ mix[:, inverse >= 1.0 / (limit + shift)]
     else:
-        values, vectors = lowest_modes(body, shift, limit, held)
+        # A held body has no more modes below a limit than the free one (Cauchy's interlacing).
+        count = modes_below(body, limit) + 1
+        values, vectors = lowest_modes(body, shift, limit, held, count)
         fixed = vectors[:, values <= limit]
     basis = np.hstack([static, fixed])
     rigid = free.rigid_vectors

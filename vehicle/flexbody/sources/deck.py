@@ -19,10 +19,17 @@ LINES = {8: _BOX, 6: _WEDGE, 4: tuple(itertools.combinations(range(4), 2))}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Deck:
-    """Places of nodes by their number, in the unit of the deck, and edges of elements as pairs of numbers."""
+    """Nodes and elements of a deck.
+
+    Attributes:
+        places: of nodes by their number, in the unit of the deck.
+        edges: of elements, as pairs of numbers.
+        incompatible: number of elements C3D8I, for each of which CalculiX adds three nodes.
+    """
 
     places: dict[int, Point]
     edges: frozenset[tuple[int, int]]
+    incompatible: int = 0
 
 
 def read_deck(path: Path) -> Deck:
@@ -37,7 +44,7 @@ def read_deck(path: Path) -> Deck:
         raise DataError(f"{path}: cannot be read ({error}).") from error
     places: dict[int, Point] = {}
     edges: set[tuple[int, int]] = set()
-    block, corners = "*node" if path.suffix == ".csv" else "", 0
+    block, corners, kind, incompatible = "*node" if path.suffix == ".csv" else "", 0, "", 0
     pending: list[int] = []
     for number, line in enumerate(lines, 1):
         text = line.strip()
@@ -65,8 +72,9 @@ def read_deck(path: Path) -> Deck:
                     own = pending[1 : 1 + corners]
                     edges |= {(min(own[a], own[b]), max(own[a], own[b])) for a, b in LINES[corners]}
                     pending = []
+                    incompatible += kind == "C3D8I"
         except (ValueError, IndexError) as error:
             raise DataError(f"{path}, line {number}: {text[:60]!r} is no line of {block} ({error}).") from error
     if not places:
         raise DataError(f"{path}: no nodes found. Give the input deck with *NODE, or a CSV node,x,y,z.")
-    return Deck(places=places, edges=frozenset(edges))
+    return Deck(places=places, edges=frozenset(edges), incompatible=incompatible)

@@ -15,12 +15,13 @@ _CORNERS = {1: 8, 4: 8, 2: 6, 5: 6, 3: 4, 6: 4}
 """Corners of the element types of the format."""
 
 
-def read_frd(path: Path, length: float) -> GivenModes:
+def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
     """Modes at all nodes of a job.
 
     Args:
         path: the file.
         length: unit of length of the job [m].
+        mass: unit of mass of the job [kg].
 
     Raises:
         DataError: no frequency step, cut off, or binary.
@@ -36,7 +37,7 @@ def read_frd(path: Path, length: float) -> GivenModes:
     shapes: list[dict[int, list[float]]] = []
     frequencies: list[float] = []
     masses: list[float] = []
-    block, head, corners, mass, value = "", "", 0, np.nan, np.nan
+    block, head, corners, generalised, value = "", "", 0, np.nan, np.nan
     element: list[int] = []
     try:
         for line in lines:
@@ -45,14 +46,14 @@ def read_frd(path: Path, length: float) -> GivenModes:
             elif line.startswith("    3C"):
                 block = "elements"
             elif line.startswith("    1PGM"):
-                mass = float(line[24:].split()[0])
+                generalised = float(line[24:].split()[0])
             elif line.startswith("  100C"):
                 block, head, value = "", line, float(line[12:24])
             elif line.startswith(" -4"):
                 block = "shape" if line[5:13].strip() == "DISP" and "MODAL" in head else ""
                 if block:
                     frequencies.append(value)
-                    masses.append(mass)
+                    masses.append(mass * generalised)
                     shapes.append({})
             elif line.startswith(" -3"):
                 block = ""

@@ -60,35 +60,49 @@ def interfaces(
         named: node for a point, chosen by the user, at any distance.
 
     Raises:
-        DataError: nodes farther away than allowed, all of them listed with their distances; a node that does not exist;
-            nodes within the radius that lie on a line.
+        DataError: points without a node within the distance, whose chosen node does not exist, or whose nodes within
+            the radius cannot carry them: all of them in one message.
     """
     chosen = dict(named or {})
     for point in chosen:
         if point not in places:
             raise DataError(f"map: no point {point!r} of the car; its points are {', '.join(places)}.")
-    found, far = [], []
+    found, far, lost, weak = [], [], [], []
     moving = np.unique(body.node[body.direction < 3])  # of a point mass or a reference node there may be rotations only
     for name, place in places.items():
         gap = np.linalg.norm(body.positions[moving] - np.array(place), axis=1)
         if name in chosen:
             if chosen[name] not in body.nodes:
-                raise DataError(f"map: no node {chosen[name]!r} for {name}; the body has {len(body.nodes)} nodes.")
+                lost.append(f"no node {chosen[name]!r} for {name}")
+                continue
             found.append(_of_node(body, name, place, body.nodes.index(chosen[name])))
             continue
         near = moving[gap <= spread]
         if spread > 0.0 and near.size:
-            found.append(_of_nodes(body, name, place, near))
+            carried = _of_nodes(body, name, place, near)
+            if isinstance(carried, str):
+                weak.append(f"{name}: {carried}")
+            else:
+                found.append(carried)
             continue
         best = int(moving[gap.argmin()])
         if gap.min() > max(tolerance, spread):
             far.append(f"{name}: node {body.nodes[best]}, {1e3 * gap.min():.1f} mm")
         found.append(_of_node(body, name, place, best))
+    faults = []
+    if lost:
+        faults.append(f"map: {'; '.join(lost)}; the body has {len(body.nodes)} nodes")
     if far:
-        raise DataError(
+        faults.append(
             f"{len(far)} points of the car have no node within {1e3 * max(tolerance, spread):g} mm; the nearest are "
-            f"{'; '.join(far)}. Choose nodes with --point-nodes, a radius with --spread, or a --point-distance up to "
-            "50 mm; check frame and unit of the model with --axes, --origin and --length-unit."
+            f"{'; '.join(far)}"
+        )
+    if weak:
+        faults.append(f"{len(weak)} points are not held by the nodes within {1e3 * spread:g} mm: {'; '.join(weak)}")
+    if faults:
+        raise DataError(
+            f"{'. '.join(faults)}. Choose nodes with --point-nodes, a larger radius with --spread, or a --point-distance up to "
+            "50 mm; check the frame of the model with --axes and --origin, and its unit of length."
         )
     return found
 
@@ -134,15 +148,12 @@ def _of_node(body: BodyNodes, name: str, place: Point, node: int) -> Interface:
     )
 
 
-def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface:
-    """A place that moves as the nodes around it."""
+def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface | str:
+    """A place that moves as the nodes around it; what keeps them from carrying it."""
     positions = body.positions[nodes]
     widths = np.linalg.svd(positions - positions.mean(axis=0), compute_uv=False) if len(nodes) > 2 else np.zeros(3)
     if widths[1] <= _FLAT * widths[0] or widths[0] == 0.0:
-        raise DataError(
-            f"{name}: the {len(nodes)} nodes within the radius lie on one line and hold no rotation; give a larger "
-            "--spread, or a node with --point-nodes."
-        )
+        return f"{len(nodes)} node{'s on one line' if len(nodes) > 1 else ''}, which hold no rotation"
     fit = rigid_fit(positions, np.ones(len(nodes)), np.array(place))  # (6, k, 3)
     row = {
         (int(node), int(direction)): i
@@ -151,7 +162,7 @@ def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface
     }
     dofs = np.array([[row.get((int(node), axis), -1) for axis in range(3)] for node in nodes])
     if np.any(dofs < 0):
-        raise DataError(f"{name}: a node within the radius lacks a displacement; choose a node with --point-nodes.")
+        return "one of the nodes lacks a displacement"
 
     def columns(part: FloatArray) -> Any:
         values = part.reshape(3, -1)

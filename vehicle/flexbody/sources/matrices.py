@@ -21,6 +21,9 @@ _RIGID_MOTION = 1e-3
 """Largest frequency of a rigid motion over the first elastic one. Entries with seven digits give 1e-4; ground springs,
 or elements that resist a rotation, 0.01 and more."""
 
+DIRECTIONS = 9
+"""Directions of a node: three displacements, three rotations, three amplitudes inside an element."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BodyNodes:
@@ -30,7 +33,8 @@ class BodyNodes:
         nodes: names of the nodes; (n,).
         positions: of the nodes [m], shape (n, 3).
         node: node of each degree of freedom, an index; shape (dofs,).
-        direction: 0 to 2 for displacements along x, y, z, 3 to 5 for rotations about them; shape (dofs,).
+        direction: 0 to 2 for displacements along x, y, z, 3 to 5 for rotations about them, 6 to 8 for amplitudes along
+            x, y, z of shapes inside an element, which no rigid motion has; shape (dofs,).
         edges: lines of the picture, pairs of node indices; shape (m, 2).
         source: file, program and units, in words.
     """
@@ -106,10 +110,10 @@ class BodyMatrices(BodyNodes):
                     f"{name}: not symmetric. Give the whole matrix or one triangle of it; gyroscopic and follower "
                     "terms do not belong into a free body."
                 )
-        pairs = self.node * 6 + self.direction
+        pairs = self.node * DIRECTIONS + self.direction
         values, counts = np.unique(pairs, return_counts=True)
         if counts.max(initial=1) > 1:
-            node, direction = divmod(int(values[counts.argmax()]), 6)
+            node, direction = divmod(int(values[counts.argmax()]), DIRECTIONS)
             raise DataError(f"degree of freedom {direction + 1} of node {self.nodes[node]} is given twice.")
         loose = np.flatnonzero(np.asarray(abs(self.stiffness).sum(axis=1)).ravel() == 0.0)
         if loose.size:
@@ -127,9 +131,9 @@ class BodyMatrices(BodyNodes):
             mass: unit of mass of the source [kg]; the unit of time is the second.
 
         Returns:
-            K e T'K T and M e T'M T with e = mass length^2, T = 1/length of a displacement and 1 of a rotation.
+            K e T'K T and M e T'M T with e = mass length^2, T = 1 of a rotation, else 1/length.
         """
-        turn = scipy.sparse.diags(np.where(self.direction < 3, 1.0 / length, 1.0))
+        turn = scipy.sparse.diags(np.where(self.direction // 3 == 1, 1.0, 1.0 / length))
         energy = mass * length**2
         return replace(
             self,

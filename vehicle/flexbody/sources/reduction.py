@@ -17,7 +17,7 @@ from vehicle.flexbody.sources.matrices import BodyMatrices
 SHIFT = 1.0 / 40.0
 """By which K is shifted, so that a free body can be factorised, over the highest frequency wanted [1]: below the
 elastic modes, and near enough to them that the six rigid ones do not take their digits."""
-_FIRST_GUESS, _MORE = 30, 2
+FIRST_GUESS, _MORE = 30, 2
 """Modes that Lanczos is asked for at first, and the factor by which more are while all of them lie below the limit."""
 DENSE = 300
 """Degrees of freedom up to which all modes are computed: faster there, and with hardly any mass too few for Lanczos."""
@@ -83,7 +83,7 @@ def free_modes(body: BodyMatrices, up_to: float) -> FreeModes:
     held = body.rigid_frequency(rigid)
     body.require_free(held, float(np.sqrt(elastic[0])) / (2.0 * np.pi))
     kept = elastic <= limit
-    missed = _below(body, limit) - 6 - int(kept.sum())
+    missed = modes_below(body, limit) - 6 - int(kept.sum())
     if missed > 0:
         raise DataError(f"{missed} modes up to {up_to:g} Hz were not found; ask for another frequency.")
     shapes: FloatArray = flexible[:, kept]
@@ -150,7 +150,11 @@ def _all(body: BodyMatrices, shift: float) -> tuple[FloatArray, FloatArray]:
 
 
 def lowest_modes(
-    body: BodyMatrices, shift: float, limit: float, solve: Callable[[FloatArray], FloatArray]
+    body: BodyMatrices,
+    shift: float,
+    limit: float,
+    solve: Callable[[FloatArray], FloatArray],
+    count: int = FIRST_GUESS,
 ) -> tuple[FloatArray, FloatArray]:
     """The lowest modes, at least one of them above a limit.
 
@@ -159,11 +163,12 @@ def lowest_modes(
         shift: s [rad2/s2].
         limit: largest eigenvalue wanted [rad2/s2].
         solve: of (K + s M) x = b, in the space where modes are looked for.
+        count: how many are computed at first, doubled while all lie below the limit.
 
     Returns:
         Eigenvalues, ascending; vectors.
     """
-    size, count = len(body.node), _FIRST_GUESS
+    size = len(body.node)
     operator = scipy.sparse.linalg.LinearOperator((size, size), solve)
     start = solve(body.mass @ np.random.default_rng(1).standard_normal(size))  # the same bytes each time
     while True:
@@ -189,7 +194,12 @@ def _factorised(matrix: Any) -> Any:
         ) from error
 
 
-def _below(body: BodyMatrices, limit: float) -> int:
-    """Number of eigenvalues below a limit [rad2/s2]: negative pivots of K - limit M."""
+def modes_below(body: BodyMatrices, limit: float) -> int:
+    """Return the number of eigenvalues below a limit: negative pivots of K - limit M (Sylvester's law of inertia).
+
+    Args:
+        body: K and M of the free body.
+        limit: largest eigenvalue counted [rad2/s2].
+    """
     factor = _factorised(body.stiffness - limit * (1.0 + 1e-9) * body.mass)
     return int(np.sum(factor.U.diagonal() < 0.0))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +13,11 @@ from vehicle.flexbody.beam import FloatArray
 from vehicle.flexbody.mass_properties import MassProperties
 from vehicle.flexbody.modes import fix_signs
 from vehicle.flexbody.sources import METHODS
-from vehicle.flexbody.sources.attachment_modes import attachment_modes
+from vehicle.flexbody.sources.attachment_modes import ReducedModes, attachment_modes
 from vehicle.flexbody.sources.craig_bampton import craig_bampton
 from vehicle.flexbody.sources.interfaces import Interface
 from vehicle.flexbody.sources.matrices import BodyMatrices, BodyNodes, IntArray
-from vehicle.flexbody.sources.reduction import free_modes, residual_flexibility
+from vehicle.flexbody.sources.reduction import FreeModes, free_modes, residual_flexibility
 from vehicle.flexbody.superelement import Superelement
 
 
@@ -33,6 +34,7 @@ class BodyModes:
         names: of the modes.
         remarks: what was scaled, left out or could not be checked, in words.
         residual: flexibility of each interface [m/N], (3, 3), by name; none where the source has no K and M.
+        notices: what the user must know of the accuracy, in words.
     """
 
     body: BodyNodes
@@ -43,11 +45,19 @@ class BodyModes:
     names: tuple[str, ...]
     remarks: tuple[str, ...] = ()
     residual: Mapping[str, FloatArray] = field(default_factory=dict)
+    notices: tuple[str, ...] = ()
 
 
 ATTACHMENTS_TO = 5.0
 """Up to which frequency modes of the attachments are kept, over that of the modes, where none is given [1]: assumed;
 FRFs of a car on a frame of solids are then within 2 % up to 0.6 of the latter, 4 % with these modes static."""
+
+
+HELD_TO = (3.0, 6.0)
+"""Highest modes of the held body over the highest one wanted, tried in turn by "craig-bampton" [1]."""
+NEAR = 0.01
+"""Relative error of the frequencies of modes of the free body at which these are enough [1]: that of a car body's own
+modes between two cars of a type is a few percent."""
 
 
 def modes_of_matrices(
@@ -61,7 +71,8 @@ def modes_of_matrices(
 
     Args:
         body: in SI units and the vehicle frame.
-        up_to: highest frequency of modes of the free body, by "craig-bampton" of the body held at its places [Hz].
+        up_to: highest frequency of modes of the free body; "craig-bampton" takes modes of the body held at its places
+            to a multiple of it, until the modes to here are within 1 % of those of the free body [Hz].
         places: interfaces, which get their residual flexibility.
         method: one of `METHODS`.
         attachments_to: highest mode that "rubin" adds, or that "craig-bampton" keeps of the reduced pair [Hz].
@@ -74,6 +85,7 @@ def modes_of_matrices(
     limit = attachments_to or ATTACHMENTS_TO * up_to
     frequencies, vectors = found.frequencies, found.vectors
     names = [f"mode {number}" for number in range(1, count + 1)]
+    notices: tuple[str, ...] = ()
     if method == "rubin":
         added = attachment_modes(body, found, moved, limit)
         frequencies = np.concatenate([frequencies, added.frequencies])
@@ -81,14 +93,16 @@ def modes_of_matrices(
         names += [f"attachment mode {number}" for number in range(1, len(added.frequencies) + 1)]
         kept = f"{count} modes to {up_to:g} Hz, {len(added.frequencies)} of the attachments to {limit:g} Hz (Rubin)"
     elif method == "craig-bampton":
-        added, held = craig_bampton(body, found, moved, limit)
+        added, held, held_to, above = _near_enough(body, found, moved, limit)
         frequencies, vectors, residual = added.frequencies, added.vectors, added.residual
         names = [f"mode {number}" for number in range(1, len(frequencies) + 1)]
-        both = min(count, len(frequencies))
-        above = np.max(frequencies[:both] / found.frequencies[:both] - 1.0, initial=0.0)
         kept = (
-            f"Craig-Bampton with {held} modes to {up_to:g} Hz of the body held at {len(places)} points, modes of it to "
-            f"{limit:g} Hz, the first {both} up to {above:.2%} above those of the free body"
+            f"Craig-Bampton with {held} modes to {held_to:g} Hz of the body held at {len(places)} points, modes of it "
+            f"to {limit:g} Hz, those to {up_to:g} Hz up to {above:.2%} above the {count} of the free body"
+        )
+        notices = (
+            f"Craig-Bampton: the modes to {up_to:g} Hz are up to {above:.2%} too high against the {count} of the free "
+            f"body, with modes to {held_to:g} Hz of the held body",
         )
     else:
         residual = residual_flexibility(body, found, moved)
@@ -99,6 +113,7 @@ def modes_of_matrices(
         damping_ratio=np.full(len(frequencies), np.nan),
         vectors=vectors,
         rigid=found.rigid,
+        notices=notices,
         names=tuple(names),
         remarks=(
             f"{len(body.node)} degrees of freedom, {kept}, modes above as residual flexibility",
@@ -108,6 +123,30 @@ def modes_of_matrices(
         # Where every mode of the attachments is kept nothing is left: the place is rigid, not of infinite stiffness.
         residual={place.name: value for place, value in zip(places, residual, strict=True) if value.any()},
     )
+
+
+def _near_enough(
+    body: BodyMatrices, free: FreeModes, moved: list[Any], limit: float
+) -> tuple[ReducedModes, int, float, float]:
+    """Craig-Bampton with as many modes of the held body as the first modes of the free one need.
+
+    Args:
+        body: K and M.
+        free: modes of the free body, against which the reduced ones are measured.
+        moved: places, as of `craig_bampton`.
+        limit: highest mode of the reduced pair that is kept [Hz].
+
+    Returns:
+        The modes; number of modes of the held body and their highest frequency [Hz]; largest relative error of the
+        frequencies up to that of the free modes [1].
+    """
+    for factor in HELD_TO:
+        reduced, held = craig_bampton(body, free, moved, limit, factor * free.up_to)
+        both = min(len(free.frequencies), len(reduced.frequencies))
+        above = float(np.max(reduced.frequencies[:both] / free.frequencies[:both] - 1.0, initial=0.0))
+        if above <= NEAR:
+            break
+    return reduced, held, factor * free.up_to, above
 
 
 def superelement_of(
