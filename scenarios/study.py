@@ -103,6 +103,9 @@ class Study(Generic[Subject]):
             folder = prepared_folder_of(options, options.output)
             found = self.study(subject, folder, options)
             line = found if isinstance(found, str) else found.write(folder)
+            if isinstance(found, Findings):
+                for text in found.values:
+                    print(text)
             print(f"{folder}: {line}; {clock.perf_counter() - started:.0f} s")
 
         return parse_and_run(self.parser, job, arguments)
