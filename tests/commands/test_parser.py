@@ -12,7 +12,7 @@ from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.errors import ConfigurationError
 
 TRIAL = "--trial"
-LINES = {
+LINES: dict[str, dict[str, tuple[list[str], list[str]]]] = {
     "shaker": {
         "a file of signals": (["--road", "C", "--speed", "80"], ["--input", "low.csv"]),
         "a road": (["--input", "low.csv"], ["--road", "C"]),
@@ -39,7 +39,8 @@ LINES = {
 
 
 def parser_of(name: str) -> Parser:
-    return import_module(f"vehicle.commands.{name}").parser()
+    parser: Parser = import_module(f"vehicle.commands.{name}").parser()
+    return parser
 
 
 @pytest.mark.parametrize(("name", "group"), [(name, group) for name, groups in LINES.items() for group in groups])
