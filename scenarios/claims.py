@@ -138,6 +138,9 @@ def headline(rows: Sequence[Mapping[str, Any]]) -> str:
         f"{len(found)} {status} ({sum(found)} agree)" for status, found in counts.items() if status != "predicted"
     ]
     predicted = counts["predicted"]
+    if not predicted:
+        kinds = [f"{len(found)} {status} ({sum(found)} agree)" for status, found in counts.items() if found]
+        return f"no row is a prediction of the model; {', '.join(kinds) or 'no other rows'}"
     return f"{sum(predicted)} of {len(predicted)} predicted rows agree; beside them {', '.join(others)}"
 
 
@@ -167,6 +170,7 @@ class Findings:
         unjudged: statements that short signals cannot judge: name, and why; None where they judge all.
         notes: paragraphs below the table.
         data: further numbers for `results.json`, under their own keys.
+        values: lines for the console, as fitted values.
         own_data: whether they are about data of the user, of which nothing is published: the rows say what was found.
     """
 
@@ -175,6 +179,7 @@ class Findings:
     unjudged: Mapping[str, str] | None = field(default_factory=dict)
     notes: Sequence[str] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
+    values: Sequence[str] = ()
     own_data: bool = False
 
     def write(self, folder: Path) -> str:

@@ -131,7 +131,7 @@ def _job(options: argparse.Namespace) -> None:
     )
     engine = chosen_engine(options.engine)
     cases = table_cases([one.path for one in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle)
-    folder = prepared_folder_of(options, options.home, rows=ROWS)
+    folder = prepared_folder_of(options, options.output, rows=ROWS)
     started = clock.perf_counter()
     table = sweep(
         cases,

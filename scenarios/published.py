@@ -66,7 +66,7 @@ def parser() -> Parser:
     found = Parser(
         prog="python -m scenarios.published", description="Every published result of the complete car beside ours."
     )
-    output_options(found, f"{HOME}, or {QUICK_HOME} with --quick,")
+    output_options(found, None, default=f"{HOME}, or {QUICK_HOME} with --quick,")
     found.add_argument(
         "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the scenarios' own results"
     )

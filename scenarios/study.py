@@ -66,9 +66,7 @@ def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
         jobs: a remark on --jobs.
     """
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
-    home = Path("runs") / name
-    output_options(parser, str(home))
-    parser.set_defaults(home=home)
+    output_options(parser, Path("runs") / name)
     parser.add_argument("--quick", action="store_true", help=quick)
     jobs_option(parser, note=jobs)
     message_options(parser)
@@ -102,9 +100,12 @@ class Study(Generic[Subject]):
         def job(options: argparse.Namespace) -> None:
             started = clock.perf_counter()
             subject = self.load(options)
-            folder = prepared_folder_of(options, options.home)
+            folder = prepared_folder_of(options, options.output)
             found = self.study(subject, folder, options)
             line = found if isinstance(found, str) else found.write(folder)
+            if isinstance(found, Findings):
+                for text in found.values:
+                    print(text)
             print(f"{folder}: {line}; {clock.perf_counter() - started:.0f} s")
 
         return parse_and_run(self.parser, job, arguments)

@@ -20,7 +20,15 @@ from typing import Any
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
 from scenarios.study import car_study
-from scenarios.tuning.claims import data_note, demonstration_claims, fit_notes, fit_numbers, frozen_note, own_claims
+from scenarios.tuning.claims import (
+    data_note,
+    demonstration_claims,
+    fit_notes,
+    fit_numbers,
+    frozen_note,
+    own_claims,
+    value_lines,
+)
 from scenarios.tuning.data import (
     AUTHORS,
     BAND,
@@ -149,6 +157,7 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
         unjudged={"bump records alone, and the authors' own order": "left out with --quick"} if quick else {},
         notes=notes,
         data=data,
+        values=value_lines(final.result, tuning.vehicle),
     )
 
 
@@ -172,6 +181,7 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
         claims=own_claims(result, final),
         notes=fit_notes("The fit", result, final),
         data={"all": fit_numbers(result)},
+        values=value_lines(result, tuning.vehicle),
         own_data=True,
     )
 

@@ -9,6 +9,8 @@ from typing import Any
 
 from scenarios.claims import OWN_CHECK, Claim, markdown
 from scenarios.tuning.data import NOISE, SLIDING, Measurement
+from vehicle.parameters.paths import unit_of
+from vehicle.parameters.vehicle import Vehicle
 from vehicle.tuning.full_steps import SMALL, FullSteps
 from vehicle.tuning.identifiability import WIDEST
 from vehicle.tuning.result import TuningResult
@@ -69,6 +71,25 @@ def _checked(name: str, final: FullSteps) -> Claim:
         final.settled,
         f"Gauss-Newton steps with the Jacobian of the fast models; the last must be below {SMALL:g} standard errors",
     )
+
+
+def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
+    """Return fitted values with their standard errors and units, and the options that set them in every command.
+
+    Args:
+        result: of a fit.
+        vehicle: the car, for the units.
+    """
+    width = max((len(one.path) for one in result.parameters), default=0)
+    lines = []
+    for one in result.parameters:
+        error, start = result.standard_errors.get(one.path, math.nan), f"started at {one.start:g}"
+        spread = f"+- {error:.2g}" if math.isfinite(error) else "not told by the data, held"
+        lines.append(
+            f"{one.path:<{width}}  {result.values[one.path]:.6g} {spread} {unit_of(vehicle, one.path)}, {start}"
+        )
+    words = " ".join(f"--set {one.path}={result.values[one.path]:.8g}" for one in result.parameters)
+    return [*lines, words]
 
 
 def data_note(measurements: Sequence[Measurement], engine: str, quick: bool) -> str:

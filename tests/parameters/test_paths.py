@@ -2,12 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.elements import Hydromount
-from vehicle.parameters.paths import full_path, overrides_of, unit_of, value_of
+from vehicle.parameters.paths import assignments, full_path, overrides_of, unit_of, value_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.toml_file import as_table
 from vehicle.parameters.vehicle import load_vehicle
@@ -131,3 +132,15 @@ def test_logarithmic_scale():
 def test_what_a_path_begins_is_nearer_than_what_is_spelt_alike(car):
     with pytest.raises(ConfigurationError, match=r"the nearest is front\.damper\.coulomb_friction$"):
         full_path(car.vehicle.table, "front.damper.coulom")
+
+
+def test_overrides_as_a_mapping_and_a_single_text():
+    given = {"a.b": 1.5, "c": True, "d": (1, 2.0, 3), "e": "stribeck", "f": np.float64(2.0), "g": {"x": [1, 2]}}
+    assert assignments(given) == [
+        "a.b=1.5", "c=true", "d=[1, 2.0, 3]", 'e="stribeck"', "f=2.0", "g={x = [1, 2]}"
+    ]  # fmt: skip
+    assert assignments(["a=1"]) == ["a=1"]
+    with pytest.raises(ConfigurationError, match=r"found the text 'a=1'; needed is a list, as \['a=1'\]"):
+        assignments("a=1")
+    with pytest.raises(ConfigurationError, match="a is a object; needed is a number"):
+        assignments({"a": object()})

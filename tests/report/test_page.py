@@ -111,8 +111,8 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     [
         (["nowhere"], "nowhere: is no folder; give the folder of a run"),
         (["."], "holds no summary.json; give the folder of a run"),
-        (["{run}", "--output", "page.txt"], "--output page.txt: a report is written as .html"),
-        (["{run}", "--output", "mine.html", "--force"], "--output mine.html: exists and is no report of this program"),
+        (["{run}", "--output", "page.txt"], "--output page.txt: this file is written as .html"),
+        (["{run}", "--output", "mine.html", "--force"], "--output mine.html: is not as this program wrote it there"),
     ],
 )
 def test_what_cannot_be_reported_is_refused(words, message, reported, tmp_path, monkeypatch, capsys):

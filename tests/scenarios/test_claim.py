@@ -25,6 +25,7 @@ from scenarios.claims import (
 from scenarios.study import STUDIES, lumped_study, main_of, study_parser
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
 from vehicle.output.folder import prepare_folder, write_text
+from vehicle.output.written_files import MARKER
 
 HOME = Path(scenarios.__file__).parent
 
@@ -84,7 +85,7 @@ def test_files_hold_rows_notes_and_data(tmp_path):
     assert [row["interval"] for row in content["rows"]] == [None, None, [95.0, None]]
     assert content["rows"][0]["deviation"] == pytest.approx(0.05)
     assert content["extra"] == [1.0, None]
-    assert {path.name for path in tmp_path.iterdir()} == {"results.md", "results.json"}
+    assert {path.name for path in tmp_path.iterdir()} - {MARKER} == {"results.md", "results.json"}
 
 
 def test_empty_folder_is_taken_and_a_full_one_refused(tmp_path):

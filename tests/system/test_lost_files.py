@@ -170,11 +170,19 @@ def test_processes_at_once_take_names_of_their_own(tmp_path):
         "    print('ready', flush=True); sys.stdin.readline()\n"
         "    with output_folder(path, force=False) as folder: (folder / 'a').write_text('')"
     )
-    start = {"cwd": tmp_path, "env": {**os.environ, "PYTHONPATH": str(ROOT)}, "text": True}
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    several = [subprocess.Popen([sys.executable, "-c", work], **start, **pipes) for _ in range(3)]
+    several = [
+        subprocess.Popen(
+            [sys.executable, "-c", work],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
+        for _ in range(3)
+    ]
     for one in several:
-        assert one.stdout.readline() == "ready\n"
+        assert one.stdout and one.stdout.readline() == "ready\n"
     for one in several:
         one.communicate("go\n")
     assert [one.returncode for one in several] == [0, 0, 0]

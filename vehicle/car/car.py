@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.car.run import Run
 from vehicle.errors import ConfigurationError
+from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
+from vehicle.excitation.signal_file import read_signal
 from vehicle.flexbody.library import body_model
 from vehicle.flexbody.superelement import Superelement
 from vehicle.linear.first_order import first_order
@@ -25,6 +28,7 @@ from vehicle.linear.varied import Terms, VariedCar
 from vehicle.names import ENGINES
 from vehicle.notebook.cards import car_card
 from vehicle.parameters.optional_keys import optional_paths
+from vehicle.parameters.paths import assignments
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.varied import Family
 from vehicle.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
@@ -36,6 +40,9 @@ from vehicle.simulation.car_model import CarModel, build_model
 from vehicle.simulation.judgement import require_finite, require_samples
 from vehicle.simulation.run import Progress, simulate
 from vehicle.simulation.static_trim import StaticTrim
+
+Overrides = Iterable[str] | Mapping[str, Any]
+"""Other values of parameters: path to value, or texts "path=value"."""
 
 
 class Car:
@@ -57,12 +64,12 @@ class Car:
         self._family = Family(self.vehicle, folder or Path(), self._anew)
 
     @classmethod
-    def load(cls, path: Path | str | None = None, overrides: Iterable[str] = ()) -> Car:
+    def load(cls, path: Path | str | None = None, overrides: Overrides = ()) -> Car:
         """Read a car from a vehicle file.
 
         Args:
             path: TOML file, or the name of a shipped car; that of source 1 by default.
-            overrides: texts like "damper.coulomb_friction=93.75".
+            overrides: path to value, as {"damper.coulomb_friction": 93.75}; or texts "damper.coulomb_friction=93.75".
 
         Returns:
             The car.
@@ -71,14 +78,14 @@ class Car:
             ConfigurationError: the file, a name or a value is wrong.
         """
         file = None if path is None else vehicle_file(Path(path))
-        changes = list(overrides)
+        changes = assignments(overrides)
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
         car._family = Family(car.vehicle, car.folder or Path(), lambda more: load_vehicle(file, [*changes, *more]))
         return car
 
-    def varied(self, overrides: Iterable[str]) -> Car:
+    def varied(self, overrides: Overrides) -> Car:
         """This car with other values in their places, for many cars of one kind.
 
         Where the values move numbers of laws and masses alone, its matrices and static loads come from terms of this
@@ -86,12 +93,12 @@ class Car:
         Every other car is built, as by `load`.
 
         Args:
-            overrides: texts as of `load`, after those of this car.
+            overrides: as of `load`, after those of this car.
 
         Raises:
             ConfigurationError: a name or a value is wrong.
         """
-        more = list(overrides)
+        more = assignments(overrides)
         car = Car(self._family.vehicle_of(more, self.overrides), folder=self.folder)
         car.overrides = (*self.overrides, *more)
         car.origin = {**self.origin, "overrides": list(car.overrides)}
@@ -209,7 +216,7 @@ class Car:
 
     def run(
         self,
-        signal: Signal,
+        signal: Signal | Path | str,
         progress: Progress | None = None,
         *,
         engine: str = "mujoco",
@@ -218,7 +225,7 @@ class Car:
         """Simulate the car on a signal.
 
         Args:
-            signal: displacement of the plates.
+            signal: displacement of the plates; or the file of it, as of `find_input`, as "low.csv".
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
             engine: "mujoco"; "reduced", hundreds of times faster, linear but for the dampers; "auto", which takes the
                 reduced one and falls back to MuJoCo where the motion leaves its validity or numba is missing.
@@ -236,6 +243,7 @@ class Car:
         """
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
+        signal = signal if isinstance(signal, Signal) else read_signal(find_input(signal))
         known = self.vehicle.channels
         self.vehicle.require_channels(channels or (), (*known, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)

@@ -73,7 +73,7 @@ def parser() -> Parser:
         found.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
     )
     engine_option(found.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto")
-    output_options(found, str(OUTPUT))
+    output_options(found, OUTPUT)
     found.add_argument("--json", action="store_true", help="print the content of compare.json")
     message_options(found, quiet=True)
     return found

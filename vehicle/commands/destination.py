@@ -25,8 +25,10 @@ def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tup
     """
     from vehicle.output.destination import free_folder, named
 
-    if options.output is not None or options.force:
-        return named(options.held, options.output or default, force=options.force, protect=protect)
+    if is_named(options) or options.force:
+        return named(
+            options.held, (options.output if is_named(options) else default), force=options.force, protect=protect
+        )
     return _said(options, default, free_folder(options.held, default, protect=protect))
 
 
@@ -48,8 +50,8 @@ def prepared_folder_of(options: argparse.Namespace, default: Path, *, rows: str 
     from vehicle.output.folder import claim, prepare_folder
 
     resume = getattr(options, "resume", False)
-    if options.output is not None or options.force or resume:
-        folder = options.output or default
+    if is_named(options) or options.force or resume:
+        folder = options.output if is_named(options) else default
         options.held.enter_context(claim(folder.resolve()))
     else:
         folder = _said(options, default, free_folder(options.held, default))
@@ -75,8 +77,8 @@ def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[s
     from vehicle.output.destination import free_files
     from vehicle.output.folder import check_files, claim
 
-    if options.output is not None or options.force:
-        folder = options.output or folder
+    if is_named(options) or options.force:
+        folder = options.output if is_named(options) else folder
         check_files(folder, names, force=options.force)
         options.held.enter_context(claim(folder.resolve() / names[0]))
         return [folder / name for name in names]
@@ -98,10 +100,15 @@ def output_file_of(
     """
     from vehicle.output.destination import free_file, named_file
 
-    if options.output is not None or options.force:
-        path = options.output or default
+    if is_named(options) or options.force:
+        path = options.output if is_named(options) else default
         return named_file(options.held, path, ending=ending, force=options.force, protect=protect)
     return _said(options, default, free_file(options.held, default))
+
+
+def is_named(options: argparse.Namespace) -> bool:
+    """True if the command line has --output."""
+    return "output" in options.given
 
 
 def _said(options: argparse.Namespace, default: Path, chosen: Path) -> Path:

@@ -66,7 +66,7 @@ def parser() -> Parser:
     )
     found.former("--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT")
     engine_option(found, "auto")
-    output_options(found, "runs/drive_<name of the target>")
+    output_options(found, None, default="runs/drive_<name of the target>")
     message_options(found, quiet=True)
     return found
 

@@ -110,6 +110,10 @@ def _listed(value: str | list[str] | None) -> list[str]:
     return value if isinstance(value, list) else [value] if value else []
 
 
+ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
+"""Options of `road_options`, for a drive that is made without a command line."""
+
+
 def drives_on_road(options: argparse.Namespace) -> bool:
     """Return True if a road moves the plates, and False for a file of signals.
 

@@ -41,7 +41,7 @@ def parser() -> Parser:
     found.add_argument(
         "--classes", type=int, default=64, metavar="N", help="classes of the range in the spectra; %(default)s"
     )
-    output_options(found, f"{', '.join(FILES)} in that of the run")
+    output_options(found, None, default=f"{', '.join(FILES)} in that of the run")
     message_options(found, quiet=True)
     return found
 

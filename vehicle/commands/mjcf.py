@@ -15,7 +15,7 @@ def parser() -> Parser:
     """The options of the command."""
     found = command_parser("mjcf", "Write car.xml, scene.xml and meshes of a vehicle.")
     vehicle_options(found)
-    output_options(found, "mjcf")
+    output_options(found, Path("mjcf"))
     message_options(found)
     return found
 
@@ -28,9 +28,9 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, options.overrides)
     files = mjcf_files(car.vehicle, car.trimmed_body)
     # With --force the files of others in the folder stay, so that it is not replaced as a whole.
-    folder = options.output or Path("mjcf")
+    folder = options.output
     if not (options.force and folder.is_dir()):
-        folder = output_folder_of(options, Path("mjcf"))
+        folder = output_folder_of(options, options.output)
     write_mjcf(folder, files)
     print(f"{folder}: car.xml, scene.xml, {len(files) - 2} meshes")
 

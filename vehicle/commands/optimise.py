@@ -117,7 +117,7 @@ def parser() -> Parser:
     found.add_argument(
         "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn, and how far it is"
     )
-    output_options(found, "runs/optimise")
+    output_options(found, Path("runs/optimise"))
     found.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")
     message_options(found, quiet=True)
     return found
@@ -148,7 +148,7 @@ def _job(options: argparse.Namespace) -> None:
     trials, vehicle = _trials(options)
     beside = None if options.beside is None else read_beside(options.beside, trials.problem)
     make = executor_factory(options.executor, options.jobs)
-    folder = prepared_folder_of(options, Path("runs/optimise"), rows=CARS)
+    folder = prepared_folder_of(options, options.output, rows=CARS)
     with ExitStack() as held:
         if options.executor or options.jobs > 1:
             trials = replace(trials, evaluate=on_executor(held.enter_context(make()), trials.measure))

@@ -49,17 +49,18 @@ def vehicle_options(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def output_options(parser: Parser, default: str, *, metavar: str = "DIR") -> None:
+def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:
     """Add --output and --force: where the results go, see `vehicle.commands.destination`.
 
     Args:
         parser: of the command.
-        default: the folder or file without --output, for the help.
+        path: folder or file without --output; None where the job chooses it.
+        default: what the help says of it then.
         metavar: DIR, or FILE with its ending.
     """
     what = "folder" if metavar == "DIR" else "file"
-    text = f"{what} of the results; {default} by default, and the next free name where that exists"
-    parser.add_argument("--output", type=Path, metavar=metavar, help=text)
+    text = f"{what} of the results; {default or path} by default, and the next free name where that exists"
+    parser.add_argument("--output", type=Path, default=path, metavar=metavar, help=text)
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 

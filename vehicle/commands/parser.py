@@ -35,7 +35,7 @@ class _ScopedGroup(argparse._ArgumentGroup):
 
     scope: Scope
 
-    def _add_action(self, action: argparse.Action) -> argparse.Action:
+    def _add_action(self, action: Any) -> Any:
         self.scope.options.append(action)
         return super()._add_action(action)
 

@@ -24,7 +24,9 @@ def parser() -> Parser:
         metavar="RUN",
         help="folder of a run, as runs/low; the others are compared with the first",
     )
-    output_options(found, f"{NAME} in the folder of a single run, and here for several,", metavar="FILE.html")
+    output_options(
+        found, None, default=f"{NAME} in the folder of a single run, and here for several,", metavar="FILE.html"
+    )
     message_options(found, quiet=True)
     return found
 

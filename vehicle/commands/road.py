@@ -27,7 +27,7 @@ def parser() -> Parser:
     found.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
     found.add_argument("--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]")
     road_options(found, lambda _: True, lambda options: options.profile is None)
-    output_options(found, "road.csv", metavar="FILE.csv")
+    output_options(found, Path("road.csv"), metavar="FILE.csv")
     message_options(found, quiet=True)
     return found
 
@@ -40,7 +40,7 @@ def _job(options: argparse.Namespace) -> None:
     if (options.road_class is None) == (options.profile is None):
         raise ConfigurationError("road: needed is either --class or --profile, one of them")
     inputs = tuple(file for file in (options.profile, options.vehicle) if file is not None)
-    path = output_file_of(options, Path("road.csv"), ending=".csv", protect=inputs)
+    path = output_file_of(options, options.output, ending=".csv", protect=inputs)
     vehicle = load_vehicle(options.vehicle, options.overrides)
     road = options.road_class.upper() if options.profile is None else options.profile
     signal = road_drive(road, options, vehicle).signal()

@@ -46,7 +46,7 @@ def parser() -> Parser:
         active=lambda options: bool(options.input or options.measured),
     )
     unit_option(read)
-    output_options(found, "runs/<input stem>, or runs/road_C_80,")
+    output_options(found, None, default="runs/<input stem>, or runs/road_C_80,")
     vehicle_options(found)
     engine_option(found, "mujoco")
     skip_option(found, 0.0)

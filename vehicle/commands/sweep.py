@@ -49,7 +49,7 @@ def parser() -> Parser:
     skip_option(found, 2.0)
     jobs_option(found)
     executor_option(found)
-    output_options(found, "runs/sweep")
+    output_options(found, Path("runs/sweep"))
     resume_options(found)
     found.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
     message_options(found, quiet=True)
@@ -77,7 +77,7 @@ def _job(options: argparse.Namespace) -> None:
     skip = chosen_skip(options, {source.name: source for source in inputs}, 2.0)
     cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
     make = executor_factory(options.executor, options.jobs)
-    folder = prepared_folder_of(options, Path("runs/sweep"), rows=ROWS)
+    folder = prepared_folder_of(options, options.output, rows=ROWS)
     for text in () if options.quiet else body_rules(vehicle, paths):
         print(f"note        {text}")
     try:

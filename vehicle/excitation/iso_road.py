@@ -13,6 +13,7 @@ is exactly that of the class on every line; phases alone are left to chance.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, Protocol
@@ -24,6 +25,9 @@ from numpy.typing import NDArray
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.band import positive, samples_of
 from vehicle.excitation.signal import Signal, uniform_time
+
+COPIES = 8
+"""Arrays as long as the record that are in memory beside the signals: lines, their transform and its plan."""
 
 CLASSES = {letter: 16e-6 * 4.0**number for number, letter in enumerate("ABCDEFGH")}
 """G(n0) [m3] of each class, the geometric mean of its range. Source: ISO 8608, table of road classes."""
@@ -177,6 +181,13 @@ def drive(
     """
     positive("speed", speed, "m/s")
     steps = samples_of(duration, rate)
+    needed, there = 8.0 * steps * (len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if needed > 0.5 * there:
+        raise ConfigurationError(
+            f"duration {duration:g} s at {rate:g} Hz: {steps:.3g} samples of {len(wheels)} wheels need "
+            f"{needed / 1e9:.3g} GB, allowed is half the memory of this machine, {0.5 * there / 1e9:.3g} GB; give a "
+            "shorter --duration or a lower --rate"
+        )
     behind = [distance for distance, _ in wheels.values()]
     if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():
         raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")

@@ -95,7 +95,8 @@ def check_level(
             raise DataError(
                 f"{path}: plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s "
                 f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {doubt}; {mend}. Otherwise "
-                "look there for a jump or a spike in the record, or add --road without a value if it is a road"
+                "look there for a jump or a spike in the record, or give --any-level if it is a road and no signal of "
+                "a shaker"
             )
     return events
 

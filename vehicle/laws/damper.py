@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.compiler import jitable
+from vehicle.errors import ConfigurationError
 from vehicle.laws.curve import Curve
 from vehicle.laws.friction import Friction
 from vehicle.laws.law import Constant, Parallel
@@ -100,9 +101,22 @@ def damper_law(damper: Damper) -> Parallel:
 
 
 def _friction_laws() -> dict[str, type[Friction]]:
-    """The classes of the laws by their words."""
+    """Return the classes of the laws by their words.
+
+    Raises:
+        ConfigurationError: a law has a number that no record of a damper holds: it would fail in the middle of a run.
+    """
     rooms = {word: importlib.import_module(f"vehicle.laws.{word}") for word in FRICTION_LAWS}
-    return {word: getattr(room, word.title().replace("_", "")) for word, room in rooms.items()}
+    laws: dict[str, type[Friction]] = {}
+    for word, room in rooms.items():
+        law = laws[word] = getattr(room, word.title().replace("_", ""))
+        lost = [entry.name for entry in dataclasses.fields(law) if entry.name not in (RECORD.names or ())]
+        if lost:
+            raise ConfigurationError(
+                f"friction law {word}: its numbers {', '.join(lost)} have no place in a record of a damper, with "
+                f"{', '.join(RECORD.names or ())}; add them to RECORD of vehicle/laws/damper.py, and to `pack`"
+            )
+    return laws
 
 
 def _limit_of(laws: list[type[Friction]], index: int = 0) -> Callable[[Any, Any], Any]:

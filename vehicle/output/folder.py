@@ -286,6 +286,8 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
         ConfigurationError: a file is there that the program did not write, or that was changed since.
         OutputError: the file cannot be written; nothing is left behind.
     """
+    if path.is_dir():
+        raise OutputError(f"{path}: cannot be written: is a folder; nothing is left behind")
     refuse_foreign_file(path)
     temporary = path.with_name(f".{os.getpid()}.{path.name}")
     try:

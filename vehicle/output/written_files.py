@@ -181,7 +181,7 @@ def refuse_foreign_file(path: Path, option: str = "--output") -> None:
     Raises:
         ConfigurationError: the program did not write it, or it was changed since.
     """
-    if (path.exists() or path.is_symlink()) and not is_own(path):
+    if (path.is_file() or path.is_symlink()) and not is_own(path):
         raise ConfigurationError(
             f"{option} {path}: is not as this program wrote it there, and nothing else is ever replaced; move it away, "
             "or give another name"

@@ -11,6 +11,7 @@ import difflib
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import PurePath
 from typing import Any
 
 from vehicle.errors import ConfigurationError
@@ -107,6 +108,41 @@ def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> lis
     if not found:
         raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, [*known, *further])}")
     return found if every else [path if path in found else _only(found, path)]
+
+
+def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
+    """Return overrides as texts "path=value".
+
+    Args:
+        overrides: such texts, or path to value: numbers, texts, booleans, vectors.
+
+    Raises:
+        ConfigurationError: a single text, whose letters would be taken for overrides, or a value of another type.
+    """
+    if isinstance(overrides, str | bytes):
+        raise ConfigurationError(
+            f"overrides: found the text {overrides!r}; needed is a list, as [{str(overrides)!r}], or {{path: value}}"
+        )
+    if isinstance(overrides, Mapping):
+        return [f"{path}={_toml(path, value)}" for path, value in overrides.items()]
+    return list(overrides)
+
+
+def _toml(path: str, value: Any) -> str:
+    """A value as in a TOML file."""
+    if hasattr(value, "tolist"):  # of numpy
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str | PurePath):
+        return f'"{value}"'
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_toml(path, inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(_toml(path, inner) for inner in value) + "]"
+    raise ConfigurationError(f"overrides: {path} is a {type(value).__name__}; needed is a number, a text or a list")
 
 
 def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Optional = list) -> dict[str, Any]:

@@ -255,8 +255,8 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
         place = Path(name).expanduser()
         if not place.is_absolute():  # workers of a sweep may run elsewhere
             raise ConfigurationError(
-                f"--set body.superelement={name}: allowed are names of letters, digits, '_', '.', '-', of a file beside "
-                f"the vehicle file or of the package, or a whole path: {place.resolve()}"
+                f"--set body.superelement={name}: allowed are names of letters, digits, '_', '.', '-', of a file "
+                f"beside the vehicle file or of the package, or a whole path: {place.resolve()}"
             )
         if not place.is_file():
             raise ConfigurationError(f"--set body.superelement={name}: no such file, or not a file")

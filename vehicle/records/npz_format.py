@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import zipfile
 import zlib
 from pathlib import Path
@@ -14,6 +15,11 @@ from vehicle.errors import DataError
 from vehicle.records.table import Header, Record, Table, Wanted, name_and_unit
 from vehicle.records.text import MEMORY_LIMIT
 
+FREELY = 100_000_000
+"""Arrays up to this size are read however they are packed [byte]: a channel at rest for an hour is a constant."""
+DENSEST = 200
+"""Largest ratio of the size of larger arrays to that of their file; noise of a sensor gives up to 20, zeros 1000."""
+
 
 def read(path: Path, wanted: Wanted) -> Table:
     """Read all arrays of numbers that are as long as the time.
@@ -23,15 +29,9 @@ def read(path: Path, wanted: Wanted) -> Table:
             finite; or of `wanted`.
     """
     try:
-        with zipfile.ZipFile(path) as archive:
-            size = sum(one.file_size for one in archive.infolist())
-        if size > MEMORY_LIMIT:
-            raise DataError(
-                f"{path}: its arrays need {size / 1024**3:.3g} GiB of memory; allowed "
-                f"{MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts"
-            )
+        names = _wanted_arrays(path)
         with np.load(path, allow_pickle=False) as arrays:
-            found = {name: arrays[name] for name in arrays.files}
+            found = {name: arrays[name] for name in names}
     except (
         OSError,
         ValueError,
@@ -49,7 +49,9 @@ def read(path: Path, wanted: Wanted) -> Table:
     units = {"time": "s"} | dict(name_and_unit(text) for text in texts)
     numbers = {name: values for name, values in found.items() if values.ndim == 1 and values.dtype.kind in "fiu"}
     if "time" not in numbers:
-        raise DataError(f"{path}: no array 'time'; found {', '.join(found)}; needed are {wanted.needed}")
+        raise DataError(
+            f"{path}: no array 'time'; found {', '.join(found) or 'none of one dimension'}; needed are {wanted.needed}"
+        )
     count = numbers["time"].size
     for name, values in numbers.items():
         if values.size != count or not np.isfinite(values).all():
@@ -71,6 +73,38 @@ def read(path: Path, wanted: Wanted) -> Table:
         notices=(),
         sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
     )
+
+
+def _wanted_arrays(path: Path) -> list[str]:
+    """Names of the arrays of one dimension, from their headers alone; the others are no channels and stay unread.
+
+    Raises:
+        DataError: the arrays would not fit into memory, or are packed as no measurement is.
+    """
+    names, size, packed = [], 0, 0
+    with zipfile.ZipFile(path) as archive:
+        for one in archive.infolist():
+            with archive.open(one) as member:
+                version = np.lib.format.read_magic(member)
+                header = (
+                    np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                )
+                shape, _, kind = header(member)
+            if len(shape) == 1 or kind.kind in "US":
+                names.append(one.filename.removesuffix(".npy"))
+                size += max(math.prod(shape) * kind.itemsize, one.file_size)
+                packed += one.compress_size
+    if size > MEMORY_LIMIT:
+        raise DataError(
+            f"{path}: its arrays need {size / 1024**3:.3g} GiB of memory; allowed {MEMORY_LIMIT / 1024**3:.3g} GiB; "
+            "cut the record into parts"
+        )
+    if size > FREELY and size > DENSEST * packed:
+        raise DataError(
+            f"{path}: {size / 1e6:.3g} MB are packed into {packed / 1e6:.3g} MB, {size / packed:.0f} to 1; allowed is "
+            f"{DENSEST} to 1: its arrays hold hardly more than one value, which no sensor gives; record again"
+        )
+    return names
 
 
 def write(path: Path, record: Record, frame: str) -> None:

@@ -18,6 +18,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.records.channel import Channel, Measurement, check_length, clock_step, uniform_axis
 from vehicle.records.reader import digest
+from vehicle.records.text import LARGEST
 
 RECORD, BLOCK = 128, 512
 ORDERS = {"BINARY": "<", "BINARY_IEEE_LITTLE_END": "<", "BINARY_IEEE_BIG_END": ">"}
@@ -127,7 +128,7 @@ def _number(path: Path, head: dict[str, str], key: str) -> float:
 
 def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndarray) -> None:
     """Refuse numbers that are not finite, or beyond the limits that the header tells: a scale of another meaning."""
-    if not np.isfinite(values).all() or np.abs(values).max() > 1e30:
+    if not np.isfinite(values).all() or np.abs(values).max() > LARGEST:
         raise DataError(f"{path}: channel {number} holds numbers that are not finite, or beyond 1e30; is FORMAT wrong?")
     limits = []
     for key in ("LOWER_LIMIT", "UPPER_LIMIT"):

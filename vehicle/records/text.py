@@ -12,6 +12,9 @@ from vehicle.errors import ConfigurationError, DataError
 MEMORY_LIMIT = 2 * 1024**3
 """Refuse a file whose reading would need more than this [byte]."""
 
+LARGEST = 1e30
+"""Largest value of a measurement in any unit: beyond it a number is that of a damaged file or of another byte order."""
+
 BYTES_PER_ROW = 200
 """Memory for each row beside its text [byte]: line and number objects, cells, and the arrays computed from them."""
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.records.table import TIME, Header, Record, Table, Vector, Wanted
-from vehicle.records.text import Text, read_text
+from vehicle.records.text import LARGEST, Text, read_text
 
 ROWS_AT_ONCE = 4096
 """Rows of a table that are written at once, so that a long one does not stand in memory as text."""
@@ -163,7 +163,9 @@ def fast(rows: list[str], header: Header) -> Vector | None:
         values = np.loadtxt(rows, delimiter=header.delimiter, comments=None, ndmin=2, dtype=np.float64)
     except ValueError:
         return None
-    return values if values.shape[1] == len(header.cells) and np.isfinite(values).all() else None
+    whole = values.shape[1] == len(header.cells)
+    # NaN fails the comparison too.
+    return values if whole and (not values.size or -LARGEST <= values.min() <= values.max() <= LARGEST) else None
 
 
 def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
@@ -208,11 +210,13 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
             raise _wrong_count(index, numbers, rows, header)
         for column, cell in enumerate(cells):
             number = float(cell) if _NUMBER.fullmatch(cell) else np.nan
-            if np.isfinite(number):
+            if abs(number) <= LARGEST:
                 values[index, column] = number
                 continue
             place = f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r}"
-            if not (_MISSING.fullmatch(cell) or _SPREADSHEET_ERROR.match(cell) or np.isinf(number)):
+            if np.isfinite(number) and wanted.missing != "mark":
+                raise DataError(f"{place} holds {cell!r}; allowed are numbers up to {LARGEST:g}; repair the cell")
+            if not (_MISSING.fullmatch(cell) or _SPREADSHEET_ERROR.match(cell) or not np.isnan(number)):
                 raise DataError(f"{place} holds {cell!r}; allowed is a number with a decimal point, such as -1.25e-4")
             if column == key:
                 stamp = "time stamp" if header.cells[column].lower().startswith("time") else "frequency"

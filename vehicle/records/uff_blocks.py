@@ -10,13 +10,12 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.records.table import Vector
+from vehicle.records.text import LARGEST
 
 END = re.compile(rb"\r?\n {0,4}-1[ ]*(?:\r?\n|$)")
 BEGIN = re.compile(rb"(?:^|\n) {0,4}-1[ ]*\r?\n[ ]*(\d+)(b?)([^\n]*)\n")
 D_EXPONENT = re.compile(rb"(?<=[\d.])[dD](?=[+-]?\d)")
 _NUMBER = re.compile(rb"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-LARGEST = 1e30
-"""Beyond it a number is that of another byte order, or of a damaged file."""
 
 
 class Block(NamedTuple):

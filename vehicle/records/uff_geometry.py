@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from vehicle.errors import DataError
 from vehicle.records.geometry import Geometry
 from vehicle.records.table import Vector
-from vehicle.records.uff_blocks import LARGEST, numbers, refuse, wholes
+from vehicle.records.text import LARGEST
+from vehicle.records.uff_blocks import numbers, refuse, wholes
 
 BEAMS = (11, 21, 22, 23, 24)
 """Descriptors of elements that have a line of their cross section before that of their nodes."""

@@ -27,6 +27,9 @@ TASK_S = 1.0
 LARGEST = 32 * FILL
 """Most cases of a task."""
 
+LOOK_AGAIN_S = 2.0
+"""Time after which new workers get work although no task is finished [s]."""
+
 DIED = "the worker died in this run, twice (killed, or out of memory)"
 
 Keep = Callable[[Sequence[str], Sequence[Result]], None]
@@ -94,9 +97,9 @@ class Crew:
         """
         flying: dict[Future[list[Result]], list[str]] = {}
         lost: list[list[str]] = []
-        workers = workers_of(self.executor)
-        at_once = UNTOLD if workers is None else PER_WORKER * workers
         while waiting or flying:
+            workers = workers_of(self.executor)  # those of a cluster come and go
+            at_once = UNTOLD if workers is None else PER_WORKER * workers
             while waiting and len(flying) < at_once and not lost:
                 task = self._task(waiting, todo, size, at_once)
                 try:
@@ -105,7 +108,7 @@ class Crew:
                     lost.append(task)
             if not flying:
                 break
-            for future in wait(flying, return_when=FIRST_COMPLETED).done:
+            for future in wait(flying, timeout=LOOK_AGAIN_S, return_when=FIRST_COMPLETED).done:
                 task = flying.pop(future)
                 error = future.exception()
                 if error is None:

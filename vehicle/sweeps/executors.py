@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import logging
 import os
 import signal
 import threading
@@ -18,6 +19,9 @@ from vehicle.threads import one_thread_each
 DASK = "dask://"
 
 WATCH = "parent watch"
+
+FIRST_WORKER_S = 60
+"""Time in which a cluster must have a worker [s]: a batch system starts them one after the other."""
 
 
 def executor_factory(text: str | None, jobs: int) -> Callable[[], Executor]:
@@ -95,10 +99,21 @@ def _dask(address: str) -> Callable[[], Executor]:
         ) from None
 
     def make() -> Executor:
+        # Its loggers write tracebacks about what is told here in one sentence.
+        for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             client = distributed.Client(address, timeout="10s", set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise ConfigurationError(f"--executor dask://{address}: no scheduler answers there ({error})") from None
+        try:
+            client.wait_for_workers(1, timeout=FIRST_WORKER_S)
+        except TimeoutError:
+            client.close()
+            raise ConfigurationError(
+                f"--executor dask://{address}: no worker joined within {FIRST_WORKER_S} s; start some, as: dask worker "
+                f"{address} --nthreads 1"
+            ) from None
         executor: Executor = client.get_executor(pure=False)
         return executor
 
