@@ -150,7 +150,8 @@ def _texts(
     if not columns and not quoted:
         return {}, rows, delimiter
     texts: dict[int, list[str]] = {column: [] for column in columns if kinds[column] == "clock"}
-    found, sign = [], delimiter
+    found: list[str] = []
+    sign = delimiter
     for line, row in zip(numbers, rows, strict=True):
         cells = cells_of(row, delimiter)
         if len(cells) != len(kinds):
