@@ -45,7 +45,8 @@ def read(path: Path) -> Measurement:
     except DataError:
         raise
     except Exception as error:  # damaged files raise what they like
-        raise DataError(f"{path}: no Parquet file that can be read ({error}); export it again, or as CSV") from None
+        told = " ".join(str(error).split())
+        raise DataError(f"{path}: no Parquet file that can be read ({told}); export it again, or as CSV") from None
     if left:
         notices.append(f"columns that hold no numbers are left out: {', '.join(map(repr, left[:12]))}")
     axis, key, start = _axis(columns, notices)
