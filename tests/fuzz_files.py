@@ -9,6 +9,7 @@ import random
 import resource
 import tempfile
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -90,16 +91,13 @@ def good_files() -> dict[str, bytes]:
 
 
 def _parquet(path: Path) -> None:
-    import pyarrow
-    import pyarrow.parquet
-
+    pyarrow, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
     stamps = pyarrow.array(1770664802000000000 + 10000000 * np.arange(50), pyarrow.timestamp("ns"))
-    pyarrow.parquet.write_table(pyarrow.table({"when": stamps, "acc_z_g": np.arange(50.0), "x": ["a"] * 50}), path)
+    parquet.write_table(pyarrow.table({"when": stamps, "acc_z_g": np.arange(50.0), "x": ["a"] * 50}), path)
 
 
 def _frame(path: Path) -> None:
-    import h5py
-
+    h5py = import_module("h5py")
     with h5py.File(path, "w") as file:
         group = file.create_group("data")
         group.attrs.update({"pandas_type": np.bytes_("frame"), "nblocks": 1})
