@@ -66,6 +66,16 @@ def test_units_at_the_end_of_names(cell, unit):
     assert split_head(cell) == (cell, unit)
 
 
+def test_names_that_other_signs_separate_and_titles(tmp_path):
+    rows = "".join(f"{1549383915806 + 10 * n}\t{n}.5\t-{n}.5\n" for n in range(9))
+    found = read(tmp_path, "Zeit in ms(GMT),Xpos,Geschw in km/h\n" + rows)
+    assert [(one.name, one.unit) for one in found.channels] == [("Xpos", ""), ("Geschw in km/h", "km/h")]
+    assert found.start == "2019-02-05T16:25:15.806+00:00" and found.channels[0].rate == pytest.approx(100.0)
+    rows = "".join(f"0.0{n},{n}.5,-{n}.5\n" for n in range(9))
+    found = read(tmp_path, "2017 2:47:57 PM,,\ntime_seconds,x,y\n" + rows)
+    assert [(one.name, one.place) for one in found.channels] == [("x", ""), ("y", "")]
+
+
 def test_units_in_brackets_leave_the_name():
     assert split_head("Speed (km/h)") == ("Speed", "km/h") and split_head("Accel X [g]") == ("Accel X", "g")
     assert split_head("Acceleration Sensor(Total)(g)") == ("Acceleration Sensor(Total)", "g")

@@ -21,9 +21,9 @@ NUMBER_WITH_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?", re.ASCII)
 TIME_NAME = re.compile(
     r"((rel\w*|abs\w*|elapsed|x)[ _.]?)?"
     r"(time([ _]?(stamp|axis|value))?s?|zeit\w*|timestamps?|t|temps|x-?values?|seconds|sec)\b.*|"
-    r"time_?(stamps?)?[ _]?(m?s|us|ns|secs?|unix\w*|utc|since\w*|elapsed)|timestamp\w*|seconds_elapsed|"
-    r"(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|recording)[ _]?time([ _]?stamp)?s?"
-    r"(\b.*|_m?s)|\w+_timestamp(sync)?(_\w+)?|t_(m?s|us|sec)",
+    r"time_?(stamps?)?[ _]?(m?s|us|ns|secs?|seconds|millis|micros|unix\w*|utc|since\w*|elapsed)|timestamp\w*|"
+    r"seconds_elapsed|(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|"
+    r"recording)[ _]?time([ _]?stamp)?s?(\b.*|_m?s)|\w+_timestamp(sync)?(_\w+)?|t_(m?s|us|sec)",
     re.IGNORECASE,
 )
 """Name of a column of times."""
@@ -153,6 +153,9 @@ def _lines_of_heads(
             cells = re.split(r"\t+| {2,}", plain)
         while len(cells) > count and not cells[-1]:
             cells = cells[:-1]
+        if len(cells) != count and not above:  # names that are separated by another sign than the numbers
+            others = (cells_of(plain, sign) for sign in ",;\t" if sign != delimiter)
+            cells = next((one for one in others if len(one) == count and not any(map(_is_number, one))), cells)
         if len(cells) != count:
             near = len(cells) > 2 and abs(len(cells) - count) <= 2 and not any(map(_is_number, cells))
             if near and not above and delimiter:
@@ -163,6 +166,8 @@ def _lines_of_heads(
             break
         if not any(cells):
             continue
+        if above and count > 2 and sum(map(bool, cells)) == 1:  # a title
+            break
         if not above and _is_number(cells[0]) and not all(_is_number(cell) for cell in cells if cell):
             shown = ", ".join(map(repr, cells[:4]))
             raise DataError(f"{path}:{index + 1}: neither names nor numbers: {shown}; repair or remove the line")
