@@ -8,7 +8,7 @@ import pytest
 from tests.records.logger_files import CLOCKS, LVM, TEXTS, VBO, clock_file, lvm_segments
 from vehicle.errors import DataError
 from vehicle.records.choice import Choice, choose
-from vehicle.records.clock_text import clock_seconds, epoch_seconds
+from vehicle.records.clock_text import _any_form, _same_form, clock_seconds, epoch_seconds
 from vehicle.records.heads import split_head
 from vehicle.records.reader import read_record
 
@@ -38,6 +38,18 @@ def test_a_date_and_a_clock_belong_together_and_the_order_of_day_and_month_is_sa
     seconds, _, notices = clock_seconds(["1/31/2026 23:59:59", "2/1/2026 00:00:01"])
     np.testing.assert_allclose(seconds, [0.0, 2.0])
     assert notices == []
+
+
+def test_clocks_of_one_form_are_those_of_any_form():
+    """The fast way, for cells that differ in digits alone, against the parser of each cell."""
+    clocks = [f"{n % 24:02d}:{7 * n % 60:02d}:{13 * n % 60:02d}.{977 * n % 1000:03d}" for n in range(99)]
+    cells = [f"2026-01-{31 - n % 2:02d}T{clock}Z" for n, clock in enumerate(clocks)]
+    fast, slow = _same_form(cells), _any_form(cells)
+    assert fast is not None and fast[0] == slow[0]
+    np.testing.assert_allclose(fast[1], slow[1], atol=1e-9)
+    assert _same_form([*cells, "2026-01-01T10:00:00Z"]) is None and _same_form(["10:00:00 AM"]) is None
+    with pytest.raises(ValueError, match="2"):
+        clock_seconds(["10:00:00", "10:00:01", "10:61:00"])
 
 
 @pytest.mark.parametrize(("first", "step"), [(49105962326000.0, 5e7), (1.2e9, 1e4), (1.5e12, 1e7), (10.0, 0.01)])
