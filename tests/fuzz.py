@@ -1,7 +1,8 @@
 """Mutated inputs against the commands: no traceback, no hang, no exit code outside the contract, no NaN with code 0.
 
-`python -m tests.fuzz --count 2000` runs the mutations 0 to 1999; `--first N --count 1` runs one again. Each mutation
-depends on its number alone. Everything happens in this process, with a signal of two seconds and the reduced engine.
+`python -m tests.fuzz --count 2000` runs the mutations 0 to 1999; `--first N --count 1` runs one again, `--kind file`
+those of damaged measurement files alone. Each mutation depends on its number alone. Everything happens in this
+process, with a signal of two seconds and the reduced engine.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.fuzz_files import file_case, judge_file, largest_memory
 from vehicle.commands import comfort, modes, shaker, sweep
 from vehicle.commands.command_line import FAULT
 from vehicle.excitation.random_road import random_road
@@ -167,7 +169,7 @@ def _record(rng: random.Random) -> tuple[Callable[[list[str]], int], list[str]]:
 
 
 KINDS: dict[str, Case] = {
-    "csv": _signal, "toml": _vehicle, "set": _setting, "table": _table, "record": _record,
+    "csv": _signal, "toml": _vehicle, "set": _setting, "table": _table, "record": _record, "file": file_case,
 }  # fmt: skip
 
 
@@ -194,10 +196,10 @@ def deadline(seconds: int) -> Iterator[None]:
         signals.signal(signals.SIGALRM, before)
 
 
-def run_case(index: int) -> Outcome:
-    """Run one mutation in an empty folder."""
+def run_case(index: int, only: str = "") -> Outcome:
+    """Run one mutation in an empty folder, of all kinds in turn or of one."""
     rng = random.Random(index)
-    kind = list(KINDS)[index % len(KINDS)]
+    kind = only or list(KINDS)[index % len(KINDS)]
     before = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
@@ -205,9 +207,11 @@ def run_case(index: int) -> Outcome:
         try:
             Path("good.csv").write_text(SIGNAL, encoding="utf-8")
             command, arguments = KINDS[kind](rng)
+            memory = largest_memory()
             with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), deadline(PATIENCE):
                 code = command(arguments)
-            wrong = judge(code, out.getvalue(), err.getvalue())
+            said = (code, out.getvalue(), err.getvalue())
+            wrong = judge_file(*said, memory) if kind == "file" else judge(*said)
         except BaseException as error:
             if isinstance(error, KeyboardInterrupt):
                 raise
@@ -253,11 +257,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--kind", choices=list(KINDS), default="", help="mutations of this kind alone")
     options = parser.parse_args(arguments)
     codes: Counter[tuple[str, int]] = Counter()
     failed = 0
     for index in range(options.first, options.first + options.count):
-        outcome = run_case(index)
+        outcome = run_case(index, options.kind)
         codes[outcome.kind, outcome.code] += 1
         if outcome.wrong or options.count == 1:
             failed += bool(outcome.wrong)

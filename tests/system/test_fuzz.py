@@ -15,6 +15,13 @@ def test_mutations(index):
     assert not outcome.wrong, f"{outcome.wrong} | {outcome.said}"
 
 
+@pytest.mark.parametrize("first", range(0, 60, 20))
+def test_damaged_files(first):
+    outcomes = [run_case(index, "file") for index in range(first, first + 20)]
+    assert [(one.wrong, one.said) for one in outcomes if one.wrong] == []
+    assert len({one.code for one in outcomes}) > 1
+
+
 def test_the_judge_sees_what_is_wrong(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert judge(0, "", "") == "" and judge(2, "", "error: no") == ""

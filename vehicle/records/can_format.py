@@ -5,8 +5,11 @@ Sources: Vector, CAN ASC logging file format; PEAK, PCAN-View TRC file format; c
 
 from __future__ import annotations
 
+import io
+import logging
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -72,7 +75,12 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         raise DataError(f"{path}: is a log of a CAN bus ({form}) without frames of data; record it again")
     if not databases:
         raise needs_database(path, form, [one.identifier for one in frames])
-    channels = tuple(decoded(frames, [load_database(one) for one in databases]))
+    loaded = [load_database(one) for one in databases]
+    try:
+        with quiet():
+            channels = tuple(decoded(frames, loaded))
+    except Exception as error:  # damaged databases raise what they like
+        raise DataError(f"{path}: {_names(databases)} does not decode its frames ({error}); give another") from None
     if not channels:
         raise none_decoded(path, [one.identifier for one in frames], databases)
     return Measurement(
@@ -133,12 +141,26 @@ def load_database(path: Path) -> Any:
     from asammdf.blocks.utils import load_can_database
 
     try:
-        found = load_can_database(path)
+        with quiet():
+            found = load_can_database(path)
     except Exception as error:  # damaged files raise what they like
         raise ConfigurationError(f"--dbc {path}: cannot be read ({error}); give a DBC file") from None
     if found is None or not list(found.frames):
         raise ConfigurationError(f"--dbc {path}: holds no messages; give a DBC file")
     return found
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep the library from logging and printing: what is wrong becomes one message."""
+    logger = logging.getLogger("asammdf")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL + 1)
+    try:
+        with redirect_stdout(io.StringIO()):
+            yield
+    finally:
+        logger.setLevel(level)
 
 
 def decoded(frames: Sequence[Frame], databases: Sequence[Any]) -> Iterator[Channel]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from datetime import UTC, date, datetime
+from itertools import pairwise
 
 import numpy as np
 
@@ -68,16 +69,9 @@ def clock_seconds(cells: Sequence[str], days: Sequence[str] | None = None) -> tu
     Raises:
         ValueError: a cell is no date and time; its argument is the index of the row.
     """
-    dates: list[str] = []
-    clocks: Vector = np.empty(len(cells))
-    for row, cell in enumerate(cells):
-        both = _BOTH.fullmatch(cell)
-        found = _seconds_of_clock(both["clock"] if both else cell)
-        if found is None:
-            raise ValueError(row)
-        clocks[row] = found
-        if both or days is not None:
-            dates.append(both["date"] if both else days[row])  # type: ignore[index]
+    dates, clocks = _same_form(cells) or _any_form(cells)
+    if days is not None:
+        dates = list(days)
     start = cells[0] if days is None else f"{days[0]} {cells[0]}"
     if dates:
         if len(dates) != len(cells):
@@ -90,6 +84,55 @@ def clock_seconds(cells: Sequence[str], days: Sequence[str] | None = None) -> tu
     for at in back:
         later[at + 1 :] += DAY
     return clocks - clocks[0] + later, start, notices
+
+
+def _any_form(cells: Sequence[str]) -> tuple[list[str], Vector]:
+    """Dates, none where no cell has one, and seconds after midnight, of cells of any forms."""
+    dates: list[str] = []
+    clocks: Vector = np.empty(len(cells))
+    for row, cell in enumerate(cells):
+        both = _BOTH.fullmatch(cell)
+        found = _seconds_of_clock(both["clock"] if both else cell)
+        if found is None:
+            raise ValueError(row)
+        clocks[row] = found
+        if both:
+            dates.append(both["date"])
+    return dates, clocks
+
+
+def _same_form(cells: Sequence[str]) -> tuple[list[str], Vector] | None:
+    """Return what `_any_form` does, for cells that differ in their digits alone; None for others."""
+    first = cells[0]
+    both = _BOTH.fullmatch(first)
+    clock, offset = (both["clock"], both.start("clock")) if both else (first, 0)
+    match = _CLOCK.fullmatch(clock)
+    text = "".join(cells)
+    if match is None or match["half"] or not text.isascii() or len(text) != len(first) * len(cells):
+        return None
+    codes = np.frombuffer(text.encode("ascii"), dtype=np.uint8).reshape(len(cells), len(first))
+    signs = np.array([not sign.isdigit() for sign in first])
+    digits = codes[:, ~signs]
+    if not (codes[:, signs] == codes[0, signs]).all() or digits.min() < ord("0") or digits.max() > ord("9"):
+        return None
+
+    def number(name: str) -> Vector:
+        begin, end = (offset + at for at in match.span(name))
+        powers = 10.0 ** np.arange(end - begin - 1, -1, -1)
+        return np.asarray((codes[:, begin:end] - float(ord("0"))) @ powers)
+
+    part = "f" if match["f"] else "ms" if match["ms"] else ""
+    shares = number(part) / 10.0 ** len(match[part]) if part else 0.0
+    hours, minutes, seconds = number("h"), number("m"), number("s")
+    if hours.max() > 24 or minutes.max() > 59 or seconds.max() > 60:
+        return None  # the other way names the row
+    dates: list[str] = []
+    if both:
+        known, width = codes[:, : both.end("date")], both.end("date")
+        starts = np.flatnonzero((known[1:] != known[:-1]).any(axis=1)) + 1
+        for begin, end in pairwise((0, *starts.tolist(), len(cells))):
+            dates += [cells[begin][:width]] * (end - begin)
+    return dates, 3600.0 * hours + 60.0 * minutes + seconds + shares
 
 
 def epoch_seconds(values: Vector, unit: str) -> tuple[Vector, str, str] | None:

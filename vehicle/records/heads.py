@@ -21,9 +21,9 @@ NUMBER_WITH_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?", re.ASCII)
 TIME_NAME = re.compile(
     r"((rel\w*|abs\w*|elapsed|x)[ _.]?)?"
     r"(time([ _]?(stamp|axis|value))?s?|zeit\w*|timestamps?|t|temps|x-?values?|seconds|sec)\b.*|"
-    r"time_?(stamps?)?[ _]?(m?s|us|ns|secs?|unix\w*|utc|since\w*|elapsed)|timestamp\w*|seconds_elapsed|"
-    r"(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|recording)[ _]?time([ _]?stamp)?s?"
-    r"(\b.*|_m?s)|\w+_timestamp(sync)?(_\w+)?|t_(m?s|us|sec)",
+    r"time_?(stamps?)?[ _]?(m?s|us|ns|secs?|seconds|millis|micros|unix\w*|utc|since\w*|elapsed)|timestamp\w*|"
+    r"seconds_elapsed|(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|"
+    r"recording)[ _]?time([ _]?stamp)?s?(\b.*|_m?s)|\w+_timestamp(sync)?(_\w+)?|t_(m?s|us|sec)",
     re.IGNORECASE,
 )
 """Name of a column of times."""
@@ -121,7 +121,7 @@ def read_heads(path: Path, lines: Sequence[str], start: int, delimiter: str, cou
         " ".join(dict.fromkeys(cells[column] for cells in reversed(above) if cells is not names and cells[column]))
         for column in range(count)
     ]
-    own = [""] * count if units is None else [cell.strip("[]() -") for cell in units]
+    own = [""] * count if units is None else [bare_unit(cell) for cell in units]
     if names is None:
         numbered = tuple(f"column {n + 1}" for n in range(count))
         return Heads(names=numbered, units=tuple(own), sources=("",) * count, named=False, first=first)
@@ -153,6 +153,9 @@ def _lines_of_heads(
             cells = re.split(r"\t+| {2,}", plain)
         while len(cells) > count and not cells[-1]:
             cells = cells[:-1]
+        if len(cells) != count and not above:  # names that are separated by another sign than the numbers
+            others = (cells_of(plain, sign) for sign in ",;\t" if sign != delimiter)
+            cells = next((one for one in others if len(one) == count and not any(map(_is_number, one))), cells)
         if len(cells) != count:
             near = len(cells) > 2 and abs(len(cells) - count) <= 2 and not any(map(_is_number, cells))
             if near and not above and delimiter:
@@ -163,6 +166,8 @@ def _lines_of_heads(
             break
         if not any(cells):
             continue
+        if above and count > 2 and sum(map(bool, cells)) == 1:  # a title
+            break
         if not above and _is_number(cells[0]) and not all(_is_number(cell) for cell in cells if cell):
             shown = ", ".join(map(repr, cells[:4]))
             raise DataError(f"{path}:{index + 1}: neither names nor numbers: {shown}; repair or remove the line")
@@ -179,23 +184,35 @@ def _is_number(cell: str) -> bool:
     return bool(NUMBER.fullmatch(cell) or NUMBER_WITH_COMMA.fullmatch(cell))
 
 
+def bare_unit(cell: str) -> str:
+    """Return a unit without blanks and brackets around all of it; empty for a dash.
+
+    Args:
+        cell: as found, as "[m/s2]", "(g)", "m/(s^2)" or "-".
+    """
+    text = cell.strip(" -")
+    while len(text) > 1 and text[0] + text[-1] in ("[]", "()") and text.count(text[0]) == 1:
+        text = text[1:-1].strip(" -")
+    return text
+
+
 def _is_unit(cell: str) -> bool:
     """True if a text is a unit, known or not to `vehicle.records.units`."""
-    text = cell.strip().strip("[]()").strip()
+    text = bare_unit(cell)
     return find_unit(text) is not None or text.lower() in _UNIT_WORDS
 
 
 def _is_unit_line(cells: Sequence[str]) -> bool:
-    filled = [cell for cell in cells if cell.strip("[]() -")]
-    return bool(filled) and all(map(_is_unit, filled)) and any(find_unit(cell.strip("[]() -")) for cell in filled)
+    filled = [cell for cell in cells if bare_unit(cell)]
+    return bool(filled) and all(map(_is_unit, filled)) and any(find_unit(bare_unit(cell)) for cell in filled)
 
 
 def _take_units(above: list[list[str]]) -> list[str] | None:
     """Remove the line of units from lines of heads, and return it; None where there is none."""
     scores = []
     for cells in above:
-        filled = [cell for cell in cells if cell.strip("[]() -")]
-        known = any(find_unit(cell.strip("[]() -")) for cell in filled)
+        filled = [cell for cell in cells if bare_unit(cell)]
+        known = any(find_unit(bare_unit(cell)) for cell in filled)
         scores.append(sum(map(_is_unit, filled)) / len(filled) if filled and known else 0.0)
     if not scores:
         return None

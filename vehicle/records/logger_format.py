@@ -150,18 +150,19 @@ def _texts(
     if not columns and not quoted:
         return {}, rows, delimiter
     texts: dict[int, list[str]] = {column: [] for column in columns if kinds[column] == "clock"}
-    found, sign = [], delimiter
+    found: list[str] = []
+    sign, plain = delimiter, not any('"' in row for row in rows)
     for line, row in zip(numbers, rows, strict=True):
-        cells = cells_of(row, delimiter)
+        cells = row.split(delimiter or None) if plain else cells_of(row, delimiter)
         if len(cells) != len(kinds):
             raise DataError(
                 f"{path}:{line}: row has {len(cells)} cells, the header {len(kinds)}; repair or remove the row"
             )
         for column in columns:
             if column in texts:
-                texts[column].append(cells[column])
+                texts[column].append(cells[column].strip())
             cells[column] = "0"
-        if sign == "," and any("," in cell for cell in cells):  # decimal commas within quotes
+        if not plain and sign == "," and any("," in cell for cell in cells):  # decimal commas within quotes
             sign = ";"
             found = [one.replace(",", ";") for one in found]
         found.append((sign or " ").join(cells))

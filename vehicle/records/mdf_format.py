@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.records.can_format import load_database, needs_database, none_decoded
+from vehicle.records.can_format import load_database, needs_database, none_decoded, quiet
 from vehicle.records.channel import Channel, Measurement
 from vehicle.records.reader import digest, extra
 
@@ -48,7 +48,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
     notices: list[str] = []
     left, told = 0, ""
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), quiet():
             warnings.simplefilter("ignore")
             with asammdf.MDF(path) as file:
                 size = path.stat().st_size

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,8 @@ def read(path: Path) -> Measurement:
         MissingPartError: pyarrow is not installed.
         DataError: damaged, cut off, encrypted, too large, or without numbers.
     """
-    parquet = extra("pyarrow.parquet", "parquet", "a Parquet file")
+    extra("pyarrow", "parquet", "a Parquet file")
+    parquet = import_module("pyarrow.parquet")
     notices: list[str] = []
     try:
         with parquet.ParquetFile(path) as file:
@@ -43,7 +45,8 @@ def read(path: Path) -> Measurement:
     except DataError:
         raise
     except Exception as error:  # damaged files raise what they like
-        raise DataError(f"{path}: no Parquet file that can be read ({error}); export it again, or as CSV") from None
+        told = " ".join(str(error).split())
+        raise DataError(f"{path}: no Parquet file that can be read ({told}); export it again, or as CSV") from None
     if left:
         notices.append(f"columns that hold no numbers are left out: {', '.join(map(repr, left[:12]))}")
     axis, key, start = _axis(columns, notices)
@@ -68,12 +71,12 @@ def read(path: Path) -> Measurement:
 
 
 def _is_number(kind: Any) -> bool:
-    types = extra("pyarrow.types", "parquet", "a Parquet file")
+    types = import_module("pyarrow.types")
     return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_decimal(kind) or types.is_duration(kind))
 
 
 def _is_date(kind: Any) -> bool:
-    return bool(extra("pyarrow.types", "parquet", "a Parquet file").is_timestamp(kind))
+    return bool(import_module("pyarrow.types").is_timestamp(kind))
 
 
 def _column(column: Any) -> tuple[Any, str]:

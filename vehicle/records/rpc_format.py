@@ -23,8 +23,8 @@ from vehicle.records.text import LARGEST
 RECORD, BLOCK = 128, 512
 ORDERS = {"BINARY": "<", "BINARY_IEEE_LITTLE_END": "<", "BINARY_IEEE_BIG_END": ">"}
 WIDTHS = {"SHORT_INTEGER": "i2", "FLOATING_POINT": "f4"}
-GROUP = 2048
-"""Samples in a group, and in a frame, of files that are written."""
+FRAMES = (2048, 1024, 512, 256, 128)
+"""Samples in a frame, and a group, of files that are written: the size with the fewest samples to fill is taken."""
 
 
 def read(path: Path) -> Measurement:
@@ -58,10 +58,15 @@ def read(path: Path) -> Measurement:
     samples = int(_number(path, head, "SAMPLES")) if "SAMPLES" in head else total
     if not 0 < samples <= total:
         raise DataError(f"{path}: SAMPLES {samples}; allowed is 1 to {total}, what the frames hold")
-    if "SAMPLES" not in head:
-        notices.append(f"no SAMPLES in the header: up to {frame - 1} samples at the end may be filling; cut with --to")
     order = ORDERS[head["FORMAT"]]
     table = np.frombuffer(data, f"{order}{kind}", groups * group * channels, start).reshape(groups, channels, group)
+    if "SAMPLES" not in head:
+        filled = _filling(table, total, frame)
+        samples -= filled
+        said = f"the last {filled} samples repeat one value in every channel: left out as filling"
+        if not filled:
+            said = f"up to {frame - 1} samples at the end may be filling; cut with --to"
+        notices.append(f"no SAMPLES in the header: {said}")
     step, remark = clock_step(step)
     axis = uniform_axis(samples, step)
     found = []
@@ -90,6 +95,23 @@ def read(path: Path) -> Measurement:
         start=head.get("DATE", ""),
         notices=tuple(notices),
     )
+
+
+def _filling(table: np.ndarray, total: int, frame: int) -> int:
+    """Samples at the end of the last frame that repeat the one before them, or zero, in every channel at once.
+
+    Args:
+        table: (groups, channels, samples of a group), as stored.
+        total: samples of all frames.
+        frame: samples of a frame.
+    """
+    last = np.moveaxis(table, 1, 0).reshape(table.shape[1], -1)[:, total - frame : total]
+    same = (np.diff(last, axis=1) == 0).all(axis=0)
+    run = int(np.argmin(same[::-1])) if not same.all() else same.size
+    if run == 0:
+        return 0
+    zeros = not last[:, -1].any()
+    return run + 1 if zeros and run < same.size else run
 
 
 def _header(path: Path, data: bytes) -> dict[str, str]:
@@ -164,12 +186,13 @@ def write(path: Path, channels: tuple[Channel, ...], about: str) -> None:
         if not np.isfinite(one.values).all():
             raise DataError(f"{path}: {one.name} has a missing value; RPC III knows none")
     samples, count = first.values.size, len(channels)
-    frames = math.ceil(samples / GROUP)
-    table = np.zeros((frames, count, GROUP), dtype="<f4")
+    frame = min(FRAMES, key=lambda size: -samples % size)
+    frames = math.ceil(samples / frame)
+    table = np.zeros((frames, count, frame), dtype="<f4")
     for index, one in enumerate(channels):
-        padded = np.full(frames * GROUP, one.values[-1])
+        padded = np.full(frames * frame, one.values[-1])
         padded[:samples] = one.values
-        table[:, index, :] = padded.reshape(frames, GROUP)
+        table[:, index, :] = padded.reshape(frames, frame)
     head = {
         "DATE": datetime.now(UTC).strftime("%d-%b-%Y %H:%M:%S"),
         "OPERATION": about[:95],
@@ -178,8 +201,8 @@ def write(path: Path, channels: tuple[Channel, ...], about: str) -> None:
         "DATA_TYPE": "FLOATING_POINT",
         "CHANNELS": str(count),
         "DELTA_T": f"{1.0 / float(rate or 1.0):.15e}",
-        "PTS_PER_FRAME": str(GROUP),
-        "PTS_PER_GROUP": str(GROUP),
+        "PTS_PER_FRAME": str(frame),
+        "PTS_PER_GROUP": str(frame),
         "FRAMES": str(frames),
         "SAMPLES": str(samples),
         "BYPASS_FILTER": "0",

@@ -162,7 +162,7 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
             kinds = kinds - {"other"} | {"text"}
         if known == "missing":
             known = "number" if "number" in kinds or not kinds else "clock" if kinds == {"clock"} else "text"
-        elif known == "clock" and "text" in kinds:
+        elif known == "clock" and sum(_kind(cell, table.delimiter) == "text" for cell in cells) > len(cells) // 2:
             known = "text"
         found.append(known)
     _check_alternation(path, rows, found, table.delimiter, names)
@@ -178,7 +178,8 @@ def _check_alternation(
         texts = [row[column] for row in head if column < len(row)]
         different = sorted(set(texts))
         changes = sum(1 for one, other in pairwise(texts) if one != other)
-        if kind == "text" and 1 < len(different) <= LARGEST_KINDS and changes > 0.1 * len(texts) > 1.0:
+        in_turn = changes > max(1 + 0.1 * len(texts), 1.5 * len(different))  # not a text that changes now and then
+        if kind == "text" and 1 < len(different) <= LARGEST_KINDS and in_turn:
             shown = ", ".join(map(repr, different[:4]))
             raise DataError(
                 f"{path}: column {names[column]!r} holds {shown} in turn: rows of different sources stand in one "
