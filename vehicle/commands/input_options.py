@@ -36,10 +36,10 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
         action="append" if several else "store",
         nargs="?",
         const="",
-        metavar="C|FILE.csv",
+        metavar="C|FILE",
         help="instead of --input, all wheels drive over a road: its class of ISO 8608, A to H, or a measured profile "
-        "(columns distance, left, right [m]); beside --input, alone: accept levels beyond a shaker"
-        + ("; may be repeated" if several else ""),
+        "(columns distance, left, right [m]; OpenCRG .crg; ERD), or heights over time (--speed channel:NAME); beside "
+        "--input, alone: accept levels beyond a shaker" + ("; may be repeated" if several else ""),
     )
     rate = "" if several else "; beside --input: in place of the times of the file"
     road_options(parser, several=several, rate_note=rate)
@@ -57,9 +57,10 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate
     group.add_argument(
         "--speed",
         action="append" if several else "store",
-        type=float,
-        metavar="KM/H",
-        help="speed of the car [km/h]" + ("; once for all roads, or once for each" if several else ""),
+        type=speed_value,
+        metavar="KM/H|channel:NAME",
+        help="speed of the car [km/h]; channel:NAME for a road that was recorded over time together with this speed"
+        + ("; once for all roads, or once for each" if several else ""),
     )
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
     group.add_argument("--rate", type=float, metavar="HZ", help=f"samples a second; 1000 by default{rate_note}")
@@ -73,6 +74,25 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate
     group.add_argument(
         "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m]; 0 by default"
     )
+
+
+def speed_value(text: str) -> float | str:
+    """Return a speed [km/h], or channel:NAME as it stands.
+
+    Args:
+        text: of the option.
+    """
+    return text if text.startswith("channel:") and len(text) > len("channel:") else float(text)
+
+
+def speeds_of(options: argparse.Namespace) -> list[float | str]:
+    """Return the values of --speed: none, one, or several.
+
+    Args:
+        options: of `road_options`.
+    """
+    speed = options.speed
+    return speed if isinstance(speed, list) else [] if speed is None else [speed]
 
 
 ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
@@ -105,7 +125,10 @@ def drives_on_road(options: argparse.Namespace) -> bool:
             raise ConfigurationError(
                 f"{words} beside --input: give one of them; --road alone accepts levels beyond a shaker"
             )
+        recorded = any(isinstance(one, str) for one in speeds_of(options))
         for name, place in INPUT_CHOICES.items():
+            if recorded and name not in ("wheel", "interpolate", "remove-mean"):
+                continue
             measured = name == "unit" and getattr(options, "measured", None) is not None
             if getattr(options, place, None) and not measured:
                 raise ConfigurationError(f"--{name}: belongs to --input; {words} drives all wheels of the car")
@@ -164,12 +187,13 @@ def record_options(parser: argparse.ArgumentParser, roles: str, *, channel: bool
     )
 
 
-def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
+def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...] = ()) -> Choice | None:
     """What the options of `record_options` ask for; None for nothing.
 
     Args:
         options: of the command.
         role: of a channel or a unit that names none.
+        known: roles of units whose channels are named elsewhere.
 
     Raises:
         ConfigurationError: a role twice, a unit that is not known, a number out of range.
@@ -178,7 +202,7 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
 
     channels = pairs("--channel", options.picks, role)
     asked = pairs("--unit", options.units, "")
-    units = {name: unit for name, unit in asked.items() if not name or name in channels}
+    units = {name: unit for name, unit in asked.items() if not name or name in channels or name in known}
     unknown = next((name for name in asked if name not in units), None)
     if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
         raise ConfigurationError(f"--unit {unknown}=...: no --channel {unknown}=NAME is given")

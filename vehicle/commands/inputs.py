@@ -32,8 +32,8 @@ def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
         signal = signal_of(source)
         if signal.highest is not None:
             raise DataError(
-                f"{source.name}: holds vibration up to {signal.highest:g} Hz alone, comfort in 2 to 50 Hz needs a record "
-                "of at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
+                f"{source.name}: holds vibration up to {signal.highest:g} Hz alone, comfort in 2 to 50 Hz needs a "
+                "record of at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
             )
         duration = signal.duration
         if not 0.0 <= options.skip < duration:

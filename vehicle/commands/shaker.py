@@ -170,7 +170,7 @@ def _job(options: argparse.Namespace) -> None:
                 duration=options.video_duration,
                 slow=options.slow_motion,
                 exaggeration=options.exaggeration,
-                speed=None if drive is None else drive.speed / 3.6,
+                speed=None if drive is None or drive.speed is None else drive.speed / 3.6,
             )
             progress = ProgressLine("film      ", enabled=not options.quiet)
             film(run, path, take, jobs=drawing_jobs(), progress=progress)

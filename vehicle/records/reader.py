@@ -27,6 +27,8 @@ READERS = {
     "mdf": "mdf_format",
     "tdms": "tdms_format",
     "xlsx": "sheet_format",
+    "crg": "crg_format",
+    "erd": "erd_format",
 }
 """Name of a format and the module that reads it, imported when such a file is met."""
 
@@ -120,6 +122,7 @@ def _by_bytes(path: Path, head: bytes, size: int) -> str | None:
         b"\x89HDF\r\n\x1a\n": "hdf5",
         b"MATLAB 7.3": "hdf5",
         b"FORMAT\0": "rpc",
+        b"ERDFILEV": "erd",
     }
     for begins, name in plain.items():
         if head.startswith(begins):
@@ -130,6 +133,8 @@ def _by_bytes(path: Path, head: bytes, size: int) -> str | None:
         return "wav"
     if head[126:128] in (b"IM", b"MI") or head.startswith(b"MATLAB 5.0") or _matlab_4(head, size):
         return "mat"
+    if head.lstrip()[:1] == b"$" and (b"$ROAD_CRG" in head.upper() or path.suffix.lower() == ".crg"):
+        return "crg"
     first = [line.strip() for line in head[:600].splitlines() if line.strip()][:2]
     if len(first) == 2 and first[0] == b"-1" and first[1][:4].strip(b"b ").isdigit():
         return "uff"
