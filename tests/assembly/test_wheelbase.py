@@ -27,6 +27,8 @@ class Hump:
 
     words = "hump"
 
+    repeats = True
+
     def height(self, start: float, step: float, steps: int, side: str, highest: float) -> np.ndarray:
         place = start + step * np.arange(steps)
         return np.asarray(1e-3 * np.exp(-(((place - 30.0) / 0.1) ** 2)))

@@ -62,7 +62,7 @@ def test_a_logger_file_is_inspected(tmp_path, capsys):
     )
     assert "Windows text" in text
     assert inspect([str(path)]) == 0
-    assert "--channel fr='Acc 8', or by its number, 9" in capsys.readouterr().out
+    assert "--channel 'fr=Shaker FR' --from 100 --to 103.999512\n" in capsys.readouterr().out
 
 
 def test_a_logger_file_drives_the_plate_with_four_options(tmp_path):

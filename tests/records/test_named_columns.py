@@ -18,13 +18,13 @@ ROWS = "\n".join(f"{d:g};{1e3 * 0.01 * d:.3f};{-1e3 * 0.02 * d:.3f}".replace("."
 def test_a_road_of_a_logger(tmp_path):
     path = tmp_path / "profile.txt"
     path.write_text(PROFILE + ROWS + "\n")
-    road = read_road(path)
+    road = read_road(path, 1.5)
     np.testing.assert_allclose(road.distance, DISTANCE)
     np.testing.assert_allclose(road.left, 0.01 * DISTANCE, atol=1e-12)
     np.testing.assert_allclose(road.right, -0.02 * DISTANCE, atol=1e-12)
     path.write_text(PROFILE + ROWS.replace("1;", "0;") + "\n")
     with pytest.raises(DataError, match="the distance must increase from row to row"):
-        read_road(path)
+        read_road(path, 1.5)
 
 
 def test_a_road_as_structures_of_matlab(tmp_path):
@@ -34,7 +34,7 @@ def test_a_road_as_structures_of_matlab(tmp_path):
 
     path = tmp_path / "profile.mat"
     savemat(path, {"distance": signal(DISTANCE, "m"), "left": signal(DISTANCE, "cm"), "right": signal(DISTANCE, "mm")})
-    road = read_road(path)
+    road = read_road(path, 1.5)
     np.testing.assert_allclose([road.left[-1], road.right[-1]], [0.045, 0.0045])
 
 

@@ -14,6 +14,7 @@ from vehicle.commands.command_line import command
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.parser import Parser
+from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 from vehicle.errors import ConfigurationError, DataError
 
 if TYPE_CHECKING:
@@ -27,9 +28,13 @@ def parser() -> Parser:
     )
     found.add_argument(
         "--input",
+        dest="inputs",
         required=True,
+        nargs="+",
+        action="extend",
         metavar="FILE",
-        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone will do",
+        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone will do; several "
+        "files, or a folder, give one table",
     )
     found.add_argument(
         "--channel",
@@ -218,9 +223,39 @@ def _table(result: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def _overview(results: list[dict[str, Any]]) -> str:
+    """Return one line for each file: weighted RMS of each axis, their sum, and the measures of z."""
+    rows: list[tuple[str, ...]] = []
+    for result in results:
+        if "error" in result:
+            rows.append((result["input"], result["error"]))
+            continue
+        sums, z = result["vector_sum"], result["z"]
+        numbers = [
+            *(None if result[axis] is None else result[axis]["weighted_rms"] for axis in ("x", "y", "z")),
+            None if sums is None else sums["weighted_rms"],
+            *(None if z is None else z[key] for key in ("mtvv", "crest_factor", "vdv")),
+        ]
+        cells = ["-" if number is None else f"{number:.4g}" for number in numbers]
+        rows.append((result["input"], f"{result['duration_s']:.4g}", f"{result['sampling_rate_hz']:.6g}", *cells))
+    heads = ("file", "length [s]", "rate [Hz]", "x", "y", "z", "sum", "MTVV z", "crest z", "VDV z")
+    caption = "weighted RMS of each axis, their vector sum and MTVV [m/s2], crest factor, VDV [m/s^1.75]"
+    return f"{caption}\n{table_of(heads, rows)}"
+
+
 def _job(options: argparse.Namespace) -> None:
     """Evaluate and print."""
-    result = _evaluate(options)
+
+    def one(name: str) -> dict[str, Any]:
+        return _evaluate(argparse.Namespace(**{**vars(options), "input": name}))
+
+    names, several = expanded(options.inputs)
+    if several:
+        results, errors = each_file(names, one)
+        print(json.dumps(results, indent=2, allow_nan=False) if options.json else _overview(results), flush=True)
+        raise_worst(errors, len(results))
+        return
+    result = one(names[0])
     print(json.dumps(result, indent=2, allow_nan=False) if options.json else _table(result), flush=True)
     for remark in (*result["notices"], *result["reasons"]):
         print(f"notice: {remark}", file=sys.stderr)

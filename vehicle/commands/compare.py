@@ -13,6 +13,7 @@ from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser, refuse_idle
+from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def parser() -> Parser:
         metavar="RUN_OR_INPUT",
         help="folder of a run; or an input, as low.csv, which is put on the shaker; not needed for mode shapes",
     )
-    measured_options(found, required=True)
+    measured_options(found, required=True, several=True)
     records = found.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
     records.add_argument(
         "--delay", type=float, default=0.0, metavar="S", help="the measurement began this long after the run [s]; 0"
@@ -79,21 +80,26 @@ def parser() -> Parser:
     return found
 
 
-def measured_options(parser: Parser, *, required: bool = False) -> None:
+def measured_options(parser: Parser, *, required: bool = False, several: bool = False) -> None:
     """Add --measured, --map and --turn: which measurement, and which of its channels is which.
 
     Args:
         parser: of the command.
         required: whether it is nothing without a measurement.
+        several: --measured takes several files or a folder; then its value is a list.
     """
+    many: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
     parser.add_argument(
         "--measured",
         type=Path,
         required=required,
+        **many,
         metavar="FILE",
         help="measurement file of any format of `inspect`, with responses, time histories, or mode shapes (UFF 55)"
         + (
-            ""
+            "; several files, or a folder, give one table, and a folder of results for each"
+            if several
+            else ""
             if required
             else "; --unit CHANNEL=UNIT is of it where CHANNEL is one of the model; one that needs --rate, --from, "
             "--delay: python -m vehicle compare, after the run"
@@ -150,6 +156,57 @@ def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> 
 
 
 def _job(options: argparse.Namespace) -> None:
+    names, several = expanded([str(path) for path in options.measured])
+
+    whole = output_folder_of(options, OUTPUT, protect=tuple(Path(name) for name in names))
+
+    def one(name: str) -> dict[str, Any]:
+        file = Path(name)
+        alone = sum(Path(other).stem == file.stem for other in names) == 1
+        output = whole / (file.stem if alone else file.name) if several else whole
+        summary, said = _compared(argparse.Namespace(**{**vars(options), "measured": file}), output)
+        return {"summary": summary, "text": f"{said}\nfiles: {output}"}
+
+    if not several:
+        found = one(names[0])
+        if options.json:
+            print(json.dumps(found["summary"], indent=2, allow_nan=False))
+        elif not options.quiet:
+            print(found["text"])
+        return
+    results, errors = each_file(names, one)
+    if options.json:
+        plain = [{"input": each["input"], **each.get("summary", {"error": each.get("error")})} for each in results]
+        print(json.dumps(plain, indent=2, allow_nan=False), flush=True)
+    elif not options.quiet:
+        print(_overview(results), flush=True)
+    raise_worst(errors, len(results))
+
+
+def _overview(results: list[dict[str, Any]]) -> str:
+    """Return one line for each channel of each file: FRAC of responses; RMS ratio and correlation of time histories."""
+    rows: list[tuple[str, ...]] = []
+    for result in results:
+        if "error" in result:
+            rows.append((result["input"], result["error"]))
+            continue
+        summary = result["summary"]
+        keys = (("responses", "frac", ""), ("records", "rms_ratio", "correlation"))
+        for kind, first, second in keys:
+            for channel in summary.get(kind, ()):
+                values = [channel.get(key) if key else None for key in (first, second)]
+                cells = ["-" if value is None else f"{value:.4g}" for value in values]
+                rows.append((result["input"], channel["channel"], kind[:-1], *cells))
+    return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), rows)
+
+
+def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any], str]:
+    """Compare one measurement, write its folder, and return the summary with its text.
+
+    Args:
+        options: of the command, with `measured` the file.
+        output: folder of the results.
+    """
     from vehicle.comparison.comparison import comparison_of
     from vehicle.comparison.frf_comparison import edges_of
     from vehicle.output.comparison_files import write_comparison
@@ -159,7 +216,6 @@ def _job(options: argparse.Namespace) -> None:
     edges = edges_of(options.bands)
     choice = measured_choice(options)
     measurement = read_record(options.measured, choice.databases)
-    output = output_folder_of(options, OUTPUT, protect=(options.measured,))
     if measurement.shapes and not measurement.channels:
         for group in (RECORDS, RESPONSES, CHANNELS, RUN):
             refuse_idle(options, group)
@@ -178,10 +234,7 @@ def _job(options: argparse.Namespace) -> None:
         with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
             write_comparison(folder, comparison)
         summary, said = comparison.summary(), comparison.text()
-    if options.json:
-        print(json.dumps(summary, indent=2, allow_nan=False))
-    elif not options.quiet:
-        print(f"{said}\nfiles: {output}")
+    return summary, said
 
 
 def _measured(

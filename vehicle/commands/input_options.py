@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 
 FILE_NEEDS = "--input; a road drives all wheels of the car"
+RECORD_NEEDS = "--input, or a road that was recorded over time (--speed channel:NAME); any other road has none"
 ROAD_NEEDS = "a road, as --road C --speed 80, and not to --input"
 CLASS_NEEDS = "a class of ISO 8608, as C at --speed 80; a file of signals and a measured profile are taken as they are"
 
@@ -40,9 +41,10 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     parser.add_argument(
         "--road",
         action=action,
-        metavar="C|FILE.csv",
+        metavar="C|FILE",
         help="instead of --input, all wheels drive over a road: its class of ISO 8608, A to H, or a measured profile "
-        f"(columns distance, left, right [m]){again}",
+        "(columns distance, left, right [m]; OpenCRG .crg; ERD), or heights over time (--speed channel:NAME)"
+        f"{again}",
     )
     parser.former(
         r"--road (--.*)?$",
@@ -69,6 +71,22 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     return group
 
 
+def record_group(parser: Parser) -> argparse._ArgumentGroup:
+    """Add the group of the options that act on a file of signals or on a road that was recorded over time.
+
+    Args:
+        parser: of the command, with `signal_options`.
+
+    Returns:
+        The group, without options.
+    """
+    return parser.scoped_group(
+        "a file of signals or a recorded road",
+        needs=RECORD_NEEDS,
+        active=lambda options: bool(options.input) or any(isinstance(speed, str) for speed in speeds_of(options)),
+    )
+
+
 def road_options(
     parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
 ) -> None:
@@ -85,9 +103,10 @@ def road_options(
     group.add_argument(
         "--speed",
         action="append" if several else "store",
-        type=float,
-        metavar="KM/H",
-        help="speed of the car [km/h]" + ("; once for all roads, or once for each" if several else ""),
+        type=speed_value,
+        metavar="KM/H|channel:NAME",
+        help="speed of the car [km/h]; channel:NAME for a road that was recorded over time together with this speed"
+        + ("; once for all roads, or once for each" if several else ""),
     )
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
     (parser if rate_note else group).add_argument(
@@ -108,6 +127,25 @@ def road_options(
 
 def _listed(value: str | list[str] | None) -> list[str]:
     return value if isinstance(value, list) else [value] if value else []
+
+
+def speed_value(text: str) -> float | str:
+    """Return a speed [km/h], or channel:NAME as it stands.
+
+    Args:
+        text: of the option.
+    """
+    return text if text.startswith("channel:") and len(text) > len("channel:") else float(text)
+
+
+def speeds_of(options: argparse.Namespace) -> list[float | str]:
+    """Return the values of --speed: none, one, or several.
+
+    Args:
+        options: of `road_options`.
+    """
+    speed = options.speed
+    return speed if isinstance(speed, list) else [] if speed is None else [speed]
 
 
 ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
@@ -199,12 +237,13 @@ def database_option(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
+def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...] = ()) -> Choice | None:
     """What the options of `record_options` ask for; None for nothing.
 
     Args:
         options: of the command.
         role: of a channel or a unit that names none.
+        known: roles of units whose channels are named elsewhere.
 
     Raises:
         ConfigurationError: a role twice, a unit that is not known, a number out of range.
@@ -213,7 +252,7 @@ def record_choice(options: argparse.Namespace, role: str) -> Choice | None:
 
     channels = pairs("--channel", options.picks, role)
     asked = pairs("--unit", options.units, "")
-    units = {name: unit for name, unit in asked.items() if not name or name in channels}
+    units = {name: unit for name, unit in asked.items() if not name or name in channels or name in known}
     unknown = next((name for name in asked if name not in units), None)
     if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
         raise ConfigurationError(f"--unit {unknown}=...: no --channel {unknown}=NAME is given")

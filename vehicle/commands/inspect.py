@@ -1,25 +1,35 @@
-"""`python -m vehicle inspect FILE`: what a measurement file holds, and the option that picks a channel."""
+"""`python -m vehicle inspect FILE...`: what measurement files hold, and the whole command to type for a file."""
 
 from __future__ import annotations
 
 import argparse
 import json
-import shlex
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.advice import command_for
 from vehicle.commands.command_line import command
 from vehicle.commands.input_options import database_option
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.parser import Parser
+from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 
 if TYPE_CHECKING:
     from vehicle.records.channel import Channel, Measurement
 
 
+SHOWN = 60
+"""Largest number of channels in the table."""
+
+
 def parser() -> Parser:
     """The options of the command."""
     found = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
-    found.add_argument("file", metavar="FILE", help="of any format, recognised by its content; or a shipped input")
+    found.add_argument(
+        "files",
+        nargs="+",
+        metavar="FILE",
+        help="of any format, recognised by its content; a shipped input; or a folder; several give one table",
+    )
     database_option(found)
     found.add_argument("--json", action="store_true", help="print JSON")
     message_options(found)
@@ -30,9 +40,50 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.excitation.input_files import find_input
     from vehicle.records.reader import read_record
 
-    measurement = read_record(find_input(options.file), tuple(options.databases))
-    found = contents(measurement)
-    print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+    def one(name: str) -> dict[str, Any]:
+        measurement = read_record(find_input(name), tuple(options.databases))
+        command, reason = command_for(measurement, name)
+        return {**contents(measurement), "command": command or None, "command_reason": reason}
+
+    names, several = expanded(options.files)
+    if not several:
+        found = one(names[0])
+        print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+        return
+    results, errors = each_file(names, one)
+    print(json.dumps(results, indent=2, allow_nan=False) if options.json else overview(results), flush=True)
+    # Files that a folder happens to hold may be of any kind; a file that was named must be read.
+    raise_worst(errors if len(errors) == len(results) or len(names) == len(options.files) else (), len(results))
+
+
+def overview(results: list[dict[str, Any]]) -> str:
+    """Return one line for each file, and the command of each.
+
+    Args:
+        results: contents of each file, or its error.
+    """
+    rows: list[tuple[str, ...]] = []
+    for result in results:
+        if "error" in result:
+            rows.append((result["input"], result["error"]))
+            continue
+        channels = result["channels"]
+        rates = list(dict.fromkeys(f"{one['rate_hz']:.6g}" for one in channels if one.get("rate_hz")))
+        lengths = [one["samples"] / one["rate_hz"] for one in channels if one.get("rate_hz")]
+        quantities = list(dict.fromkeys(one["quantity"] or "?" for one in channels))
+        rows.append(
+            (
+                result["input"],
+                result["format"],
+                str(len(channels)),
+                ", ".join(rates[:3]) or "-",
+                f"{max(lengths):.4g}" if lengths else "-",
+                ", ".join(quantities[:4]) + (", ..." if len(quantities) > 4 else ""),
+            )
+        )
+    commands = [result["command"] for result in results if result.get("command")]
+    heads = ("file", "format", "channels", "rate [Hz]", "length [s]", "quantities")
+    return "\n".join([table_of(heads, rows), *commands])
 
 
 def contents(measurement: Measurement) -> dict[str, Any]:
@@ -96,7 +147,13 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
 
 
 def report(found: dict[str, Any]) -> str:
-    """The table as text."""
+    """Return the table as text; levels in the unit of the file.
+
+    Args:
+        found: of `contents`, with the command.
+    """
+    from vehicle.records.units import find_ratio
+
     about = [f"{found['file']}: {found['format']}, {(count := len(found['channels']))} channel{'s' * (count != 1)}"]
     about += [found[key] for key in ("program", "start") if found[key]]
     width = max([4, *(len(one["name"]) for one in found["channels"])])
@@ -107,20 +164,23 @@ def report(found: dict[str, Any]) -> str:
     else:
         lines.append(
             f"{'no':>4}  {'name':<{width}}  {'unit':<10} {'rate [Hz]':>11} {'samples':>9} {'RMS':>11} {'lowest':>11} "
-            f"{'highest':>11}  {'of':<8} place"
+            f"{'highest':>11}  place"
         )
-    for one in found["channels"]:
-        numbers = ["-" if one[key] is None else f"{one[key]:.4g}" for key in ("rms", "min", "max")]
+    for one in found["channels"][:SHOWN]:
+        unit = find_ratio(one["unit"])
+        factor = 1.0 if unit is None else unit.factor
+        numbers = ["-" if one[key] is None else f"{one[key] / factor:.4g}" for key in ("rms", "min", "max")]
         rate = one.get("rate_hz")
         axis = f"{rate:.6g}" if rate is not None else "lines" if "lines" in one else "-"
         place = " ".join(text for text in (one["place"], one["direction"], one["reference"]) if text)
         lines.append(
             f"{one['number']:>4}  {one['name'][:width]:<{width}}  {one['unit'] or '?':<10} {axis:>11} "
-            f"{one['samples']:>9} {numbers[0]:>11} {numbers[1]:>11} {numbers[2]:>11}  "
-            f"{one['si_unit'] or '?':<8} {place}"
+            f"{one['samples']:>9} {numbers[0]:>11} {numbers[1]:>11} {numbers[2]:>11}  {place}"
         )
         if one["remark"]:
             lines.append(f"{'':>6}{one['remark']}")
+    if len(found["channels"]) > SHOWN:
+        lines.append(f"{'':>6}{len(found['channels']) - SHOWN} more; --json lists all")
     if found["modes"]:
         lines.append(f"{'mode':>6} {'[Hz]':>10} {'damping':>9} {'modal mass':>12} {'points':>7}")
     for one in found["modes"]:
@@ -131,12 +191,10 @@ def report(found: dict[str, Any]) -> str:
             f"{one['points']:>7}{kind}  {one['name']}"
         )
     lines += [f"notice: {text}" for text in found["notices"]]
-    histories = [one for one in found["channels"] if "rate_hz" in one]
-    if histories:
-        name = histories[-1]["name"]
-        once = name and sum(one["name"] == name for one in found["channels"]) == 1
-        pick = shlex.quote(name) if once else str(histories[-1]["number"])
-        lines.append(f"a channel is chosen by --channel fr={pick}, or by its number, {histories[-1]['number']}")
+    if found["command"]:
+        lines += [f"{found['command_reason']}:", f"  {found['command']}"]
+    else:
+        lines.append(f"no command: {found['command_reason']}")
     return "\n".join(lines)
 
 

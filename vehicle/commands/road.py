@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_file_of
-from vehicle.commands.input_options import road_options
+from vehicle.commands.input_options import record_choice, road_options
 from vehicle.commands.options import command_parser, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
     from vehicle.excitation.iso_road import Side
+    from vehicle.excitation.recorded_road import RecordedDrive
     from vehicle.excitation.road_drive import RoadDrive
     from vehicle.parameters.vehicle import Vehicle
 
@@ -61,7 +62,7 @@ def class_or_profile(text: str) -> str | Path:
     return text.upper() if len(text) == 1 else Path(text)
 
 
-def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) -> RoadDrive:
+def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) -> RoadDrive | RecordedDrive:
     """The drive that the options ask for, with the wheels where the car has them.
 
     Args:
@@ -76,18 +77,47 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
 
     if options.speed is None:
         raise ConfigurationError("a road needs --speed KM/H, as --speed 80")
+    if isinstance(options.speed, str):
+        return _recorded_drive(road, options, vehicle)
     wheels = vehicle.composition.wheels
-    foremost = min(wheel.center[0] for wheel in wheels)
-    side: dict[bool, Side] = {True: "right", False: "left"}
     # Every option that is named as a number of a drive, where it is given.
     names = {field.name for field in fields(RoadDrive)} & vars(options).keys() - {"road"}
     numbers = {name: value for name in names if (value := getattr(options, name)) is not None}
     return RoadDrive(
         road=road,
-        wheels=tuple((wheel.name, wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels),
+        wheels=_places(vehicle),
         track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
         **numbers,
     )
+
+
+def _recorded_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) -> RecordedDrive:
+    """The drive over a road that was recorded over time."""
+    from vehicle.excitation.recorded_road import PREFIX, RecordedDrive
+    from vehicle.records.choice import Choice
+
+    if not isinstance(road, Path):
+        raise ConfigurationError(f"--speed {options.speed}: belongs to a recorded road, --road FILE; {road} is a class")
+    for name in ("seed", "coherence", "patch"):
+        if getattr(options, name) is not None:
+            raise ConfigurationError(f"--{name}: belongs to a class; a recorded road is taken as it is")
+    choice = Choice()
+    if hasattr(options, "picks"):
+        # --rate is that of the run; the times are those of the file.
+        own = {**vars(options), "rate": None}
+        choice = record_choice(argparse.Namespace(**own), "height", known=("speed",)) or Choice()
+    numbers = {name: value for name in ("duration", "rate") if (value := getattr(options, name)) is not None}
+    return RecordedDrive(
+        road=road, channel=options.speed.removeprefix(PREFIX), wheels=_places(vehicle), choice=choice, **numbers
+    )
+
+
+def _places(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:
+    """Name of each wheel, its distance behind the foremost one [m], and its track."""
+    wheels = vehicle.composition.wheels
+    foremost = min(wheel.center[0] for wheel in wheels)
+    side: dict[bool, Side] = {True: "right", False: "left"}
+    return tuple((wheel.name, wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels)
 
 
 main = command(parser, _job)

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.compare import measured_beside, measured_options
 from vehicle.commands.destination import output_folder_of
-from vehicle.commands.input_options import drives_on_road, record_choice, record_options, signal_options, unit_option
+from vehicle.commands.input_options import (
+    drives_on_road,
+    record_choice,
+    record_group,
+    record_options,
+    signal_options,
+    unit_option,
+)
 from vehicle.commands.inputs import chosen_skip
 from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
@@ -37,7 +44,7 @@ def parser() -> Parser:
     """The options of the command."""
     found = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
     file = signal_options(found)
-    record_options(file, 'a plate, as fr="Shaker FR"', rate=False, unit=False)
+    record_options(record_group(found), 'a plate, as fr="Shaker FR"', rate=False, unit=False)
     file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     read = found.scoped_group(
@@ -181,7 +188,7 @@ def _job(options: argparse.Namespace) -> None:
                 duration=options.video_duration,
                 slow=options.slow_motion,
                 exaggeration=options.exaggeration,
-                speed=None if drive is None else drive.speed / 3.6,
+                speed=None if drive is None or drive.speed is None else drive.speed / 3.6,
             )
             progress = ProgressLine("film      ", enabled=not options.quiet)
             film(run, path, take, jobs=drawing_jobs(), progress=progress)

@@ -48,6 +48,10 @@ class Road(Protocol):
     """Heights of two tracks along a road."""
 
     @property
+    def repeats(self) -> bool:
+        """True if the heights repeat after the number of places that is asked for."""
+
+    @property
     def words(self) -> str:
         """What it is, for messages and headers."""
 
@@ -108,6 +112,11 @@ class IsoRoad:
             raise ConfigurationError(f"coherence {self.coherence!r}; allowed: 0 to 1, or none for the isotropic plane")
         if not 0.0 <= self.patch < 1.0:
             raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
+
+    @property
+    def repeats(self) -> bool:
+        """True: a sum of waves repeats after its length."""
+        return True
 
     @property
     def words(self) -> str:
@@ -192,7 +201,7 @@ def drive(
     if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():
         raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")
     # Longer than the record by the last wheel's delay: no wheel meets the beginning of the road again.
-    period = steps + 1 + int(np.ceil(max(behind) / speed * rate))
+    period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
     step, displacement = speed / rate, {}
     for wheel, (distance, side) in wheels.items():
         # 0.8 of the Nyquist frequency, as for every generated signal.

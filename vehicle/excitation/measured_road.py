@@ -11,11 +11,16 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError, VehicleError
 from vehicle.excitation.iso_road import Side
-from vehicle.records.formats import read_table
+from vehicle.records.crg_format import read_surface, road_words
+from vehicle.records.formats import FORMATS, read_table
 from vehicle.records.named_columns import named_columns
-from vehicle.records.table import Header, Wanted, name_and_unit
+from vehicle.records.reader import read_record, recognise
+from vehicle.records.table import Header, Vector, Wanted, name_and_unit
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
+TRACKS = {"left": ("left", "lelev", "lprof", "left elev", "left elevation", "left profile", "lwp"),
+          "right": ("right", "relev", "rprof", "right elev", "right elevation", "right profile", "rwp")}  # fmt: skip
+"""Names of the tracks in profiles of other programs, in small letters without dots."""
 UNITS = {"m": 1.0, "mm": 1e-3}
 
 
@@ -27,17 +32,24 @@ class MeasuredRoad:
         distance: places [m], (n,), increasing.
         right, left: heights of the tracks [m], (n,).
         source: name of the file.
+        notices: a sentence for everything that was accepted.
     """
 
     distance: NDArray[np.float64]
     right: NDArray[np.float64]
     left: NDArray[np.float64]
     source: str
+    notices: tuple[str, ...] = ()
 
     @property
     def length(self) -> float:
         """From its first place to its last [m]."""
         return float(self.distance[-1] - self.distance[0])
+
+    @property
+    def repeats(self) -> bool:
+        """False: the road ends."""
+        return False
 
     @property
     def words(self) -> str:
@@ -46,43 +58,60 @@ class MeasuredRoad:
         return f"measured road {self.source}, {self.length:.4g} m, a point every {step:.3g} m"
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
-        """Heights at equal distances, by a cubic spline; arguments as of `IsoRoad.height`.
+        """Return heights at equal distances, by a cubic spline; arguments as of `IsoRoad.height`.
 
         Raises:
             DataError: the road ends before.
         """
-        place = self.distance[0] + start + step * np.arange(steps)
-        if place[-1] > self.distance[-1] + 1e-9 * self.length:
+        return self.height_at(start + step * np.arange(steps), side)
+
+    def height_at(self, place: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
+        """Return heights above the first point [m], (m,), by a cubic spline; 0 before the road begins.
+
+        Args:
+            place: distances from the beginning of the road [m], (m,).
+            side: right or left track.
+
+        Raises:
+            DataError: the road ends before.
+        """
+        if place.max() > self.length * (1.0 + 1e-9):
             raise DataError(
-                f"{self.source}: the road ends after {self.length:.6g} m, {place[-1] - self.distance[0]:.6g} m are "
-                "driven; ask for a shorter --duration"
+                f"{self.source}: the road ends after {self.length:.6g} m, {place.max():.6g} m are driven; set a "
+                "shorter --duration"
             )
         heights = self.right if side == "right" else self.left
-        found: NDArray[np.float64] = scipy.interpolate.CubicSpline(self.distance, heights - heights[0])(
-            np.maximum(place, place[0])
-        )
-        return np.where(place < self.distance[0], 0.0, found)
+        inside = np.clip(place, 0.0, self.length)
+        found = scipy.interpolate.CubicSpline(self.distance - self.distance[0], heights - heights[0])(inside)
+        return np.where(place < 0.0, 0.0, found)
 
 
-def read_road(path: Path) -> MeasuredRoad:
+def read_road(path: Path, track: float) -> MeasuredRoad:
     """Read a profile.
 
     Args:
         path: columns `distance [m]`, `left [m]`, `right [m]` in any order; or a file of any format of
-            `vehicle.records` with channels of these names in units of length.
+            `vehicle.records` with channels of these names, or those of `TRACKS`, in units of length; or an OpenCRG
+            surface, whose reference line is the middle of the car.
+        track: distance of the tracks of the car [m], for a surface.
 
     Raises:
         ConfigurationError: there is no such file.
         DataError: bad data; the message names the place.
     """
-    source = ""
+    name = recognise(path)
+    if name == "crg":
+        return _surface_road(path, track)
+    source, notices = "", ()
     try:
         table = read_table(path, Wanted(needed=NEEDED, key=lambda header: _columns(header)["distance"][0]))
         found = {name: table.values[:, column] * scale for name, (column, scale) in _columns(table.header).items()}
     except DataError as error:
         try:
-            found = named_columns(path, dict.fromkeys(("distance", "left", "right"), "m"))
+            found, notices = _named_tracks(path)
         except VehicleError:
+            if name not in FORMATS:
+                raise
             raise error from None
         source = str(path)
     steps = np.diff(found["distance"])
@@ -90,7 +119,41 @@ def read_road(path: Path) -> MeasuredRoad:
         row = int(np.argmin(steps)) + 1 if steps.size else 0
         place = source or table.place(row)
         raise DataError(f"{place}: the distance must increase from row to row, over four rows or more")
-    return MeasuredRoad(distance=found["distance"], right=found["right"], left=found["left"], source=path.name)
+    return MeasuredRoad(
+        distance=found["distance"], right=found["right"], left=found["left"], source=path.name, notices=notices
+    )
+
+
+def _named_tracks(path: Path) -> tuple[dict[str, Vector], tuple[str, ...]]:
+    """Return distance, left and right [m] of a file of any format, and notices; one track alone is both."""
+    held = {one.name.strip().rstrip(".").lower(): one.name for one in read_record(path).channels}
+    names = {side: next((held[name] for name in those if name in held), None) for side, those in TRACKS.items()}
+    there = [name for name in names.values() if name is not None]
+    if len(there) == 1:
+        alone = there[0].strip().lower()
+        found = named_columns(path, dict.fromkeys(("distance", alone), "m"))
+        heights = found[alone]
+        notice = f"{path.name}: one track, {there[0]!r}: both sides of the car drive on it"
+        return {"distance": found["distance"], "left": heights, "right": heights}, (notice,)
+    left, right = ((names[side] or side).strip().lower() for side in ("left", "right"))
+    found = named_columns(path, dict.fromkeys(("distance", left, right), "m"))
+    return {"distance": found["distance"], "left": found[left], "right": found[right]}, ()
+
+
+def _surface_road(path: Path, track: float) -> MeasuredRoad:
+    """Take the two tracks of a car from a surface; v goes to the left."""
+    surface = read_surface(path)
+    found = {}
+    for side, v in (("left", 0.5 * track), ("right", -0.5 * track)):
+        found[side] = surface.height(v)
+        missing = np.flatnonzero(~np.isfinite(found[side]))
+        if missing.size:
+            raise DataError(
+                f"{path}: the {side} track, v = {v:.3f} m, is outside the road at {missing.size} of {surface.u.size} "
+                f"places, first at u = {surface.u[missing[0]]:g} m; the road holds v from {surface.v[0]:g} to "
+                f"{surface.v[-1]:g} m; repair the surface, or cut it off there"
+            )
+    return MeasuredRoad(distance=surface.u, **found, source=path.name, notices=(road_words(surface),))
 
 
 def _columns(header: Header) -> dict[str, tuple[int, float]]:

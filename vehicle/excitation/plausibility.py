@@ -101,6 +101,27 @@ def check_level(
     return events
 
 
+def acceleration_events(displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> list[str]:
+    """Return a notice for each plate of a road whose acceleration exceeds that of a shaker: its largest event.
+
+    Args:
+        displacement: wheel -> plate displacement [m], shape (n,).
+        timestep: distance of the samples [s].
+    """
+    found = []
+    for wheel, z in displacement.items():
+        acceleration = band_limited_acceleration(z, timestep)
+        at = int(np.argmax(np.abs(acceleration)))
+        if abs(acceleration[at]) > LARGEST_ACCELERATION:
+            share = 100.0 * float(np.mean(np.abs(acceleration) > LARGEST_ACCELERATION))
+            found.append(
+                f"plate {wheel} accelerates by up to {acceleration[at]:.4g} m/s2, at t = {at * timestep:.6g} s, and by "
+                f"more than {LARGEST_ACCELERATION:g} m/s2 for {share:.2g} % of the time (below {ACCELERATION_BAND:g} "
+                "Hz): a pothole, or a rough road; the tyre may lift off"
+            )
+    return found
+
+
 def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArray[np.float64]:
     """Second time derivative of the record below 100 Hz [m/s2], shape (n,).
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.iso_road import CLASSES, RISE_S, IsoRoad, Road, Side, drive
-from vehicle.excitation.measured_road import read_road
+from vehicle.excitation.iso_road import CLASSES, RISE_S, IsoRoad, Side, drive
+from vehicle.excitation.measured_road import MeasuredRoad, read_road
+from vehicle.excitation.plausibility import acceleration_events
 from vehicle.excitation.signal import Signal
 
 FASTEST = 400.0
@@ -87,9 +88,9 @@ class RoadDrive:
             ConfigurationError, DataError: as of `IsoRoad`, `read_road`, `drive`.
         """
         speed, duration = self.speed / 3.6, self.duration
-        road: Road
+        road: IsoRoad | MeasuredRoad
         if isinstance(self.road, Path):
-            road = read_road(self.road)
+            road = read_road(self.road, self.track)
             duration = math.floor(road.length / speed * self.rate) / self.rate if duration is None else duration
         else:
             road = IsoRoad(
@@ -101,7 +102,10 @@ class RoadDrive:
             )
         places = {name: (behind, side) for name, behind, side in self.wheels}
         duration = USUAL_DURATION if duration is None else duration
-        return drive(road, speed=speed, wheels=places, duration=duration, rate=self.rate)
+        signal = drive(road, speed=speed, wheels=places, duration=duration, rate=self.rate)
+        if isinstance(road, IsoRoad):
+            return signal
+        return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def identity(self) -> dict[str, object]:
         """What tells the signal from others: all numbers, and the content of a measured profile."""

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vehicle.errors import DataError
 from vehicle.flexbody.loads import BodyLoad, loaded_properties
 from vehicle.flexbody.mass_properties import MassProperties
-from vehicle.errors import DataError
 from vehicle.flexbody.superelement import Superelement
 from vehicle.parameters.body import TrimmedBody
 

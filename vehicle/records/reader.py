@@ -32,6 +32,8 @@ READERS = {
     "tdms": "tdms_format",
     "xlsx": "sheet_format",
     "parquet": "parquet_format",
+    "crg": "crg_format",
+    "erd": "erd_format",
 }
 """Name of a format and the module that reads it, imported when such a file is met."""
 
@@ -140,6 +142,7 @@ def _by_bytes(path: Path, head: bytes, size: int) -> str | None:
         b"MATLAB 7.3": "hdf5",
         b"FORMAT\0": "rpc",
         b"PAR1": "parquet",
+        b"ERDFILEV": "erd",
     }
     for begins, name in plain.items():
         if head.startswith(begins):
@@ -163,6 +166,8 @@ def _by_bytes(path: Path, head: bytes, size: int) -> str | None:
         return "can"
     if _VBOX.search(head):
         return "vbo"
+    if head.lstrip()[:1] == b"$" and (b"$ROAD_CRG" in head.upper() or path.suffix.lower() == ".crg"):
+        return "crg"
     first = [line.strip() for line in head[:600].splitlines() if line.strip()][:2]
     if len(first) == 2 and first[0] == b"-1" and first[1][:4].strip(b"b ").isdigit():
         return "uff"

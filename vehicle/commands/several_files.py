@@ -1,0 +1,89 @@
+"""Several files in a command: names and folders, and what became of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError, VehicleError
+
+Row = tuple[str, ...]
+
+
+def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
+    """Return the files that names mean, and True if they are several: the files of a folder in alphabetical order.
+
+    Args:
+        names: paths of files or folders, or names of shipped inputs.
+
+    Raises:
+        ConfigurationError: a folder without files.
+    """
+    found: list[str] = []
+    for name in names:
+        folder = Path(name)
+        if not folder.is_dir():
+            found.append(name)
+            continue
+        files = sorted(str(one) for one in folder.iterdir() if one.is_file() and not one.name.startswith("."))
+        if not files:
+            raise ConfigurationError(
+                f"{name}: a folder without files; give measurement files, or a folder that has some"
+            )
+        found += files
+    return list(dict.fromkeys(found)), len(found) > 1 or any(Path(name).is_dir() for name in names)
+
+
+def each_file(
+    names: Sequence[str], work: Callable[[str], dict[str, Any]]
+) -> tuple[list[dict[str, Any]], list[VehicleError]]:
+    """Return the result of every file; a file that fails has its message in place of a result, the others go on.
+
+    Args:
+        names: files.
+        work: makes a result of plain data of a file.
+    """
+    results, errors = [], []
+    for name in names:
+        try:
+            results.append({"input": name, **work(name)})
+        except VehicleError as error:
+            errors.append(error)
+            results.append({"input": name, "error": str(error).removeprefix(f"{name}: ")})
+    return results, errors
+
+
+def table_of(heads: Row, rows: Sequence[Row]) -> str:
+    """Return rows as text: the first column to the left, the others to the right.
+
+    Args:
+        heads: names of the columns.
+        rows: cells; a row of two cells holds a file and a message.
+    """
+    full = [heads, *(row for row in rows if len(row) == len(heads))]
+    names = max(len(row[0]) for row in [heads, *rows])
+    widths = [max(len(row[column]) for row in full) for column in range(len(heads))]
+    lines = []
+    for row in [heads, *rows]:
+        if len(row) == len(heads):
+            cells = [f"{cell:>{width}}" for cell, width in zip(row[1:], widths[1:], strict=True)]
+            lines.append("  ".join([f"{row[0]:<{names}}", *cells]).rstrip())
+        else:
+            lines.append(f"{row[0]:<{names}}  {row[1]}")
+    return "\n".join(lines)
+
+
+def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
+    """Raise one error for files that failed, after everything else was printed.
+
+    Args:
+        errors: of the files that failed.
+        files: number of all files.
+
+    Raises:
+        VehicleError: of the kind of the first error.
+    """
+    if errors:
+        count = len(errors)
+        raise type(errors[0])(f"{count} of {files} files {'has' if count == 1 else 'have'} no result, see the table")
