@@ -50,7 +50,7 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate
 
     Args:
         parser: of the command.
-        several: --speed may be repeated, once for each road; then its value is a list.
+        several: --speed may be repeated, once for each road, and --seed; then their values are lists.
         rate_note: what the help of --rate says beside.
     """
     group = parser.add_argument_group("a road")
@@ -63,7 +63,14 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate
     )
     group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
     group.add_argument("--rate", type=float, metavar="HZ", help=f"samples a second; 1000 by default{rate_note}")
-    group.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
+    group.add_argument(
+        "--seed",
+        action="append" if several else "store",
+        type=int,
+        metavar="N",
+        help="one seed is one road; 1 by default"
+        + ("; repeated: each road with each seed, so that their scatter is known" if several else ""),
+    )
     group.add_argument(
         "--coherence",
         type=float,

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.commands.input_options import drives_on_road
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.signal import Signal
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
+    from vehicle.excitation.signal import Signal
     from vehicle.parameters.vehicle import Vehicle
     from vehicle.sweeps.case import Input
 
@@ -46,6 +48,7 @@ def chosen_skip(options: argparse.Namespace, inputs: Mapping[str, Input | Signal
         DataError: an input cannot be read.
     """
     from vehicle.excitation.road_drive import RoadDrive
+    from vehicle.excitation.signal import Signal
     from vehicle.sweeps.case import signal_of
 
     drives = [one for one in inputs.values() if isinstance(one, RoadDrive)]
@@ -69,10 +72,20 @@ def _roads(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
             f"--speed: given {len(speeds)} times for {len(options.road)} roads; give one for all, or one for each"
         )
     each = speeds * len(options.road) if len(speeds) == 1 else speeds
-    return [
-        road_drive(class_or_profile(road), argparse.Namespace(**{**vars(options), "speed": speed}), vehicle)
+    seeds = options.seed or [None]
+    if len(set(seeds)) < len(seeds):
+        raise ConfigurationError(f"--seed {' '.join(map(str, seeds))}: a seed is given twice; give each once")
+    drives = [
+        road_drive(
+            class_or_profile(road), argparse.Namespace(**{**vars(options), "speed": speed, "seed": seed}), vehicle
+        )
         for road, speed in zip(options.road, each, strict=True)
+        for seed in seeds
     ]
+    profile = next((drive for drive in drives if isinstance(drive.road, Path)), None)
+    if len(seeds) > 1 and profile is not None:
+        raise ConfigurationError(f"--seed: given {len(seeds)} times, and {profile.road} is a measured profile")
+    return [replace(drive, tagged=len(seeds) > 1) for drive in drives]
 
 
 def _files(options: argparse.Namespace) -> list[Input]:
