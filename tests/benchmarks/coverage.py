@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from tests.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses
 from vehicle.analysis.comfort import comfort_value, comfort_values
 from vehicle.analysis.comfort_error import WAVES, difference_error
 from vehicle.car import Car
@@ -26,6 +27,7 @@ from vehicle.names import AXES
 from vehicle.optimisation.trials import Spread, bands, samples_for
 from vehicle.parameters.ranges import Range
 from vehicle.sweeps.indices import sobol_indices, sobol_sample
+from vehicle.tuning.fit import fit
 
 Vector = npt.NDArray[np.float64]
 Rows = list[dict[str, Any]]
@@ -221,7 +223,56 @@ def sobol(repetitions: int) -> Rows:
     return rows
 
 
-PARTS: dict[str, Callable[[int], Rows]] = {"comfort": comfort, "length": length, "quantile": quantile, "sobol": sobol}
+class MeasuredNoise:
+    """FRFs of two masses with noise of 3 % that is correlated over the lines or between the channels.
+
+    Args:
+        rho: correlation of neighbouring lines (autoregression of first order) [-].
+        shared: both channels have the same noise.
+        seed: of the noise.
+    """
+
+    rows = MeasuredMasses.rows
+
+    def __init__(self, rho: float, shared: bool, seed: int) -> None:
+        white = np.random.default_rng(seed).standard_normal((2, 1 if shared else 2, FREQUENCY.size + 50))
+        noise = scipy.signal.lfilter([np.sqrt(1.0 - rho**2)], [1.0, -rho], white, axis=2)[:, :, 50:]
+        self.target = MeasuredMasses(sigma=0.0)
+        self.target.data = self.target.data * np.exp(SIGMA * (noise[0] + 1j * noise[1]))
+        self.residuals = self.target.residuals
+
+
+def tuning(repetitions: int) -> Rows:
+    """Coverage of value +- 1.96 standard errors of three fitted parameters, 60 lines of two channels."""
+    parameters = (
+        Range(path="lower", low=5e4, high=1e6, start=1.6e5),
+        Range(path="upper", low=5e3, high=2e5, start=5e4),
+        Range(path="damping", low=2e2, high=1e4, start=700.0),
+    )
+    rows: Rows = []
+    for rho, shared in ((0.0, False), (0.3, False), (0.5, False), (0.8, False), (0.0, True)):
+        found = [fit(parameters, [MeasuredNoise(rho, shared, seed)], dict) for seed in range(repetitions)]
+        for path, value in TRUE.items():
+            away = np.array([one.deviation(path, value) for one in found])
+            rows.append(
+                {
+                    "neighbouring lines": rho,
+                    "channels": "same noise" if shared else "own noise",
+                    "parameter": path,
+                    "scatter_over_stated": away.std(ddof=1),
+                    "covers_95": np.mean(np.abs(away) < 1.96),
+                }
+            )
+    return rows
+
+
+PARTS: dict[str, Callable[[int], Rows]] = {
+    "comfort": comfort,
+    "length": length,
+    "quantile": quantile,
+    "sobol": sobol,
+    "tuning": tuning,
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
