@@ -151,7 +151,6 @@ class _Problem:
         self.build = build
         self.step = COARSE_STEP
         self.free = list(range(len(parameters)))
-        self.names = [name for target in targets for name in target.rows]
         self.lengths: list[int] = []
         self.weights = np.ones(1)
         self.scaled: tuple[RowStatistics, ...] = ()
@@ -184,7 +183,8 @@ class _Problem:
     def statistics(self, raw: Vector, parameters: int) -> tuple[RowStatistics, ...]:
         """Of all rows, with the degrees of freedom that a number of parameters leaves."""
         freedom = max(1.0 - parameters / max(int(np.count_nonzero(raw)), parameters + 1), 1e-3)
-        rows, found, first = np.split(raw, np.cumsum(self.lengths)[:-1]), [], 0
+        rows, first = np.split(raw, np.cumsum(self.lengths)[:-1]), 0
+        found: list[RowStatistics] = []
         for target in self.targets:
             last = first + len(target.rows)
             found += target_statistics(target.rows, rows[first:last], freedom)
