@@ -60,7 +60,7 @@ def test_a_run_says_what_its_seat_does(tmp_path, monkeypatch, capsys):
     assert shaker([*road, "--vehicle", "focus_road_seated", "--output", "seated"]) == 0
     value = json.loads((tmp_path / "seated" / "summary.json").read_text())["seat_value"]
     assert f"SEAT value {value['rms']:.3f} (z, Wk" in capsys.readouterr().out and 0.4 < value["rms"] < 1.0
-    asked = ["--channel", "seat", "--rail", "seat_rail", "--offset", "keep", "--json"]
+    asked = ["--channel", "seat", "--rail", "seat_rail", "--offset", "keep", "--skip", "2", "--json"]
     assert comfort(["--input", "seated/time.npz", *asked]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out)["seat_value"] == pytest.approx(value) and NO_SEAT not in err

@@ -10,18 +10,24 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.analysis.comfort import comfort_values
+from tests.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses
+from vehicle.analysis.comfort import comfort_value, comfort_values
 from vehicle.analysis.comfort_error import WAVES, difference_error
 from vehicle.car import Car
 from vehicle.commands.road import road_drive
 from vehicle.excitation.iso_road import CLASSES, REFERENCE, isotropic_coherence
 from vehicle.names import AXES
+from vehicle.optimisation.trials import Spread, bands, samples_for
+from vehicle.parameters.ranges import Range
+from vehicle.sweeps.indices import sobol_indices, sobol_sample
+from vehicle.tuning.fit import fit
 
 Vector = npt.NDArray[np.float64]
 Rows = list[dict[str, Any]]
@@ -105,7 +111,168 @@ def comfort(repetitions: int) -> Rows:
     return rows
 
 
-PARTS: dict[str, Callable[[int], Rows]] = {"comfort": comfort}
+def length(repetitions: int) -> Rows:
+    """Comfort of 10, 30 and 60 s of class B at 80 km/h with the reduced engine, from the default of --skip on."""
+    car = Car.load("focus_road")
+    rows: Rows = []
+    for duration in (10.0, 30.0, 60.0):
+        found, whole = [], []
+        for seed in range(1, min(repetitions, 30) + 1):
+            numbers = argparse.Namespace(
+                speed=80.0, duration=duration, rate=None, seed=seed, coherence=None, patch=None
+            )
+            drive = road_drive("B", numbers, car.vehicle)
+            run = replace(car.run(drive.signal(), engine="reduced", channels=RAIL), skip=drive.skip)
+            step = run.recording.timestep
+            found.append(comfort_values(step, np.array([run.at("seat_rail")])))
+            whole.append(comfort_value(step, [run[name] for name in RAIL]).overall)
+        values = np.array([one.overall[0] for one in found])
+        error = np.array([one.error[0] * one.overall[0] for one in found])
+        rows.append(
+            {
+                "duration": duration,
+                "seeds": values.size,
+                "comfort": values.mean(),
+                "error_of_mean": values.std(ddof=1) / np.sqrt(values.size),
+                "scatter": values.std(ddof=1),
+                "stated_for_class": np.sqrt(np.mean(error**2)),
+                "comfort_without_skip": np.mean(whole),
+            }
+        )
+    return rows
+
+
+def quantile(repetitions: int) -> Rows:
+    """Share of new cars within a stated quantile of made cars, for responses of one to six tolerances."""
+    responses: dict[str, Callable[[Vector], Vector]] = {
+        "sum": lambda u: np.sum(u, axis=-1),
+        "falling weights": lambda u: np.asarray(u @ 0.6 ** np.arange(u.shape[-1])),
+        "curved": lambda u: np.asarray((u**2 + 0.3 * u) @ 0.6 ** np.arange(u.shape[-1])),
+        "product": lambda u: np.prod(1.0 + 0.9 * u, axis=-1),
+        "largest": lambda u: np.max(u, axis=-1),
+    }
+    rng = np.random.default_rng(0)
+    rows: Rows = []
+    for share in (0.85, 0.9, 0.95):
+        samples = max(8, samples_for(share))
+        for count in (1, 3, 6):
+            spreads = [
+                Spread(tolerances=(), bands=bands(count, samples, seed), quantile=share) for seed in range(repetitions)
+            ]
+            for name, response in responses.items():
+                reference = np.sort(response(rng.uniform(-1.0, 1.0, (100_000, count))))
+                stated = [float(one.worth(response(one.bands)[None])[0]) for one in spreads]
+                reached = np.searchsorted(reference, stated) / reference.size
+                rows.append(
+                    {
+                        "quantile": share,
+                        "cars": samples,
+                        "tolerances": count,
+                        "response": name,
+                        "reached": reached.mean(),
+                        "scatter": reached.std(ddof=1),
+                    }
+                )
+    return rows
+
+
+def sobol(repetitions: int) -> Rows:
+    """Coverage of the 95 % intervals of Sobol indices of two functions whose indices are known."""
+    a, b = 7.0, 0.1
+    alone = np.array([0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2, a**2 / 8.0, 0.0])
+    shared = b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    whole = alone.sum() + shared
+    weights = np.array([0.0, 1.0, 4.5, 9.0, 99.0, 99.0, 99.0, 99.0])
+    parts = 1.0 / 3.0 / (1.0 + weights) ** 2
+    product = np.prod(1.0 + parts)
+    cases = (
+        (
+            "Ishigami",
+            [Range(path=f"x{i}", low=-np.pi, high=np.pi) for i in range(3)],
+            1024,
+            lambda x: np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0]),
+            (alone / whole, (alone + shared * np.array([1.0, 0.0, 1.0])) / whole),
+        ),
+        (
+            "g-function",
+            [Range(path=f"x{i}", low=0.0, high=1.0) for i in range(8)],
+            512,
+            lambda x: np.prod((np.abs(4.0 * x - 2.0) + weights) / (1.0 + weights), axis=1),
+            (parts / (product - 1.0), parts * product / (1.0 + parts) / (product - 1.0)),
+        ),
+    )
+    rows: Rows = []
+    for name, ranges, base, function, exact in cases:
+        found = [sobol_indices(ranges, function(sobol_sample(ranges, base, seed=seed))) for seed in range(repetitions)]
+        for index, one in enumerate(("first", "total")):
+            values = np.array([getattr(each, one) for each in found])
+            widths = np.array([getattr(each, f"{one}_error") for each in found])
+            for number, path in enumerate(found[0].paths):
+                inside = np.abs(values[:, number] - exact[index][number]) <= widths[:, number]
+                rows.append(
+                    {
+                        "function": name,
+                        "index": one,
+                        "parameter": path,
+                        "exact": exact[index][number],
+                        "error": np.sqrt(np.mean((values[:, number] - exact[index][number]) ** 2)),
+                        "half_width": widths[:, number].mean(),
+                        "covers_95": inside.mean(),
+                    }
+                )
+    return rows
+
+
+class MeasuredNoise:
+    """FRFs of two masses with noise of 3 % that is correlated over the lines or between the channels.
+
+    Args:
+        rho: correlation of neighbouring lines (autoregression of first order) [-].
+        shared: both channels have the same noise.
+        seed: of the noise.
+    """
+
+    rows = MeasuredMasses.rows
+
+    def __init__(self, rho: float, shared: bool, seed: int) -> None:
+        white = np.random.default_rng(seed).standard_normal((2, 1 if shared else 2, FREQUENCY.size + 50))
+        noise = scipy.signal.lfilter([np.sqrt(1.0 - rho**2)], [1.0, -rho], white, axis=2)[:, :, 50:]
+        self.target = MeasuredMasses(sigma=0.0)
+        self.target.data = self.target.data * np.exp(SIGMA * (noise[0] + 1j * noise[1]))
+        self.residuals = self.target.residuals
+
+
+def tuning(repetitions: int) -> Rows:
+    """Coverage of value +- 1.96 standard errors of three fitted parameters, 60 lines of two channels."""
+    parameters = (
+        Range(path="lower", low=5e4, high=1e6, start=1.6e5),
+        Range(path="upper", low=5e3, high=2e5, start=5e4),
+        Range(path="damping", low=2e2, high=1e4, start=700.0),
+    )
+    rows: Rows = []
+    for rho, shared in ((0.0, False), (0.3, False), (0.5, False), (0.8, False), (0.0, True)):
+        found = [fit(parameters, [MeasuredNoise(rho, shared, seed)], dict) for seed in range(repetitions)]
+        for path, value in TRUE.items():
+            away = np.array([one.deviation(path, value) for one in found])
+            rows.append(
+                {
+                    "neighbouring lines": rho,
+                    "channels": "same noise" if shared else "own noise",
+                    "parameter": path,
+                    "scatter_over_stated": away.std(ddof=1),
+                    "covers_95": np.mean(np.abs(away) < 1.96),
+                }
+            )
+    return rows
+
+
+PARTS: dict[str, Callable[[int], Rows]] = {
+    "comfort": comfort,
+    "length": length,
+    "quantile": quantile,
+    "sobol": sobol,
+    "tuning": tuning,
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import csv
 import json
 
 import numpy as np
 import pytest
 
+from vehicle.analysis.comfort import comfort_value
 from vehicle.commands.road import main as road
 from vehicle.commands.sweep import main as sweep
+from vehicle.excitation.road_drive import RoadDrive
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal, write_signal
 from vehicle.output.written_files import MARKER
@@ -77,6 +80,49 @@ def test_a_sweep_drives_over_a_road(tmp_path, monkeypatch):
     assert sweep([*arguments, "--road", "A", "--speed", "100", "--duration", "4", "--output", "out", "--quiet"]) == 0
     table = (tmp_path / "out" / "table.csv").read_text(encoding="utf-8")
     assert table.count("road_A_100") == 2
+
+
+def test_seeds_of_a_road_give_the_error_of_a_difference(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    arguments = ["--vehicle", "focus_road", "--vary", "*.damper.coulomb_friction=20,90", "--engine", "reduced"]
+    arguments += ["--road", "A", "--speed", "100", "--duration", "4", "--output", "out", "--quiet"]
+    assert sweep([*arguments, *(word for seed in "123" for word in ("--seed", seed))]) == 0
+    with (tmp_path / "out" / "table.csv").open(encoding="utf-8", newline="") as file:
+        comfort = {(row["input"], row["*.damper.coulomb_friction"]): float(row["comfort_overall [m/s2]"])
+                   for row in csv.DictReader(file)}  # fmt: skip
+    with (tmp_path / "out" / "differences.csv").open(encoding="utf-8", newline="") as file:
+        *each, _, mean = csv.DictReader(file)
+    gaps = [comfort[f"road_A_100_seed_{seed}", "90"] - comfort[f"road_A_100_seed_{seed}", "20"] for seed in (1, 2, 3)]
+    assert len(each) == 6 and mean["input"] == "road_A_100, mean of 3 seeds"
+    assert float(mean["difference [m/s2]"]) == pytest.approx(np.mean(gaps), rel=1e-4)
+    error = np.std(gaps, ddof=1) / np.sqrt(3)
+    assert float(mean["standard_error_of_difference [m/s2]"]) == pytest.approx(error, rel=1e-4)
+    assert float(mean["half_width_95 [m/s2]"]) == pytest.approx(4.303 * error, rel=1e-3)
+    assert sweep([*arguments, "--force", "--seed", "1", "--seed", "1"]) == 2
+
+
+def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
+    given = ["--road", "B", "--speed", "80", "--duration", "5", "--engine", "reduced"]
+    outcome = shaker(*given)
+    assert outcome.code == 0 and "5 s, evaluated from 2 to 5 s, plate RMS" in outcome.out
+    folder = tmp_path / "runs" / "road_B_80"
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["evaluated_s"] == [2.0, 5.0]
+    with np.load(folder / "time.npz") as arrays:
+        time, rail = arrays["time"], [arrays[f"seat_rail_acc_{axis}"] for axis in "xyz"]
+        velocity = arrays["damper_fr_velocity"]
+    late = time >= 2.0 - 1e-9
+    expected = comfort_value(time[1] - time[0], [one[late] for one in rail]).overall
+    assert summary["comfort"]["seat_rail"]["rms_2_50_hz"]["overall"] == pytest.approx(expected, rel=1e-9)
+    assert summary["comfort"]["seat_rail"]["iso2631"]["duration_s"] == pytest.approx(3.0, abs=2e-3)
+    limit = summary["slip_share"]["slip_velocity"]
+    assert summary["slip_share"]["fr"] == pytest.approx(np.mean(np.abs(velocity[late]) > limit), abs=1e-9)
+    assert "from 2 s on" in (folder / "psd.csv").read_text(encoding="utf-8")[:200]
+    # Slower than 19 km/h the last wheel rises late; a wheelbase of 2.615 m takes 1.88 s at 5 km/h.
+    assert RoadDrive(road="B", speed=5.0, wheels=(("fr", 0.0, "right"), ("rr", 2.615, "right")), track=1.5).skip == 3.4
+    for skip in ("-1", "nan", "5"):
+        outcome = shaker(*given, "--output", "other", "--skip", skip)
+        assert outcome.code == 2 and f"--skip {skip} s: allowed is 0 s to less than road_B_80, 5 s" in outcome.err
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,8 @@ def overall_error(lines: Complex) -> Vector:
     square = np.sum(np.abs(lines) ** 2, axis=(1, 2))
     products = np.sum(lines[:, :, :-1].conj() * lines[:, :, 1:], axis=1)
     variance = np.sum(np.abs(products) ** 2, axis=1)
-    return np.divide(np.sqrt(variance), 2.0 * square, out=np.zeros_like(square), where=square > 0.0)
+    error: Vector = np.divide(np.sqrt(variance), 2.0 * square, out=np.zeros_like(square), where=square > 0.0)
+    return error
 
 
 def overall_waves(lines: Complex) -> Complex:
@@ -66,7 +67,8 @@ def overall_waves(lines: Complex) -> Complex:
     for number in range(min(WAVES, lines.shape[2] - 1)):
         shift = number + 1
         waves[:, number] = np.sum(lines[:, :, :-shift].conj() * lines[:, :, shift:], axis=(1, 2))
-    return np.divide(waves, 2.0 * rms[:, None], out=np.zeros_like(waves), where=rms[:, None] > 0.0)
+    found: Complex = np.divide(waves, 2.0 * rms[:, None], out=np.zeros_like(waves), where=rms[:, None] > 0.0)
+    return found
 
 
 def difference_error(first: Complex, second: Complex) -> Vector:

@@ -96,7 +96,7 @@ def road_options(
         parser: of the command.
         on_road: True if the options contain a road.
         is_class: True if a road is a class of ISO 8608.
-        several: --speed may be repeated, once for each road; then its value is a list.
+        several: --speed may be repeated, once for each road, and --seed; then their values are lists.
         rate_note: what the help of --rate says in addition, where it acts on a file of signals too.
     """
     group = parser.scoped_group("a road", needs=ROAD_NEEDS, active=on_road)
@@ -113,7 +113,14 @@ def road_options(
         "--rate", type=float, metavar="HZ", help=f"samples a second; 1000 by default{rate_note}"
     )
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
-    random.add_argument("--seed", type=int, metavar="N", help="one seed is one road; 1 by default")
+    random.add_argument(
+        "--seed",
+        action="append" if several else "store",
+        type=int,
+        metavar="N",
+        help="one seed is one road; 1 by default"
+        + ("; repeated: each road with each seed, so that their scatter is known" if several else ""),
+    )
     random.add_argument(
         "--coherence",
         type=float,

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.commands.input_options import drives_on_road
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.excitation.signal import Signal
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
+    from vehicle.excitation.signal import Signal
     from vehicle.parameters.vehicle import Vehicle
     from vehicle.sweeps.case import Input
 
@@ -56,10 +58,12 @@ def chosen_skip(options: argparse.Namespace, inputs: Mapping[str, Input | Signal
         ConfigurationError: negative, not finite, or not shorter than an input.
         DataError: an input cannot be read.
     """
+    from vehicle.excitation.recorded_road import RecordedDrive
     from vehicle.excitation.road_drive import RoadDrive
+    from vehicle.excitation.signal import Signal
     from vehicle.sweeps.case import signal_of
 
-    drives = [one for one in inputs.values() if isinstance(one, RoadDrive)]
+    drives = [one for one in inputs.values() if isinstance(one, RoadDrive | RecordedDrive)]
     skip = max((one.skip for one in drives), default=of_a_file) if options.skip is None else options.skip
     for name, source in inputs.items():
         duration = source.duration if isinstance(source, Signal) else signal_of(source).duration
@@ -71,6 +75,7 @@ def chosen_skip(options: argparse.Namespace, inputs: Mapping[str, Input | Signal
 
 def _roads(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
     from vehicle.commands.road import class_or_profile, road_drive
+    from vehicle.excitation.road_drive import RoadDrive
 
     speeds = options.speed or [None]
     if len(speeds) not in (1, len(options.road)):
@@ -78,10 +83,20 @@ def _roads(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
             f"--speed: given {len(speeds)} times for {len(options.road)} roads; give one for all, or one for each"
         )
     each = speeds * len(options.road) if len(speeds) == 1 else speeds
-    return [
-        road_drive(class_or_profile(road), argparse.Namespace(**{**vars(options), "speed": speed}), vehicle)
+    seeds = options.seed or [None]
+    if len(set(seeds)) < len(seeds):
+        raise ConfigurationError(f"--seed {' '.join(map(str, seeds))}: a seed is given twice; give each once")
+    drives = [
+        road_drive(
+            class_or_profile(road), argparse.Namespace(**{**vars(options), "speed": speed, "seed": seed}), vehicle
+        )
         for road, speed in zip(options.road, each, strict=True)
+        for seed in seeds
     ]
+    profile = next((drive for drive in drives if isinstance(drive.road, Path)), None)
+    if len(seeds) > 1 and profile is not None:
+        raise ConfigurationError(f"--seed: given {len(seeds)} times, and {profile.road} is a measured profile")
+    return [replace(drive, tagged=len(seeds) > 1) if isinstance(drive, RoadDrive) else drive for drive in drives]
 
 
 def _files(options: argparse.Namespace) -> list[Input]:

@@ -145,7 +145,7 @@ def _job(options: argparse.Namespace) -> None:
         if (number := getattr(options, name)) < least:
             raise ConfigurationError(f"--{name.replace('_', '-')} {number}: must be at least {least}")
     pymoo("core.problem")
-    trials, vehicle = _trials(options)
+    trials, vehicle, skip = _trials(options)
     beside = None if options.beside is None else read_beside(options.beside, trials.problem)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=CARS)
@@ -175,7 +175,7 @@ def _job(options: argparse.Namespace) -> None:
         folder,
         found,
         cars,
-        caption=_caption(options, trials, vehicle, len(found.tried.reasons)),
+        caption=_caption(options, trials, vehicle, len(found.tried.reasons)) + f"; evaluated from {skip:g} s on",
         nominal=nominal,
         beside=beside,
         summary={
@@ -183,6 +183,7 @@ def _job(options: argparse.Namespace) -> None:
             "vehicle": vehicle.name,
             "inputs": {source.name: source.identity() for source in trials.inputs},
             "engine": options.engine,
+            "evaluated_from_s": skip,
             "notices": notices,
             "mujoco": checked,
             "made_cars": None
@@ -204,8 +205,8 @@ def _job(options: argparse.Namespace) -> None:
             )
 
 
-def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
-    """How cars are tried, and the car as it is."""
+def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle, float]:
+    """Return how cars are tried, the car as it is, and the start of the evaluation [s]."""
     from vehicle.optimisation.problem import parsed_range, parsed_tolerance, parsed_wishes
     from vehicle.optimisation.ride import ride_measure
     from vehicle.optimisation.trials import ALONE, Spread, Trials, bands
@@ -240,7 +241,7 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
         engine=options.engine,
         spread=spread,
     )
-    return trials, vehicle
+    return trials, vehicle, skip
 
 
 def _quantile_and_samples(options: argparse.Namespace) -> tuple[float, int]:

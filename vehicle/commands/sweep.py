@@ -62,6 +62,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.parameters.vehicle import load_vehicle
     from vehicle.parameters.whole_body import body_rules
     from vehicle.sweeps.case import table_cases
+    from vehicle.sweeps.differences import DIFFERENCES
     from vehicle.sweeps.executors import executor_factory
     from vehicle.sweeps.measure import ComfortMeasure
     from vehicle.sweeps.store import ROWS
@@ -93,7 +94,11 @@ def _job(options: argparse.Namespace) -> None:
         print(f"{folder}: finished rows are kept; --resume goes on", file=sys.stderr)
         raise
     if not options.quiet:
-        print(f"{folder}: {len(cases)} runs, {len(table.failed)} failed; table.csv, sweep.json, rows.jsonl, timing.csv")
+        differences = f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
+        print(
+            f"{folder}: {len(cases)} runs, {len(table.failed)} failed, evaluated from {skip:g} s on; table.csv, "
+            f"{differences}sweep.json, rows.jsonl, timing.csv"
+        )
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:

@@ -16,6 +16,7 @@ of the inverse of s between samples h apart, with an error below h^2 |dv/dt| / (
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -27,6 +28,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.iso_road import RISE_S, Side, half_cosine_at
 from vehicle.excitation.measured_road import TRACKS
 from vehicle.excitation.plausibility import acceleration_events
+from vehicle.excitation.road_drive import AFTER_RISE_S, SKIP_S
 from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.excitation.time_grid import FINE_RATE, SMOOTH_RATE
 from vehicle.records.channel import Measurement
@@ -94,16 +96,10 @@ class RecordedDrive:
             ConfigurationError: no such file, or a duration longer than the record.
             DataError: bad data, or a speed that is none.
         """
-        measurement = read_record(self.road)
-        speed = choose(measurement, self._choice_of_speed())
-        if speed.quantities["speed"] != "velocity":
-            raise DataError(
-                f"{self.road}: --speed {PREFIX}{self.channel}: a {speed.quantities['speed']}; needed is a velocity; "
-                "choose another channel, or set --unit speed=km/h or speed=m/s if the file is wrong"
-            )
+        measurement = read_record(self.road, self.choice.databases)
         time, heights, highest, notices = self._heights(measurement)
-        v, said = self._speed(speed, time)
-        notices += [*said, *speed.notices]
+        v, said = self._driven(measurement, time)
+        notices += said
         distance = scipy.integrate.cumulative_trapezoid(v, time, initial=0.0)
         if distance[-1] < max(behind for _, behind, _ in self.wheels):
             raise DataError(
@@ -128,6 +124,28 @@ class RecordedDrive:
             sha256=measurement.sha256,
             highest=highest,
         )
+
+    @property
+    def skip(self) -> float:
+        """Default start of the evaluation [s], see `RoadDrive.skip`: here by the distance at the recorded speed."""
+        measurement = read_record(self.road, self.choice.databases)
+        time = self._heights(measurement)[0]
+        distance = scipy.integrate.cumulative_trapezoid(self._driven(measurement, time)[0], time, initial=0.0)
+        risen = np.interp(RISE_S + AFTER_RISE_S, time - time[0], distance)
+        reached = int(np.searchsorted(distance, risen + max(behind for _, behind, _ in self.wheels)))
+        last = float(time[min(reached, time.size - 1)] - time[0])
+        return max(SKIP_S, math.ceil(10.0 * last) / 10.0)
+
+    def _driven(self, measurement: Measurement, time: Vector) -> tuple[Vector, list[str]]:
+        """Return the speed at the times of the heights [m/s], (n,), and all notices on the speed."""
+        speed = choose(measurement, self._choice_of_speed())
+        if speed.quantities["speed"] != "velocity":
+            raise DataError(
+                f"{self.road}: --speed {PREFIX}{self.channel}: a {speed.quantities['speed']}; needed is a velocity; "
+                "choose another channel, or set --unit speed=km/h or speed=m/s if the file is wrong"
+            )
+        v, notices = self._speed(speed, time)
+        return v, [*notices, *speed.notices]
 
     def _choice_of_speed(self) -> Choice:
         """Return the choice of the speed: its own unit, the excerpt of the heights."""

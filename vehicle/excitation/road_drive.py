@@ -42,6 +42,7 @@ class RoadDrive:
         seed: of a class.
         coherence: of the tracks of a class; None for the isotropic plane.
         patch: length of the contact patch [m] that averages a class; none where None.
+        tagged: the name contains the seed, for several seeds of one road.
 
     Raises:
         ConfigurationError: a value out of range, or one that a measured profile does not have.
@@ -56,6 +57,7 @@ class RoadDrive:
     seed: int = 1
     coherence: float | None = None
     patch: float | None = None
+    tagged: bool = False
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.speed) and 0.0 < self.speed <= FASTEST):
@@ -72,8 +74,9 @@ class RoadDrive:
 
     @property
     def name(self) -> str:
-        """Of its results: "road_C_80"."""
-        return f"road_{self.road.stem if isinstance(self.road, Path) else self.road}_{self.speed:g}"
+        """Of its results: "road_C_80", with several seeds "road_C_80_seed_2"."""
+        tag = f"_seed_{self.seed}" if self.tagged else ""
+        return f"road_{self.road.stem if isinstance(self.road, Path) else self.road}_{self.speed:g}{tag}"
 
     @property
     def skip(self) -> float:
@@ -110,6 +113,7 @@ class RoadDrive:
     def identity(self) -> dict[str, object]:
         """What tells the signal from others: all numbers, and the content of a measured profile."""
         found = asdict(self) | {"road": str(self.road)}
+        del found["tagged"]
         if isinstance(self.road, Path):
             found["road"] = hashlib.sha256(self.road.read_bytes()).hexdigest()
         return found

@@ -166,7 +166,8 @@ def _indices(y: Vector) -> Vector:
     middle = 0.5 * (first.mean() + last.mean())
     variance = 0.5 * (np.mean((first - middle) ** 2) + np.mean((last - middle) ** 2))
     change = y[:, 1:-1] - first
-    return np.array([np.mean((last - middle) * change, axis=0), 0.5 * np.mean(change**2, axis=0)]) / variance
+    shares = np.array([np.mean((last - middle) * change, axis=0), 0.5 * np.mean(change**2, axis=0)])
+    return np.asarray(shares / variance)
 
 
 def morris_sample(ranges: Sequence[Range], trajectories: int, *, seed: int = 0) -> Vector:

@@ -12,12 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.flexbody.library import PACKAGE_FOLDER
-from vehicle.output.folder import folder_lock
+from vehicle.output.folder import folder_lock, write_text
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.template import SHIPPED as TEMPLATES
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.sweeps.case import Case, digest
 from vehicle.sweeps.crew import Crew
+from vehicle.sweeps.differences import DIFFERENCES, differences_text
 from vehicle.sweeps.executors import process_pool
 from vehicle.sweeps.measure import ComfortMeasure, Measure
 from vehicle.sweeps.program import class_source, libraries, program_digest
@@ -102,6 +103,8 @@ def sweep(
         )
         if folder is not None:
             table.write(folder, f"{len(todo)} runs computed in {clock.perf_counter() - began:.2f} s")
+            if text := differences_text(table):
+                write_text(folder / DIFFERENCES, text)
         return table
 
 
@@ -138,6 +141,7 @@ def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
         "engines_asked": sorted({case.engine for case in cases}),
         "inputs": {source.name: source.identity() for source in sources.values()},
         "measure": repr(measure),
+        "evaluated_from_s": getattr(measure, "skip", None),
         "program": program_digest(),
         "libraries": libraries(),
     }

@@ -55,7 +55,7 @@ class SweepTable:
 
     def paths(self) -> list[str]:
         """All parameter paths that are changed in some case, in the order of their first use."""
-        return list(dict.fromkeys(path for case in self.cases for path in _changes(case)))
+        return list(dict.fromkeys(path for case in self.cases for path in changes(case)))
 
     def text(self) -> str:
         """The table as CSV, units in the header; the same bytes for the same cases, whoever computed them."""
@@ -63,7 +63,7 @@ class SweepTable:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([INPUT, *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), ENGINE, REASON])
         for case, result in zip(self.cases, self.results, strict=True):
-            changed = _changes(case)
+            changed = changes(case)
             numbers = [repr(result.values[name]) if name in result.values else "" for name in self.units]
             writer.writerow(
                 [case.source.name, *(changed.get(path, "") for path in paths), *numbers, result.engine, result.reason]
@@ -84,8 +84,8 @@ class SweepTable:
         write_text(folder / "timing.csv", times + (f"# {computed}\n" if computed else ""))
 
 
-def _changes(case: Case) -> dict[str, str]:
-    """Parameter path to value text; of a path that is changed twice the last."""
+def changes(case: Case) -> dict[str, str]:
+    """Return parameter path to value text; of a path that is changed twice the last."""
     return {path: value for path, _, value in (text.partition("=") for text in case.overrides)}
 
 

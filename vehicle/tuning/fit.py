@@ -4,8 +4,12 @@
 
 A first, coarse iteration takes the assumed deviations. Then the scale of each row is found from its own residuals
 (their RMS, and how much neighbours know of each other), and the fit repeated with it: assumed deviations only have to
-be right within a row. The covariance of u is (J' J)^-1 with the residuals over their scale, of the parameters that the
-data can tell; the others are held at their start.
+be right within a row. The covariance of u is (J' J)^-1 C (J' J)^-1 with the residuals over their scale and
+C = sum rho_ij J_i' J_j, rho_ij the correlation of rows i and j of a measurement, of the parameters that the data can
+tell; the others are held at their start.
+
+Source of the covariance: Zellner, Journal of the American Statistical Association 57 (1962): equations whose errors are
+correlated.
 """
 
 from __future__ import annotations
@@ -20,7 +24,7 @@ import scipy
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.parameters.ranges import Range, checked_ranges
 from vehicle.tuning.identifiability import Unidentified, covariance, worst_direction
-from vehicle.tuning.result import RowStatistics, TuningResult, row_statistics
+from vehicle.tuning.result import RowStatistics, TuningResult, target_statistics
 
 Vector = npt.NDArray[np.float64]
 
@@ -147,7 +151,6 @@ class _Problem:
         self.build = build
         self.step = COARSE_STEP
         self.free = list(range(len(parameters)))
-        self.names = [name for target in targets for name in target.rows]
         self.lengths: list[int] = []
         self.weights = np.ones(1)
         self.scaled: tuple[RowStatistics, ...] = ()
@@ -180,8 +183,13 @@ class _Problem:
     def statistics(self, raw: Vector, parameters: int) -> tuple[RowStatistics, ...]:
         """Of all rows, with the degrees of freedom that a number of parameters leaves."""
         freedom = max(1.0 - parameters / max(int(np.count_nonzero(raw)), parameters + 1), 1e-3)
-        rows = np.split(raw, np.cumsum(self.lengths)[:-1])
-        return tuple(row_statistics(name, row, freedom) for name, row in zip(self.names, rows, strict=True))
+        rows, first = np.split(raw, np.cumsum(self.lengths)[:-1]), 0
+        found: list[RowStatistics] = []
+        for target in self.targets:
+            last = first + len(target.rows)
+            found += target_statistics(target.rows, rows[first:last], freedom)
+            first = last
+        return tuple(found)
 
     def use_scales(self, statistics: tuple[RowStatistics, ...]) -> None:
         """Weigh the rows by what was found of their residuals."""
@@ -202,6 +210,32 @@ class _Problem:
             table[:, place] = (self.residuals(moved) - base) / step * self.weights
             self.last = (point.tobytes(), base)
         return table
+
+    def information(self, jacobian: Vector, weighted: Vector) -> Vector:
+        """Return sum over i, j of rho_ij J_i' J_j over the rows of each target, (columns, columns).
+
+        Noise at one place of a measurement, of the input for example, is in all of its rows. rho_ij is the correlation
+        of the residuals of two rows, sample by sample. With rows that know nothing of each other it is J' J.
+
+        Args:
+            jacobian: of the weighted residuals, (n, columns).
+            weighted: residuals, (n,).
+        """
+        found = np.zeros((jacobian.shape[1], jacobian.shape[1]))
+        ends = np.cumsum(self.lengths)
+        row = 0
+        for target in self.targets:
+            rows = range(row, row + len(target.rows))
+            row = rows.stop
+            begin, end = ends[rows.start] - self.lengths[rows.start], ends[rows[-1]]
+            # (rows, samples): the rows of a target are those of one array.
+            residuals = weighted[begin:end].reshape(len(rows), -1)
+            columns = jacobian[begin:end].reshape(*residuals.shape, -1)
+            sizes = np.sqrt(np.sum(residuals**2, axis=1))
+            related = residuals @ residuals.T / np.maximum(np.outer(sizes, sizes), 1e-300)
+            np.fill_diagonal(related, 1.0)
+            found += np.einsum("ij,isp,jsq->pq", related, columns, columns, optimize=True)
+        return found
 
     def bounds(self, index: int) -> tuple[float, float]:
         """Bounds of u."""
@@ -268,12 +302,13 @@ class _Problem:
         """Put together what was found."""
         values = self.values(point)
         errors = dict.fromkeys(values, float("nan"))
-        spread = covariance(jacobian) if inner else np.zeros((0, 0))
+        inverse = covariance(jacobian) if inner else np.zeros((0, 0))
+        weighted = raw * self.weights
+        spread = inverse @ self.information(jacobian, weighted) @ inverse
         deviations = np.sqrt(np.diag(spread))
         free = tuple(self.parameters[index].path for index in inner)
         errors.update({path: float(one * values[path]) for path, one in zip(free, deviations, strict=True)})
         widths = np.array([self.parameters[index].half_width for index in inner])
-        weighted = raw * self.weights
         return TuningResult(
             parameters=self.parameters,
             values=values,
@@ -290,6 +325,6 @@ class _Problem:
             evaluations=self.evaluations,
             converged=answer[0],
             message=answer[1],
-            sensitivity=-spread @ jacobian.T,
+            sensitivity=-inverse @ jacobian.T,
             weights=self.weights,
         )

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vehicle.car import Run
 from vehicle.tuning.fit import Target
-from vehicle.tuning.result import TuningResult, row_statistics
+from vehicle.tuning.result import TuningResult, target_statistics
 
 Vector = npt.NDArray[np.float64]
 
@@ -73,8 +73,8 @@ def full_steps(
     first = 0.0
     while True:
         runs = simulate(values)
-        rows = [row for target, run in zip(targets, runs, strict=True) for row in target.residuals(run)]
-        joined = np.concatenate(rows)
+        residuals = [target.residuals(run) for target, run in zip(targets, runs, strict=True)]
+        joined = np.concatenate([row for rows in residuals for row in rows])
         if not steps:
             first = float(np.sqrt(np.mean((joined * result.weights) ** 2)))
         shift = result.shift(joined)
@@ -87,14 +87,17 @@ def full_steps(
                 moved = values[parameter.path] * float(np.exp(shift[parameter.path]))
                 values[parameter.path] = float(np.clip(moved, parameter.low, parameter.high))
     freedom = 1.0 - len(result.free) / joined.size
-    names = [name for target in targets for name in target.rows]
     weighted = joined * result.weights
     return FullSteps(
         result=dataclasses.replace(
             result,
             values=values,
             standard_errors={path: relative.get(path, float("nan")) * value for path, value in values.items()},
-            rows=tuple(row_statistics(name, row, freedom) for name, row in zip(names, rows, strict=True)),
+            rows=tuple(
+                row
+                for target, rows in zip(targets, residuals, strict=True)
+                for row in target_statistics(target.rows, list(rows), freedom)
+            ),
             after=float(np.sqrt(np.mean(weighted**2))),
             cost=0.5 * float(np.sum(weighted**2)),
             converged=result.converged and settled,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +14,8 @@ from vehicle.tuning.identifiability import Unidentified
 Vector = npt.NDArray[np.float64]
 
 
-SURE = 3.0
-"""A correlation of neighbours counts from this many of its own standard errors 1/sqrt(n) on."""
+SURE = 2.0
+"""A correlation of neighbours counts from this many of its own standard errors 1/sqrt(n) on, n values of all rows."""
 
 LEAST_VALUES = 8
 """Values that a row must hold for its size to be found from them; a shorter one is taken as assumed."""
@@ -31,8 +31,8 @@ class RowStatistics:
         mean: [-].
         rms: of the residuals, freed from the share that the parameters took; 1 where the assumption was right.
         neighbours: correlation of neighbours, 0 where they know nothing of each other.
-        inflation: (1 + rho) / (1 - rho) for a correlation rho that counts, else 1: as many neighbours make one
-            independent value.
+        inflation: (1 + rho) / (1 - rho) for a correlation rho of all rows of the target that counts, else 1: as many
+            neighbours make one independent value.
     """
 
     name: str
@@ -108,37 +108,42 @@ class TuningResult:
         return {path: float(one) for path, one in zip(self.free, step, strict=True)}
 
 
-def row_statistics(name: str, row: Vector, freedom: float) -> RowStatistics:
-    """Statistics of one row.
+def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: float) -> tuple[RowStatistics, ...]:
+    """Return the statistics of the rows of one target.
 
     Neighbours are taken as an autoregression of first order, whose mean over n values varies like that of
-    n (1 - rho) / (1 + rho) independent ones.
+    n (1 - rho) / (1 + rho) independent ones. One rho for all rows, since one estimator or filter made all of them: that
+    of a single short row would scatter and with it the weights.
 
     Args:
-        name: what the row is.
-        row: residuals, zero where a value does not count; (n,).
+        names: what each row is.
+        rows: residuals, zero where a value does not count; (n,) each.
         freedom: degrees of freedom of all residuals over their number [-].
 
     Returns:
-        The statistics.
+        One for each row; `neighbours` is that of the row, `inflation` that of all.
 
     Source: Bartlett, On the theoretical specification and sampling properties of autocorrelated time-series, Journal of
     the Royal Statistical Society B 8, 1946.
     """
-    counts = row != 0.0
-    values = row[counts]
-    if values.size < LEAST_VALUES:
-        mean = float(np.mean(values)) if values.size else 0.0
-        return RowStatistics(name=name, count=int(values.size), mean=mean, rms=1.0, neighbours=0.0, inflation=1.0)
-    square = float(np.sum(values**2))
-    neighbours = float(np.sum(values[1:] * values[:-1]) / square)
-    bounded = float(np.clip(neighbours, 0.0, 0.98))
-    inflation = (1.0 + bounded) / (1.0 - bounded) if bounded * np.sqrt(values.size) > SURE else 1.0
-    return RowStatistics(
-        name=name,
-        count=int(values.size),
-        mean=float(np.mean(values)),
-        rms=float(np.sqrt(square / (values.size * freedom))),
-        neighbours=neighbours,
-        inflation=inflation,
+    values = [row[row != 0.0] for row in rows]
+    own = [float(np.sum(one[1:] * one[:-1]) / np.sum(one**2)) if one.size >= LEAST_VALUES else 0.0 for one in values]
+    counts = np.array([one.size if one.size >= LEAST_VALUES else 0 for one in values])
+    total = int(counts.sum())
+    inflation = 1.0
+    if total:
+        shared = float(counts @ own) / total
+        if shared * np.sqrt(total) > SURE:
+            shared = min(shared, 0.98)
+            inflation = (1.0 + shared) / (1.0 - shared)
+    return tuple(
+        RowStatistics(
+            name=name,
+            count=int(one.size),
+            mean=float(np.mean(one)) if one.size else 0.0,
+            rms=float(np.sqrt(np.mean(one**2) / freedom)) if one.size >= LEAST_VALUES else 1.0,
+            neighbours=rho,
+            inflation=inflation if one.size >= LEAST_VALUES else 1.0,
+        )
+        for name, one, rho in zip(names, values, own, strict=True)
     )

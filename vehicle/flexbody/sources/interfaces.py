@@ -101,8 +101,8 @@ def interfaces(
         faults.append(f"{len(weak)} points are not held by the nodes within {1e3 * spread:g} mm: {'; '.join(weak)}")
     if faults:
         raise DataError(
-            f"{'. '.join(faults)}. Choose nodes with --point-nodes, a larger radius with --spread, or a --point-distance up to "
-            "50 mm; check the frame of the model with --axes and --origin, and its unit of length."
+            f"{'. '.join(faults)}. Choose nodes with --point-nodes, a larger radius with --spread, or a "
+            "--point-distance up to 50 mm; check the frame of the model with --axes and --origin, and its unit of length."
         )
     return found
 
