@@ -36,7 +36,7 @@ def jittered(seconds: float = 20.0, jitter: float = 0.007, drop: tuple[int, ...]
 def motion(time: np.ndarray) -> np.ndarray:
     """A vertical acceleration with tones up to 60 Hz [m/s2]."""
     tones = ((1.3, 0.4), (8.0, 0.5), (27.0, 0.2), (60.0, 0.1))
-    return np.sum([a * np.sin(2 * np.pi * f * time + f) for f, a in tones], axis=0)
+    return np.asarray(np.sum([a * np.sin(2 * np.pi * f * time + f) for f, a in tones], axis=0))
 
 
 def written(path, time, columns):
