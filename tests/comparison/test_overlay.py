@@ -154,6 +154,19 @@ def test_a_run_beside_itself_agrees(run, tmp_path, capsys):
     )
 
 
+def test_several_measurements_give_one_table(run, tmp_path, capsys):
+    folder = tmp_path / "measured"
+    folder.mkdir()
+    (folder / "one.npz").write_bytes((run / "time.npz").read_bytes())
+    (folder / "two.csv").write_text("nothing\n")
+    words = [str(run), "--measured", str(folder), "--map", "seat_rail_acc_z=seat_rail_acc_z"]
+    assert compare([*words, "--output", str(tmp_path / "out"), "--json"]) == 3
+    out, err = capsys.readouterr()
+    first, second = json.loads(out)
+    assert first["records"][0]["rms_ratio"] == pytest.approx(1.0) and "no table of numbers" in second["error"]
+    assert "1 of 2 files has no result" in err and (tmp_path / "out" / "one" / "compare.json").is_file()
+
+
 def test_a_record_that_began_later_names_its_delay(run, tmp_path):
     """The run itself without its first 50 ms, at times from 0 on, and without its plate."""
     truth = of_folder(run).record

@@ -220,6 +220,22 @@ def test_7_acceleration_beyond_a_shaker(tmp_path):
     assert "(below 100 Hz); allowed 50 m/s2; looks like mm?" in message
 
 
+def test_91_one_pothole_is_named_and_no_reason_to_refuse(tmp_path):
+    time = np.arange(20_000) / 1000.0
+    pothole = -0.06 * np.exp(-(((time - 12.0) / 0.012) ** 2))
+    z = 1e-3 * np.sin(2 * np.pi * 3.0 * time) * np.clip(time, 0.0, 1.0) + pothole
+
+    def lines(values):
+        return [HEADER, *(f"{t:.3f},{value:.8f}" for t, value in zip(time, values, strict=True))]
+
+    said = [text for text in read_signal(write(tmp_path, lines(z))).notices if "a pothole" in text]
+    # -2 A / s^2 at its deepest point, below 100 Hz
+    assert len(said) == 1 and "at t = 12" in said[0] and "beyond 50 m/s2" in said[0]
+    # in mm under [m] the whole record is beyond, and a spike of a logger is no pothole
+    assert "looks like mm" in refused_lines(tmp_path, lines(1e3 * z))
+    assert "displaced by 3" in refused_lines(tmp_path, lines(np.where(np.arange(time.size) == 9000, 3.0, z)))
+
+
 def test_7_too_small_to_be_true(tmp_path):
     message = refused_lines(tmp_path, [HEADER, *rows(amplitude=1e-7)])
     assert message.startswith(": RMS of plate fr is 3.5")

@@ -12,9 +12,11 @@ from vehicle.commands.input_options import record_choice
 from vehicle.commands.road import road_drive
 from vehicle.commands.shaker import parser
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.excitation.iso_road import Side
 from vehicle.excitation.measured_road import read_road
 from vehicle.excitation.recorded_road import RecordedDrive, delayed
 from vehicle.excitation.road_drive import RoadDrive
+from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.records.choice import Choice
 from vehicle.records.crg_format import read_surface
@@ -23,7 +25,12 @@ from vehicle.records.reader import read_record
 BASE = 2.6
 """Wheelbase [m]."""
 
-WHEELS = (("fr", 0.0, "right"), ("fl", 0.0, "left"), ("rr", BASE, "right"), ("rl", BASE, "left"))
+WHEELS: tuple[tuple[str, float, Side], ...] = (
+    ("fr", 0.0, "right"),
+    ("fl", 0.0, "left"),
+    ("rr", BASE, "right"),
+    ("rl", BASE, "left"),
+)
 
 
 def height(place, side="right"):
@@ -116,14 +123,14 @@ def test_what_is_no_speed_is_refused(tmp_path):
         drive(path, choice=Choice(channels={"fr": "left"})).signal()
     options = parser().parse_args(["--road", "C", "--speed", "channel:v"])
     with pytest.raises(ConfigurationError, match="belongs to a recorded road"):
-        road_drive("C", options, load_vehicle("focus_road"))
+        road_drive("C", options, load_vehicle(vehicle_file("focus_road")))
 
 
 def test_the_command_makes_the_drive(tmp_path):
     path = recorded(tmp_path / "road.csv")
     words = ["--road", str(path), "--speed", "channel:v", "--channel", "height=left", "--unit", "speed=m/s"]
     options = parser().parse_args(words)
-    found = road_drive(path, options, load_vehicle("focus_road"))
+    found = road_drive(path, options, load_vehicle(vehicle_file("focus_road")))
     assert isinstance(found, RecordedDrive) and found.choice.channels == {"height": "left"}
     assert [name for name, *_ in found.wheels] == ["fr", "fl", "rr", "rl"] and hash(found) is not None
     signal = found.signal()

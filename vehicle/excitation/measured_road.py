@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError, VehicleError
 from vehicle.excitation.iso_road import Side
+from vehicle.records.channel import uniform_axis
 from vehicle.records.crg_format import read_surface, road_words
 from vehicle.records.formats import FORMATS, read_table
 from vehicle.records.named_columns import named_columns
@@ -63,7 +64,7 @@ class MeasuredRoad:
         Raises:
             DataError: the road ends before.
         """
-        return self.height_at(start + step * np.arange(steps), side)
+        return self.height_at(uniform_axis(steps, step, start), side)
 
     def height_at(self, place: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
         """Return heights above the first point [m], (m,), by a cubic spline; 0 before the road begins.
@@ -102,7 +103,8 @@ def read_road(path: Path, track: float) -> MeasuredRoad:
     name = recognise(path)
     if name == "crg":
         return _surface_road(path, track)
-    source, notices = "", ()
+    source = ""
+    notices: tuple[str, ...] = ()
     try:
         table = read_table(path, Wanted(needed=NEEDED, key=lambda header: _columns(header)["distance"][0]))
         found = {name: table.values[:, column] * scale for name, (column, scale) in _columns(table.header).items()}

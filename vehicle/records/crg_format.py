@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.records.channel import Channel, Measurement, check_length
+from vehicle.records.channel import Channel, Measurement, check_length, uniform_axis
 from vehicle.records.reader import digest
 from vehicle.records.table import Vector
 
@@ -108,7 +108,7 @@ def read_surface(path: Path) -> Surface:
             f"{path}: holds {np.nanmax(np.abs(table)):.3g}, no height in m; the file was damaged, perhaps by a "
             "transfer that changes line ends; copy it as a binary file"
         )
-    u, v = start + step * np.arange(table.shape[0]), _places(path, [names[index] for index in longs], numbers)
+    u, v = uniform_axis(table.shape[0], step, start), _places(path, [names[index] for index in longs], numbers)
 
     def along(name: str, letter: str) -> Vector:
         column = next((index for index, one in enumerate(names) if one == f"reference line {name}"), None)
@@ -117,12 +117,12 @@ def read_surface(path: Path) -> Surface:
         return np.nan_to_num(table[:, column])  # the first number of a slope is not used
 
     slope, banking = along("slope", "s"), along("banking", "b")
-    line = numbers.get("reference_line_start_z", 0.0) + np.concatenate([[0.0], np.cumsum(slope[1:]) * step])
+    rise = numbers.get("reference_line_start_z", 0.0) + np.concatenate([[0.0], np.cumsum(slope[1:]) * step])
     heading = next((table[:, index] for index, one in enumerate(names) if one == "reference line phi"), np.zeros(1))
     return Surface(
         u=u,
         v=v,
-        z=table[:, longs] + line[:, None] + banking[:, None] * v[None, :],
+        z=table[:, longs] + rise[:, None] + banking[:, None] * v[None, :],
         curved=bool(np.nanmax(heading[1:] if heading.size > 1 else heading) - np.nanmin(heading[-1:]) != 0.0),
         sha256=digest(path),
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.records.channel import Channel, Measurement
+from vehicle.records.channel import Channel, Measurement, uniform_axis
 from vehicle.records.text import read_text
 from vehicle.records.units import find_unit
 
@@ -70,7 +70,7 @@ def read(path: Path) -> Measurement:
         )
     table = values.reshape(-1, count)
     start = float(words["XSTART"]) if "XSTART" in words and _is_number(words["XSTART"]) else 0.0
-    distance = (start + step * np.arange(table.shape[0])) * along.factor
+    distance = uniform_axis(table.shape[0], step, start) * along.factor
     channels = [Channel(name="distance", values=distance, unit="m", function="road profile")]
     channels += [
         Channel(

@@ -14,12 +14,13 @@ LARGEST_EVENT = 10.0
 """Largest level of a rare event, as a multiple of the plausible level [-]; a sample above it is a logger's fault."""
 
 
-def rare_events(values: Vector, limit: float) -> bool:
+def rare_events(values: Vector, limit: float, largest: float = LARGEST_EVENT) -> bool:
     """Return True if few samples exceed a plausible level, and none by far.
 
     Args:
         values: samples about zero, shape (n,).
         limit: plausible level, in the unit of the samples.
+        largest: largest level of a rare event, as a multiple of the plausible level.
     """
     size = np.abs(values)
-    return bool(np.mean(size > limit) <= RARE_SHARE and float(size.max()) <= LARGEST_EVENT * limit)
+    return bool(np.mean(size > limit) <= RARE_SHARE and float(size.max()) <= largest * limit)
