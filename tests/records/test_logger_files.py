@@ -88,6 +88,13 @@ def test_names_that_other_signs_separate_and_titles(tmp_path):
     assert [(one.name, one.place) for one in found.channels] == [("x", ""), ("y", "")]
 
 
+def test_a_line_of_units_alone_names_no_columns(tmp_path):
+    found = read(tmp_path, "[s],[mm],(m/(s^2))\n" + "".join(f"0.0{n},{n}.5,-{n}.5\n" for n in range(9)))
+    assert [(one.name, one.unit) for one in found.channels] == [("column 1", "s"), ("column 2", "mm"),
+                                                                ("column 3", "m/(s^2)")]  # fmt: skip
+    assert "the columns are numbered" in " ".join(found.notices)
+
+
 def test_units_in_brackets_leave_the_name():
     assert split_head("Speed (km/h)") == ("Speed", "km/h") and split_head("Accel X [g]") == ("Accel X", "g")
     assert split_head("Acceleration Sensor(Total)(g)") == ("Acceleration Sensor(Total)", "g")

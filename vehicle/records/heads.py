@@ -127,7 +127,7 @@ def read_heads(path: Path, lines: Sequence[str], start: int, delimiter: str, cou
         return Heads(names=numbered, units=tuple(own), sources=("",) * count, named=False, first=first)
     heads = [split_head(cell) if cell else (sources[n] or f"column {n + 1}", "") for n, cell in enumerate(names)]
     return Heads(
-        names=tuple(name for name, _ in heads),
+        names=tuple(name or f"column {n + 1}" for n, (name, _) in enumerate(heads)),
         units=tuple(line or unit for line, (_, unit) in zip(own, heads, strict=True)),
         sources=tuple(sources),
         named=True,
@@ -191,8 +191,11 @@ def bare_unit(cell: str) -> str:
         cell: as found, as "[m/s2]", "(g)", "m/(s^2)" or "-".
     """
     text = cell.strip(" -")
-    while len(text) > 1 and text[0] + text[-1] in ("[]", "()") and text.count(text[0]) == 1:
-        text = text[1:-1].strip(" -")
+    while len(text) > 1 and text[0] + text[-1] in ("[]", "()"):
+        inner = text[1:-1]
+        if inner.find(text[-1]) < inner.find(text[0]) or (text[-1] in inner and text[0] not in inner):
+            break  # the first bracket ends before the last: (m/s)/(N)
+        text = inner.strip(" -")
     return text
 
 
