@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.excitation.chosen_plates import chosen_plates
-from vehicle.excitation.plausibility import aliasing_notices, check_level, drifts, pauses
+from vehicle.excitation.plausibility import aliasing_notices, check_level, clipping, drifts, pauses
 from vehicle.excitation.rest import start_from_rest
 from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
 from vehicle.excitation.time_grid import LOWEST_RATE, check_rate, decimate, fill_missing, refine
@@ -90,7 +90,8 @@ def read_signal(
         values, filled = fill_missing(table, time, column)
         if table.header.cells[column].startswith("plate_") and not np.ptp(values) > 0.0:
             continue  # a run records the plate that it did not drive, too
-        notices.extend([*filled, *pauses(driven, time, values)])
+        plain_said = [*pauses(driven, time, values), *clipping(driven, values)] if plain else []  # else `choose` has
+        notices.extend([*filled, *plain_said])
         columns[driven] = values * _LENGTH_UNITS[unit]
     timestep, columns, resampled = _uniform_columns(table, time, columns, resample_hz)
     notices.extend(resampled)

@@ -11,6 +11,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.records.channel import Channel, Measurement
+from vehicle.records.channel_faults import MOTIONS, faults
 from vehicle.records.clock import longest_step, without_rounding
 from vehicle.records.table import Vector
 from vehicle.records.units import allowed_units, find_ratio, find_unit
@@ -190,6 +191,8 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
             raise DataError(f"{path}: {role}: {missing} missing values, the first at {at:.6g} s; cut them off with "
                             "--from and --to, or repair the file")  # fmt: skip
     time = _uniform(path, time, notices)
+    motions = {role: one for role, one in values.items() if channels[role].quantity in MOTIONS}
+    notices += faults(motions, time, moving=[role for role in motions if channels[role].quantity == "acceleration"])
     for role in values:
         if choice.detrend:
             count = np.arange(time.size)
