@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from vehicle.analysis.comfort import ComfortValue, comfort_value
 from vehicle.analysis.motion_response import MotionResponse
+from vehicle.analysis.seat_value import weighted_rms_of
 from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES
@@ -124,8 +125,17 @@ class Run:
         return responses(self.recording, self.signal, names, FRF_BAND, window)
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
-        """RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]."""
+        """Unweighted RMS acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2]; see `weighted_comfort`."""
         return comfort_value(self.recording.timestep, [self.recording[f"{place}_acc_{axis}"] for axis in AXES])
+
+    def weighted_comfort(self, place: str = "seat_rail") -> dict[str, float]:
+        """Weighted RMS acceleration (ISO 2631-1, as on a seat: z by Wk, x and y by Wd) of a place [m/s2].
+
+        Returns:
+            By axis, and "overall", their vector sum: the value of the report and of `summary.json`.
+        """
+        axes = [self.recording[f"{place}_acc_{axis}"] for axis in AXES]
+        return dict(zip((*AXES, "overall"), weighted_rms_of(self.recording.timestep, axes), strict=True))
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
         """Share of the time with |damper velocity| above a velocity [m/s]; that of the parameters by default."""

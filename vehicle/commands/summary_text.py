@@ -60,13 +60,14 @@ def _comfort(summary: dict[str, Any]) -> list[str]:
     if "seat_rail" in places:
         rms = places["seat_rail"]["rms_2_50_hz"]
         lines.append(
-            f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, 2 to 50 Hz (x {rms['x']:.4f}, "
-            f"y {rms['y']:.4f}, z {rms['z']:.4f}); ISO 2631-1 vector sum {_weighted(places, 'seat_rail'):.4f} m/s2"
+            f"comfort     seat rail {rms['overall']:.4f} m/s2 unweighted RMS, 2 to 50 Hz (x {rms['x']:.4f}, "
+            f"y {rms['y']:.4f}, z {rms['z']:.4f}); {_weighted(places, 'seat_rail'):.4f} m/s2 weighted RMS "
+            "(ISO 2631-1)"
         )
     if (ratio := summary["seat_value"]) is not None:
         lines.append(
-            f"            seat: ISO 2631-1 vector sum {_weighted(places, 'seat'):.4f} m/s2 (x, y by Wd, z by Wk); SEAT "
-            f"value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
+            f"            seat {_weighted(places, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
+            f"SEAT value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
         )
     return lines
 

@@ -88,7 +88,9 @@ def _job(options: argparse.Namespace) -> None:
         print(f"{folder}: finished rows are kept; --resume goes on", file=sys.stderr)
         raise
     if not options.quiet:
-        print(f"{folder}: {len(cases)} runs, {len(table.failed)} failed; table.csv, sweep.json, rows.jsonl, timing.csv")
+        files = "table.csv, sweep.json, rows.jsonl, timing.csv"
+        print(f"{folder}: {len(cases)} runs, {len(table.failed)} failed; {files}")
+        print("comfort_*: unweighted RMS of the seat rail, 2 to 50 Hz; *_weighted_*: weighted RMS (ISO 2631-1)")
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:

@@ -35,5 +35,5 @@ def run_card(run: Any) -> str:
     }
     shown = next(name for name in ("seat_rail_acc_z", *run.recording.channels) if name in run.recording.channels)
     if "seat_rail_acc_x" in run.recording.channels:
-        rows["comfort, seat rail"] = f"{run.comfort().overall:.3g} m/s² RMS, 2 to 50 Hz; lower is better"
+        rows["comfort, seat rail"] = f"{run.comfort().overall:.3g} m/s² unweighted RMS, 2 to 50 Hz; lower is better"
     return card("Run", rows, line_drawing(run.time, run[shown], f"{shown} over {run.signal.duration:g} s"))

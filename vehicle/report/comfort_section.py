@@ -23,7 +23,7 @@ def comfort(run: FinishedRun) -> Markup:
             "crest factor",
             "VDV [m/s¹·⁷⁵]",
             "MSDV [m/s¹·⁵]",
-            "RMS 2 to 50 Hz [m/s²]",
+            "unweighted RMS, 2 to 50 Hz [m/s²]",
         )
         rows = [
             (
