@@ -8,7 +8,7 @@ from vehicle.excitation.input_files import find_input, shipped_inputs
 from vehicle.excitation.signal_file import read_signal
 from vehicle.records.channel_faults import clipped, copies, faults, stuck
 
-TIME = np.arange(20000) * 1e-3
+TIME = (np.arange(20000) * 1e-3).astype(np.float64)
 
 
 def random_record(seed=1, band=(0.5, 50.0)):

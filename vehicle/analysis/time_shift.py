@@ -92,13 +92,13 @@ def time_shift(
     """
     if min(first.size, second.size) < 2 * LEAST_WINDOWS or not (np.ptp(first) > 0.0 and np.ptp(second) > 0.0):
         return None
-    (clean, begin), (other, other_begin) = _without_noise(first, second)
-    curve, offset = _Curve(other), start / step + other_begin - begin
+    (clean, begin), (against, against_begin) = _without_noise(first, second)
+    curve, offset = _Curve(against), start / step + against_begin - begin
     middle = 0.5 * (clean.size - 1)
     line = (0.0, 0.0) if guess is None else (guess.at((middle + begin) * step) / step, guess.drift)
     best = _refined(clean, curve, offset, line)
     if best is None or abs(best.correlation) < GOOD:
-        searched = searched_line(clean, other, offset, LARGEST_DRIFT)
+        searched = searched_line(clean, against, offset, LARGEST_DRIFT)
         other = None if searched is None else _refined(clean, curve, offset, searched)
         if other is not None and (best is None or abs(other.correlation) > abs(best.correlation)):
             best = other
