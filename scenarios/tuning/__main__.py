@@ -47,7 +47,7 @@ from scenarios.tuning.figures import correlation_figure, level_figure, parameter
 from scenarios.tuning.own_data import check_parameters, own_measurements
 from vehicle.car import Car, Run
 from vehicle.commands.command_line import ProgressLine
-from vehicle.commands.compare import mapping_options
+from vehicle.commands.compare import drift_option, mapping_options
 from vehicle.commands.input_options import record_options
 from vehicle.commands.parser import Parser
 from vehicle.parameters.paths import overrides_of
@@ -167,6 +167,9 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
     parameters: Sequence[Range] = parse_parameters(options.fit, tuning.vehicle)
     check_parameters(tuple(parameters), tuning.vehicle)
     measurements = own_measurements(options, runs.car())
+    notices = [f"- {text}" for one in measurements for text in one.notices]
+    for text in notices:
+        print(f"notice: {text.removeprefix('- ')}", file=sys.stderr, flush=True)
     if not options.fit:
         stuck = all(isinstance(one.target, FrfTarget) and one.target.signal is None for one in measurements)
         parameters = [one for one in AUTHORS if not stuck or one.path not in SLIDING]
@@ -179,7 +182,7 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
     return Findings(
         title=f"Parameters fitted to {', '.join(files)}",
         claims=own_claims(result, final),
-        notes=fit_notes("The fit", result, final),
+        notes=[*fit_notes("The fit", result, final), *(["The files:\n\n" + "\n".join(notices)] if notices else [])],
         data={"all": fit_numbers(result)},
         values=value_lines(result, tuning.vehicle),
         own_data=True,
@@ -240,6 +243,7 @@ def add_options(found: Parser) -> None:
     records.add_argument(
         "--delay", type=float, default=0.0, metavar="S", help="the records began this long after it [s]"
     )
+    drift_option(records)
     records.add_argument("--stretch", metavar="FROM:TO", help="part of the signals that counts for --record [s]")
     records.add_argument(
         "--lowpass", type=float, default=100.0, metavar="HZ", help="records are compared below it; %(default)g Hz"

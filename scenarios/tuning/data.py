@@ -53,10 +53,11 @@ BUMP_WINDOW = (4.9, 6.5)
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Measurement:
-    """A target of the fit and the signal it was measured with."""
+    """A target of the fit, the signal it was measured with, and what is odd about the file."""
 
     target: FrfTarget | RecordTarget
     signal: Signal
+    notices: tuple[str, ...] = ()
 
 
 def make_measurements(

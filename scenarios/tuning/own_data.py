@@ -9,7 +9,7 @@ import numpy as np
 
 from scenarios.tuning.data import CHANNELS, Measurement
 from vehicle.car import Car
-from vehicle.commands.compare import measured_choice
+from vehicle.commands.compare import clock_of, measured_choice
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
@@ -19,6 +19,7 @@ from vehicle.parameters.paths import full_path
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.records.channel import uniform_axis
+from vehicle.records.counterpart import clock_advice, counterparts, run_times, sign_and_unit
 from vehicle.records.measured import Measured, read_measured
 from vehicle.records.resampled import at_times
 from vehicle.records.table import Record
@@ -57,6 +58,11 @@ def own_measurements(options: argparse.Namespace, car: Car) -> list[Measurement]
     ]
 
 
+def _notices(file: Path, measured: Measured, more: list[str]) -> tuple[str, ...]:
+    """What is odd about a file, with its name."""
+    return tuple(f"{file.name}: {text}" for text in (*measured.notices, *more))
+
+
 def _read(options: argparse.Namespace, car: Car, file: Path) -> Measured:
     known = (*car.vehicle.channels, *car.vehicle.load_channels)
     return read_measured(file, known, measured_choice(options), turned=options.turned, window=options.window)
@@ -68,7 +74,8 @@ def _signal(name: str) -> Signal:
 
 def _responses(options: argparse.Namespace, car: Car, file: Path, level: str, band: tuple[float, float]) -> Measurement:
     """FRFs of one level; where the file tells no coherence, all lines count alike."""
-    found = _read(options, car, file).frf
+    measured = _read(options, car, file)
+    found = measured.frf
     if found is None:
         raise DataError(
             f"{file}: holds no FRFs, and no plate beside accelerations to estimate them from; for time histories give "
@@ -80,7 +87,7 @@ def _responses(options: argparse.Namespace, car: Car, file: Path, level: str, ba
     data.coherence[:] = np.where(untold, 1.0, data.coherence)
     signal = _signal(level)
     target = FrfTarget(name=file.stem, data=data, signal=None if level == STUCK else signal, window=options.window)
-    return Measurement(target=target, signal=signal)
+    return Measurement(target=target, signal=signal, notices=_notices(file, measured, []))
 
 
 def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Measurement:
@@ -97,7 +104,8 @@ def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Me
             raise DataError(f"{file}: holds no time history of --channel {' '.join(options.channel)}; found {there}")
     step = 1.0 / car.vehicle.solver.record_rate
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
-    times = held.time + options.delay - measured.start
+    delay, drift = clock_of(options)
+    times = run_times(held, delay, drift, measured.start)
     inside = np.flatnonzero((grid >= times[0] - 1e-9) & (grid <= times[-1] + 1e-9))
     if inside.size < 3:
         raise DataError(
@@ -112,9 +120,18 @@ def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Me
     if options.stretch:
         low, high = _numbers("--stretch", options.stretch, "FROM:TO in s, as in 4.9:6.5", least=0.0)
         window = (max(low, window[0]), min(high, window[1]))
-    record = Record(time=grid, channels=histories, units={one: held.units[one] for one in names})
+    units = {one: held.units[one] for one in names}
+    record = Record(time=grid, channels=histories, units=units)
     target = RecordTarget(name=file.stem, signal=signal, record=record, window=window, lowpass=options.lowpass)
-    return Measurement(target=target, signal=signal)
+    # The car where the fit begins tells the clock, the signs and the units of the measurement.
+    run = car.run(signal, engine="reduced", channels=names)
+    parts = counterparts(
+        Record(time=held.time, channels={one: held.channels[one] for one in names}, units=units),
+        Record(time=run.time, channels=run.recording.channels, units=run.recording.units),
+        times,
+    )
+    said = [*clock_advice(parts, step, delay, drift), *sign_and_unit(parts)]
+    return Measurement(target=target, signal=signal, notices=_notices(file, measured, said))
 
 
 def check_parameters(parameters: tuple[Range, ...], vehicle: Vehicle) -> None:

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from vehicle.analysis.weighting import weighting
+from vehicle.analysis.weighting import weighted_record, weighting
 from vehicle.commands.comfort import main
 
 
@@ -48,6 +48,24 @@ def test_json_holds_the_measures_of_each_axis(ride, capsys):
     assert found["z"]["vdv"] == pytest.approx(2.257, abs=0.0005)
     assert set(found["vector_sum"]) == {"weighted_rms", "vdv", "health_weighted_rms"}
     assert found["offset"]["treatment"] == "kept"
+
+
+def test_channels_that_were_copied_and_a_clipped_sensor_are_named(ride, tmp_path, capsys):
+    """The crest factor is the peak over the RMS that stands beside it."""
+    time = np.arange(12_000) * 1e-3
+    rough = np.cumsum(np.random.default_rng(3).standard_normal((2, 12_000)), axis=1)
+    rough = 0.1 * (rough - np.apply_along_axis(np.convolve, 1, rough, np.ones(400) / 400.0, "same"))
+    path = tmp_path / "copied.csv"
+    table = np.column_stack((time, rough[0], np.clip(rough[1], -0.6, 0.6), rough[0]))
+    np.savetxt(path, table, fmt="%.6f", delimiter=",", header="time [s],x [m/s2],y [m/s2],z [m/s2]", comments="")
+    assert main(["--input", str(path), "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert "x and z hold the same samples" in err and "--channel z=NAME" in err
+    assert "y: clipped?" in err and "x: clipped" not in err and "constant" not in err
+    found = json.loads(out)["z"]
+    weighted = weighted_record(1e-3, np.round(rough[0], 6), "Wk")
+    peak = np.abs(weighted[round(weighting("Wk").settling_s / 1e-3) :]).max()
+    assert found["crest_factor"] == pytest.approx(peak / found["weighted_rms"], rel=1e-6)
 
 
 def test_the_table_shows_the_same(ride, capsys):

@@ -16,7 +16,7 @@ from vehicle.commands.body import main as body_command
 from vehicle.commands.report import main
 from vehicle.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.report.comfort_class import reactions
-from vehicle.report.comparison import changed_parameters
+from vehicle.report.comparison import changed_parameters, difference
 from vehicle.report.moving_modes import FULL
 
 EMPTY = {"meta", "link", "input", "img", "br"}
@@ -147,6 +147,11 @@ def test_reactions_are_those_of_the_standard():
         3.0: ("extremely uncomfortable",),
     }
     assert {value: reactions(value) for value in told} == told
+
+
+def test_a_time_and_a_share_have_differences_and_no_ratio():
+    assert difference(3.57, 28.2, "s") == "+24.6 s" and difference(2.0, 5.5, "%") == "+3.5 percentage points"
+    assert difference(2.0, 3.0, "m/s²") == "+50 %" and difference(None, 3.0, "s") == "–"
 
 
 def test_changed_parameters_are_those_that_were_set():

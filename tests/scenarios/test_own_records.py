@@ -1,6 +1,7 @@
 """Targets of a fit from a file of the user: another clock, another rate, other units, the noise that was put in."""
 
 import argparse
+import re
 from pathlib import Path
 
 import numpy as np
@@ -46,7 +47,23 @@ def measured(folder: Path, *arguments: str):
     given = ["--record", str(folder / "bump.uff"), "--signal", str(folder / "bump.csv")]
     given += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", *arguments]
     (found,) = own_measurements(parser.parse_args(given), Car.load())
+    for text in found.notices:
+        assert text.startswith("bump.uff: ")
     return found.target
+
+
+def test_the_delay_that_was_forgotten_is_named(files):
+    """By the car where the fit begins, which has another law of friction."""
+    parser = argparse.ArgumentParser()
+    add_options(parser)
+    given = ["--record", str(files / "bump.uff"), "--signal", str(files / "bump.csv")]
+    given += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", "--turn", "damper_fr_velocity"]
+    (found,) = own_measurements(parser.parse_args(given), Car.load())
+    (late,) = (text for text in found.notices if "--delay" in text)
+    assert float(re.search(r"--delay (\S+)", late)[1]) == pytest.approx(
+        0.2, abs=5e-3
+    )  # the law moves the answer by 2.4 ms
+    assert any(text.endswith("give --turn damper_fr_velocity") for text in found.notices)
 
 
 def test_the_residuals_of_the_true_car_are_the_noise(files):

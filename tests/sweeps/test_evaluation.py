@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.sweeps.pieces import Peak, ShortRoad, grid
+from vehicle.analysis.seat_value import weighted_rms_of
 from vehicle.car import Car
 from vehicle.excitation.bump import bump_shape
 from vehicle.excitation.signal import Signal, uniform_time
@@ -48,10 +49,14 @@ def test_rows_are_those_of_the_runs_by_themselves(cases, together):
         run = Car.load(None, case.overrides).run(case.source.signal(), engine="reduced", channels=MEASURE.channels)
         for name, value in MEASURE(run).items():
             # What the longer step costs. A second of road has 800 samples behind the lead: a share moves by one.
-            slack = {"rel": 2e-3} if name.startswith("comfort") else {"abs": 1.5 / 800}
+            slack = {"rel": 2e-3} if "comfort" in name or "weighted" in name else {"abs": 1.5 / 800}
             if name in WAVE_NAMES:  # parts of a complex number, which may be near zero
                 slack = {"abs": 2e-3 * result.values["comfort_overall"]}
             assert result.values[name] == pytest.approx(value, nan_ok=True, **slack)
+        weighted = weighted_rms_of(
+            run.recording.timestep, [run[f"seat_rail_acc_{axis}"] for axis in "xyz"], skip=MEASURE.skip
+        )
+        assert result.values["seat_rail_weighted_overall"] == pytest.approx(weighted[3], rel=2e-3)
         fine = replace(MEASURE, timestep=1.25e-4)
         (near,) = evaluate([case], fine)
         assert near.values["comfort_overall"] == pytest.approx(fine(run)["comfort_overall"], rel=2e-4)

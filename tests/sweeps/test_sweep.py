@@ -90,7 +90,8 @@ def test_one_and_two_workers_make_the_same_table_bit_for_bit(tmp_path):
     lines = texts[0].decode().splitlines()
     assert len(lines) == 5
     assert lines[0].startswith("input,damper.coulomb_friction,comfort_x [m/s2],")
-    assert lines[0].endswith("first_slip_fl [s],engine,failed because")
+    assert lines[0].endswith("seat_rail_weighted_overall [m/s2],engine,failed because")
+    assert ",first_slip_fl [s],seat_rail_weighted_x [m/s2]," in lines[0]
     made = json.loads((tmp_path / "1" / "sweep.json").read_text(encoding="utf-8"))
     assert made["runs"] == 4 and made["failed"] == [] and made["engines_asked"] == ["reduced"]
 

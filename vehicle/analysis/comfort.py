@@ -94,7 +94,7 @@ def comfort_values(
 def comfort_value(
     time_step: float, acceleration: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
 ) -> ComfortValue:
-    """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unfiltered acceleration in a band.
+    """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unweighted acceleration in a band.
 
     Args:
         time_step: [s].

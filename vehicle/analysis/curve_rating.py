@@ -5,11 +5,14 @@ Source: ISO/TS 18571:2024, Road vehicles - Objective rating metric for non-ambig
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy
+
+from vehicle.analysis.time_shift import coefficients
+from vehicle.analysis.time_warping import warped_differences
 
 Vector = npt.NDArray[np.float64]
 
@@ -19,34 +22,28 @@ INNER, OUTER = 0.05, 0.5
 """Half widths of the corridors over the largest absolute value of the measured curve."""
 LARGEST_SHIFT = 0.2
 """Share of the record by which the curves may be shifted."""
-WARPING_WINDOW = 0.1
-"""Half width of the window of the dynamic time warping over the length of the shifted curves."""
 MAGNITUDE_LIMIT, SLOPE_LIMIT = 0.5, 2.0
 """Relative errors from which on the magnitude and the slope are rated 0."""
 SMOOTHED = 9
 """Samples of the running mean of the slope."""
 GRADES = ((0.94, "excellent"), (0.8, "good"), (0.58, "fair"))
 """Ratings above which a word holds; poor below."""
-LONGEST = 6000
-"""Samples beyond which the warping would take most of a second: longer records are to be brought to fewer."""
 _TIE = 1e-12
 """Correlations closer than this are equal: the smaller shift is taken."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class CurveRating:
+class Ratings:
     """The ratings, 0 to 1 each.
 
     Attributes:
         corridor, phase, magnitude, slope: of the four aspects [-].
-        shift: samples by which the simulated curve lags behind the measured one.
     """
 
     corridor: float
     phase: float
     magnitude: float
     slope: float
-    shift: int
 
     @property
     def overall(self) -> float:
@@ -57,6 +54,17 @@ class CurveRating:
     def grade(self) -> str:
         """The word of the standard for the whole."""
         return next((word for limit, word in GRADES if self.overall > limit), "poor")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CurveRating(Ratings):
+    """Ratings of a curve.
+
+    Attributes:
+        shift: samples by which the simulated curve lags behind the measured one.
+    """
+
+    shift: int
 
 
 def rate_curve(measured: npt.ArrayLike, simulated: npt.ArrayLike, step: float = 1.0) -> CurveRating:
@@ -73,32 +81,59 @@ def rate_curve(measured: npt.ArrayLike, simulated: npt.ArrayLike, step: float = 
         step: sampling interval; it changes nothing but the scale of the slopes, which cancels.
     """
     truth, curve = np.asarray(measured, dtype=float), np.asarray(simulated, dtype=float)
+    return rate_curves([truth], [curve], step)[0]
+
+
+def rate_curves(
+    measured: Sequence[Vector] | Vector, simulated: Sequence[Vector] | Vector, step: float = 1.0
+) -> list[CurveRating]:
+    """Rate several curves together; the ratings of each are those of `rate_curve`.
+
+    Args:
+        measured: T, k times (n,).
+        simulated: C, k times (n,).
+        step: sampling interval.
+    """
+    pairs = list(zip(measured, simulated, strict=True))
+    shifts = [best_shift(truth, curve) for truth, curve in pairs]
+    shifted = [
+        (truth[: truth.size - shift], curve[shift:]) if shift >= 0 else (truth[-shift:], curve[:shift])
+        for (truth, curve), shift in zip(pairs, shifts, strict=True)
+    ]
+    away, size = warped_differences([curve for _, curve in shifted], [truth for truth, _ in shifted])
+    return [
+        CurveRating(
+            corridor=_corridor(truth, curve),
+            phase=max(0.0, 1.0 - abs(shift) / (LARGEST_SHIFT * truth.size)),
+            magnitude=_share(float(away[number]), float(size[number]), MAGNITUDE_LIMIT),
+            slope=_slope_rating(*shifted[number], step),
+            shift=shift,
+        )
+        for number, ((truth, curve), shift) in enumerate(zip(pairs, shifts, strict=True))
+    ]
+
+
+def _corridor(truth: Vector, curve: Vector) -> float:
+    """Mean of the rating of each sample."""
     largest = float(np.max(np.abs(truth)))
     distance = np.abs(curve - truth)
-    if largest > 0.0:
-        inner, outer = INNER * largest, OUTER * largest
-        share = np.where(distance > outer, 0.0, ((outer - distance) / (outer - inner)) ** 2)
-        corridor = float(np.mean(np.where(distance < inner, 1.0, share)))
-    else:
-        corridor = float(np.mean(distance == 0.0))
-    shift = best_shift(truth, curve)
-    first, second = (truth[: truth.size - shift], curve[shift:]) if shift >= 0 else (truth[-shift:], curve[:shift])
-    path = _warping(second, first)
-    return CurveRating(
-        corridor=corridor,
-        phase=max(0.0, 1.0 - abs(shift) / (LARGEST_SHIFT * truth.size)),
-        magnitude=_share(second[path[0]], first[path[1]], MAGNITUDE_LIMIT),
-        slope=_share(_slope(second, step), _slope(first, step), SLOPE_LIMIT),
-        shift=shift,
-    )
+    if largest == 0.0:
+        return float(np.mean(distance == 0.0))
+    inner, outer = INNER * largest, OUTER * largest
+    share = np.where(distance > outer, 0.0, ((outer - distance) / (outer - inner)) ** 2)
+    return float(np.mean(np.where(distance < inner, 1.0, share)))
 
 
-def _share(curve: Vector, truth: Vector, limit: float) -> float:
+def _share(away: float, size: float, limit: float) -> float:
     """1 - (|C - T|_1 / |T|_1) / limit, not below 0."""
-    away, size = float(np.sum(np.abs(curve - truth))), float(np.sum(np.abs(truth)))
     if size == 0.0:
         return float(away == 0.0)
     return max(0.0, 1.0 - away / size / limit)
+
+
+def _slope_rating(truth: Vector, curve: Vector, step: float) -> float:
+    first, second = _slope(truth, step), _slope(curve, step)
+    return _share(float(np.sum(np.abs(second - first))), float(np.sum(np.abs(first))), SLOPE_LIMIT)
 
 
 def best_shift(truth: Vector, curve: Vector) -> int:
@@ -113,22 +148,7 @@ def best_shift(truth: Vector, curve: Vector) -> int:
     """
     count = truth.size
     most = int(LARGEST_SHIFT * count + 1e-9)
-    first, second = truth - truth.mean(), curve - curve.mean()
-    # Sums over the overlap for every shift k: truth[: n - k] with curve[k:], and with negative k the other way.
-    cross = scipy.signal.correlate(second, first, method="fft")[count - 1 - most : count + most]
-    shifts = np.arange(-most, most + 1)
-    length = count - np.abs(shifts)
-    late = shifts >= 0
-
-    def sums(values: Vector, from_start: npt.NDArray[np.bool_]) -> Vector:
-        total = np.concatenate([[0.0], np.cumsum(values)])
-        return np.asarray(np.where(from_start, total[length], total[-1] - total[count - length]))
-
-    top, bottom = sums(first, late), sums(second, ~late)
-    spread = (sums(first**2, late) - top**2 / length) * (sums(second**2, ~late) - bottom**2 / length)
-    correlation = np.full(shifts.size, -np.inf)
-    fine = (spread > 0.0) & (length > 1)
-    correlation[fine] = (cross - top * bottom / length)[fine] / np.sqrt(spread[fine])
+    correlation = coefficients(truth, curve, most)
     best, found = correlation[most], 0
     for distance in range(1, most + 1):
         for shift in (distance, -distance):
@@ -145,37 +165,3 @@ def _slope(values: Vector, step: float) -> Vector:
     place = np.arange(values.size)
     reach = np.minimum(half, np.minimum(place, place[::-1]))
     return np.asarray((total[place + reach + 1] - total[place - reach]) / (2 * reach + 1))
-
-
-def _warping(curve: Vector, truth: Vector) -> npt.NDArray[np.int64]:
-    """Path of dynamic time warping: squared distances, steps (1, 0), (0, 1), (1, 1), within the window; (2, length).
-
-    The cumulated distances are computed along the antidiagonals i + j = d, of which each needs the two before.
-    """
-    count = curve.size
-    window = min(count, max(1, int(np.ceil(WARPING_WINDOW * count))))
-    width = 2 * window + 1  # index of a cell in its diagonal: i - j + window; |i - j| < window is allowed
-    before, last = np.full(width, np.inf), np.full(width, np.inf)
-    moves = np.zeros((2 * count - 1, window + 1), dtype=np.uint8)
-    for diagonal in range(2 * count - 1):
-        reach = min(window - 1, diagonal, 2 * count - 2 - diagonal)
-        reach -= (reach - diagonal) % 2
-        offsets = np.arange(-reach, reach + 1, 2)
-        i, index = (diagonal + offsets) // 2, slice(window - reach, window + reach + 1, 2)
-        cost = (curve[i] - truth[diagonal - i]) ** 2
-        left, right = slice(index.start - 1, index.stop - 1, 2), slice(index.start + 1, index.stop + 1, 2)
-        best = np.minimum(last[left], last[right])
-        taken = (last[right] < last[left]).astype(np.uint8)
-        taken[before[index] < best] = 2
-        best = np.minimum(best, before[index]) if diagonal else np.zeros(1)
-        moves[diagonal, (offsets[0] + window) // 2 :][: i.size] = taken
-        before[:] = np.inf
-        before[index] = cost + best
-        before, last = last, before
-    row = column = count - 1
-    path = [(row, column)]
-    while row or column:
-        move = int(moves[row + column, (row - column + window) // 2])
-        row, column = row - (move != 1), column - (move != 0)
-        path.append((row, column))
-    return np.array(path[::-1], dtype=np.int64).T

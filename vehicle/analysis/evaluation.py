@@ -138,7 +138,7 @@ def _axis(
         "multiplying_factor": factor,
         "weighted_rms": rms,
         "mtvv": transient,
-        "crest_factor": crest_factor(settled),
+        "crest_factor": crest_factor(settled, rms),
         "vdv": dose,
         "estimated_vdv": estimated_vibration_dose_value(rms, duration),
         "msdv": sickness,

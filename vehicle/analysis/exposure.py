@@ -63,10 +63,15 @@ def mtvv(
     return float(np.sqrt(max(float(running), 0.0)))
 
 
-def crest_factor(weighted: ArrayLike) -> float | None:
-    """Return max|a_w| / RMS [-]; None for a record that is zero throughout. Source: ISO 2631-1:1997, 6.2.1."""
+def crest_factor(weighted: ArrayLike, rms: float | None = None) -> float | None:
+    """Return max|a_w| / RMS [-]; None for a record that is zero throughout. Source: ISO 2631-1:1997, 6.2.1.
+
+    Args:
+        weighted: the part of the record whose maximum counts [m/s2], shape (n,).
+        rms: of the whole measurement [m/s2]; that of the part by default.
+    """
     record = _one(weighted)
-    rms = weighted_rms(record)
+    rms = weighted_rms(record) if rms is None else rms
     return float(np.abs(record).max() / rms) if rms > 0.0 else None
 
 

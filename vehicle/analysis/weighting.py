@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
@@ -18,6 +19,8 @@ FULL_SAMPLING_RATE = 200.0
 """From this sampling rate on a record holds vibration up to 80 Hz, the range of ISO 2631-1:1997, 1 [Hz]."""
 LINES_AT_ONCE = 2**18
 """Lines of a long record that are weighted at once."""
+KEPT_LINES = 2**16
+"""Lines up to which the factors are kept for the next record: a megabyte."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -173,8 +176,17 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
     length = scipy.fft.next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
     # Those of numpy need no room of their own.
     spectrum, frequency = np.fft.rfft(array, length, axis=1), np.fft.rfftfreq(length, step)
-    for first in range(0, frequency.size, LINES_AT_ONCE):
-        some = slice(first, first + LINES_AT_ONCE)
-        spectrum[:, some] *= curve.transfer_function(frequency[some])
+    if frequency.size <= KEPT_LINES:
+        spectrum *= _factors(name, length, step)
+    else:
+        for first in range(0, frequency.size, LINES_AT_ONCE):
+            some = slice(first, first + LINES_AT_ONCE)
+            spectrum[:, some] *= curve.transfer_function(frequency[some])
     weighted = np.fft.irfft(spectrum, length, axis=1)[:, :samples]
     return np.asarray(weighted.reshape(np.shape(signals)), dtype=np.float64)
+
+
+@lru_cache(maxsize=8)
+def _factors(name: str, length: int, step: float) -> NDArray[np.complex128]:
+    """Complex factors of a weighting at the lines of a record; the runs of a sweep have one length."""
+    return weighting(name).transfer_function(np.fft.rfftfreq(length, step))

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from vehicle.analysis.comfort import COMFORT_BAND, ComfortValue, comfort_value
 from vehicle.analysis.motion_response import MotionResponse
+from vehicle.analysis.seat_value import weighted_rms_of
 from vehicle.analysis.slip import first_slip, slip_share
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES
@@ -133,15 +134,26 @@ class Run:
         return responses(self.recording, self.signal, names, self.signal.band(FRF_BAND), window)
 
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
-        """Return the RMS of the unfiltered acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2].
+        """Return the unweighted RMS acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2].
 
-        The evaluated span counts. The band ends where that of the signal ends; see `ComfortValue.band`.
+        The evaluated span counts. The band ends where that of the signal ends; see `ComfortValue.band`. For weighted
+        values see `weighted_comfort`.
         """
         return comfort_value(self.recording.timestep, self.at(place), self.signal.band(COMFORT_BAND))
 
     def at(self, place: str) -> list[npt.NDArray[np.float64]]:
         """Accelerations of a place in x, y, z [m/s2] over the evaluated span."""
         return [self.recording[f"{place}_acc_{axis}"][self.evaluated] for axis in AXES]
+
+    def weighted_comfort(self, place: str = "seat_rail") -> dict[str, float]:
+        """Weighted RMS acceleration (ISO 2631-1, as on a seat: z by Wk, x and y by Wd) of a place [m/s2].
+
+        Returns:
+            By axis, and "overall", their vector sum: the value of the report and of `summary.json`.
+        """
+        axes = [self.recording[f"{place}_acc_{axis}"] for axis in AXES]
+        weighted = weighted_rms_of(self.recording.timestep, axes, skip=self.skip)
+        return dict(zip((*AXES, "overall"), weighted, strict=True))
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
         """Share of the evaluated span with |damper velocity| above one [m/s]; that of the parameters by default."""

@@ -125,12 +125,18 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
     import numpy as np
 
     from vehicle.analysis.evaluation import application, evaluate, offset_line, without_offset
+    from vehicle.records.channel_faults import copies
 
     application(options.place)
     if options.rail is not None and options.place not in ("seat", "seat_bs6841"):
         raise ConfigurationError(f"--place {options.place}: --rail asks for the value of a seat; leave one of them out")
     record = _read(options, options.picks)
     axes, xyz = list(record.channels), np.array(list(record.channels.values()))
+    twice = [
+        f"{one} and {other} hold the same samples, which the vector sum counts twice: was a channel copied, or chosen "
+        f"twice? Choose another: --channel {other}=NAME"
+        for one, other in copies(record.channels)
+    ]
     removed = options.offset == "remove"
     result = evaluate(
         record.step,
@@ -148,7 +154,7 @@ def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
         "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
         "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
     }
-    found = {"input": options.input, "offset": offset, **result, "notices": list(record.notices)}
+    found = {"input": options.input, "offset": offset, **result, "notices": [*record.notices, *twice]}
     if options.rail is not None:
         found["seat_value"] = _seat_value(options, record)
     if options.rail is not None or "seat" in options.picks:

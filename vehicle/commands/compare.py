@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -78,6 +79,38 @@ def parser() -> Parser:
     found.add_argument("--json", action="store_true", help="print the content of compare.json")
     message_options(found, quiet=True)
     return found
+
+
+def drift_option(parser: argparse._ActionsContainer) -> None:
+    """Add --drift: the clock of a measurement against that of the run."""
+    parser.add_argument(
+        "--drift",
+        type=float,
+        default=0.0,
+        metavar="PPM",
+        help="the clock of the measurement is slow by so many parts per million: its times are multiplied by 1 + PPM / "
+        "1e6, then --delay is added; 0",
+    )
+
+
+def clock_of(options: argparse.Namespace) -> tuple[float, float]:
+    """Return --delay [s] and --drift as a share [-].
+
+    Args:
+        options: of a command with both.
+
+    Raises:
+        ConfigurationError: a number that is not finite, or a drift of more than a tenth.
+    """
+    from vehicle.records.counterpart import PARTS
+
+    if not math.isfinite(options.delay):
+        raise ConfigurationError(f"--delay {options.delay:g}: must be a finite number of seconds")
+    if not abs(options.drift) <= 0.1 * PARTS:
+        raise ConfigurationError(
+            f"--drift {options.drift:g}: must be -100000 to 100000 parts per million; for another rate give --rate HZ"
+        )
+    return options.delay, options.drift / PARTS
 
 
 def measured_options(parser: Parser, *, required: bool = False, several: bool = False) -> None:
@@ -215,6 +248,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
 
     edges = edges_of(options.bands)
     choice = measured_choice(options)
+    delay, drift = clock_of(options)
     measurement = read_record(options.measured, choice.databases)
     if measurement.shapes and not measurement.channels:
         for group in (RECORDS, RESPONSES, CHANNELS, RUN):
@@ -230,7 +264,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
             refuse_idle(options, RESPONSES)
         if measured.record is None:
             refuse_idle(options, RECORDS)
-        comparison = comparison_of(measured, simulated, edges=edges, delay=options.delay, window=options.window)
+        comparison = comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=options.window)
         with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
             write_comparison(folder, comparison)
         summary, said = comparison.summary(), comparison.text()

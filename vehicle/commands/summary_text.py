@@ -68,13 +68,13 @@ def _comfort(summary: dict[str, Any]) -> list[str]:
         low, high = rms.get("band_hz", COMFORT_BAND)
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
         lines.append(
-            f"comfort     seat rail {rms['overall']:.4f} m/s2 unfiltered RMS, {low:g} to {high:g} Hz ({axes}); ISO "
-            f"2631-1 vector sum {_weighted(places, 'seat_rail'):.4f} m/s2"
+            f"comfort     seat rail {rms['overall']:.4f} m/s2 unweighted RMS, {low:g} to {high:g} Hz ({axes}); "
+            f"{_weighted(places, 'seat_rail'):.4f} m/s2 weighted RMS (ISO 2631-1)"
         )
     if (ratio := summary["seat_value"]) is not None:
         lines.append(
-            f"            seat: ISO 2631-1 vector sum {_weighted(places, 'seat'):.4f} m/s2 (x, y by Wd, z by Wk); SEAT "
-            f"value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
+            f"            seat {_weighted(places, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
+            f"SEAT value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
         )
     return lines
 

@@ -99,6 +99,7 @@ def _job(options: argparse.Namespace) -> None:
             f"{folder}: {len(cases)} runs, {len(table.failed)} failed, evaluated from {skip:g} s on; table.csv, "
             f"{differences}sweep.json, rows.jsonl, timing.csv"
         )
+        print("comfort_*: unweighted RMS of the seat rail, 2 to 50 Hz; *_weighted_*: weighted RMS (ISO 2631-1)")
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:

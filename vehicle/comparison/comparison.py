@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from vehicle.comparison.frf_comparison import BANDS, FrfComparison, compare_responses
-from vehicle.comparison.record_comparison import RecordComparison, compare_records, shifted
+from vehicle.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
 from vehicle.comparison.simulated import Simulated
 from vehicle.comparison.tables import Comparison
 from vehicle.errors import DataError
+from vehicle.records.counterpart import clock_advice, response_faults, run_times, sign_and_unit
 from vehicle.records.measured import Measured
 
 
@@ -16,7 +19,9 @@ def comparison_of(
     *,
     edges: tuple[float, ...] | None = None,
     delay: float = 0.0,
+    drift: float = 0.0,
     window: float | None = None,
+    command: str = "",
 ) -> Comparison:
     """Put a measurement beside a run.
 
@@ -25,7 +30,9 @@ def comparison_of(
         simulated: the run.
         edges: of the bands [Hz]; octaves by default.
         delay: the measurement began this long after the run [s].
+        drift: the clock of the measurement is slow by this share [-].
         window: as of `read_measured`, for both.
+        command: what has the options --delay and --drift, where the one that was typed has not.
 
     Raises:
         DataError: nothing in common.
@@ -40,9 +47,18 @@ def comparison_of(
         else:
             responses, signatures = compare_responses(measured.frf, other, edges or BANDS)
     records: tuple[RecordComparison, ...] = ()
+    judged: set[str] = set()
     if measured.record is not None:
-        records = compare_records(measured.record, simulated.record, delay - measured.start)
-        notices += shifted(records, delay)
+        times = run_times(measured.record, delay, drift, measured.start)
+        records, parts = compare_records(measured.record, simulated.record, times)
+        step = records[0].time[1] - records[0].time[0] if records else 0.0
+        notices += clock_advice(parts, float(step), delay, drift, command)
+        notices += [*sign_and_unit(parts), *unlike_copies(records)]
+        judged = {part.channel for part in parts if part.known}
+    for one in responses:
+        if one.channel not in judged:
+            weight = np.nan_to_num(one.measured_coherence, nan=1.0) * np.nan_to_num(one.simulated_coherence, nan=1.0)
+            notices += response_faults(one.channel, one.measured, one.simulated, weight)
     if not responses and not records:
         raise DataError(f"{measured.file.path}: nothing of it has a counterpart in the run {simulated.name}")
     return Comparison(

@@ -11,6 +11,7 @@ import numpy as np
 
 from vehicle.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.comparison.record_comparison import RecordComparison
+from vehicle.records.counterpart import PARTS
 
 SHOWN = 12
 """Most rows of a table on the console."""
@@ -18,8 +19,10 @@ SHOWN = 12
 BAND_HEADS = ("error", "magnitude_db", "magnitude_rms_db", "phase_deg", "weight", "lines")
 """What is said of a response in a band."""
 
-HEADS = ("kind", "channel", "low_hz", "high_hz", *BAND_HEADS, "frac", "scaled_frac", "frequency_scale", "rms_ratio",
-         "correlation", "iso18571", "corridor", "phase", "magnitude", "slope", "lag_s")  # fmt: skip
+HEADS = (
+    *("kind", "channel", "low_hz", "high_hz", *BAND_HEADS, "frac", "scaled_frac", "frequency_scale", "rms_ratio"),
+    *("correlation", "iso18571", "corridor", "phase", "magnitude", "slope", "lag_s", "drift_ppm", "window_s"),
+)
 """Columns of `compare.csv`."""
 
 
@@ -67,6 +70,8 @@ class Comparison:
                 "iso18571": one.rating.overall,
                 **{name: getattr(one.rating, name) for name in ("corridor", "phase", "magnitude", "slope")},
                 "lag_s": one.lag,
+                "drift_ppm": PARTS * one.drift,
+                "window_s": one.rating.window,
             }
             for one in self.records
         ]
@@ -110,8 +115,13 @@ class Comparison:
                     "rms_ratio": _plain(one.rms_ratio),
                     "correlation": _plain(one.correlation),
                     "iso18571": {**asdict(one.rating), "overall": one.rating.overall, "grade": one.rating.grade},
-                    "rated_rate_hz": one.rated_rate,
-                    "lag_s": one.lag,
+                    "rated_rate_hz": 1.0 / float(one.time[1] - one.time[0]),
+                    "lag_s": _plain(one.lag),
+                    "lag_error_s": _plain(one.clock.shift_error) if one.clock else None,
+                    "drift_ppm": _plain(PARTS * one.drift),
+                    "drift_error_ppm": _plain(PARTS * one.clock.drift_error) if one.clock else None,
+                    "aligned_correlation": one.clock.correlation if one.clock else None,
+                    "repeats_after_s": one.clock.period if one.clock else None,
                 }
                 for one in self.records
             ],
@@ -124,7 +134,8 @@ class Comparison:
         about = (
             f"# measured {self.measured}, simulated {self.simulated}; worst first; error: root of the mean of "
             "|ln(simulated / measured)|^2 weighted by both coherences; magnitude positive where simulated is larger; "
-            "iso18571: ISO/TS 18571, 0 to 1; lag positive where simulated is late"
+            "iso18571: ISO/TS 18571, 0 to 1, mean over windows of window_s at the full rate, weighted by their RMS; "
+            "lag: positive where simulated is late, in the middle of the record; drift: its change per time"
         )
         rows = [",".join(_cell(row.get(name)) for name in HEADS) for row in self.rows()]
         return "\n".join([about, ",".join(HEADS), *rows, ""])
@@ -159,21 +170,27 @@ class Comparison:
         if times:
             lines.append(
                 f"{'channel':<28}{'RMS ratio':>11}{'correlation':>13}{'ISO 18571':>11}{'corridor':>10}{'phase':>8}"
-                f"{'magnitude':>11}{'slope':>8}{'lag [ms]':>10}"
+                f"{'magnitude':>11}{'slope':>8}{'lag [ms]':>10}{'drift [ppm]':>13}"
             )
             lines += [
                 f"{row['channel']:<28}{_told(row['rms_ratio']):>11}{_told(row['correlation']):>13}{row['iso18571']:>11.3f}"
                 f"{row['corridor']:>10.3f}{row['phase']:>8.3f}{row['magnitude']:>11.3f}{row['slope']:>8.3f}"
-                f"{1e3 * row['lag_s']:>10.2f}"
+                f"{_told(1e3 * row['lag_s']):>10}{_told(row['drift_ppm'], 0):>13}"
                 for row in times[:SHOWN]
             ]
             lines += _left(times)
+            windows = sorted({(one.rating.window, one.rating.windows) for one in self.records})
+            lines.append(
+                "ISO 18571: mean over "
+                + ", ".join(f"{count} window{'s' if count > 1 else ''} of {length:.4g} s" for length, count in windows)
+                + " at the full rate, weighted by their RMS"
+            )
         return "\n".join([*lines, *(f"notice: {text}" for text in self.notices)])
 
 
-def _told(value: float) -> str:
+def _told(value: float, digits: int = 3) -> str:
     """A number, or a dash where there is none: a channel at rest has no RMS ratio and no correlation."""
-    return f"{value:.3f}" if math.isfinite(value) else "-"
+    return f"{value:.{digits}f}" if math.isfinite(value) else "-"
 
 
 def _band(row: dict[str, Any]) -> str:

@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError
+from vehicle.records.channel_faults import clipped, constant_part
 from vehicle.records.clock import PAUSE
 from vehicle.records.rare_events import rare_events
 
@@ -197,16 +198,27 @@ def pauses(wheel: str, time: NDArray[np.float64], values: NDArray[np.float64]) -
         time: sample times [s], shape (n,).
         values: of the plate in any unit, shape (n,).
     """
-    moves = np.flatnonzero(np.diff(values) != 0.0)  # steps with motion
-    if moves.size < 2:
+    part = constant_part(values)
+    if part is None or time[part[1]] - time[part[0]] < PAUSE:
         return []
-    rests = time[moves[1:]] - time[moves[:-1] + 1]
-    longest = int(np.argmax(rests))
-    if rests[longest] < PAUSE:
-        return []
-    more = int(np.count_nonzero(rests >= PAUSE)) - 1
+    moves = np.flatnonzero(np.diff(values) != 0.0)
+    more = int(np.count_nonzero(time[moves[1:]] - time[moves[:-1] + 1] >= PAUSE)) - 1
     return [
-        f"plate {wheel} stands still for {rests[longest]:.4g} s from t = {time[moves[longest] + 1]:.6g} s on, between "
-        "two motions: a pause of the record? RMS, comfort and slip shares count it"
+        f"plate {wheel} stands still for {time[part[1]] - time[part[0]]:.4g} s from t = {time[part[0]]:.6g} s on, "
+        "between two motions: a pause of the record? RMS, comfort and slip shares count it"
         + (f"; {more} shorter pauses beside it" if more else "")
+    ]
+
+
+def clipping(wheel: str, values: NDArray[np.float64]) -> list[str]:
+    """A notice for each side on which the displacement of a plate is clipped.
+
+    Args:
+        wheel: whose plate.
+        values: of the plate in any unit, shape (n,).
+    """
+    return [
+        f"plate {wheel}: clipped? {100.0 * share:.3g} % of the samples are equal to the {side}, {level:.4g}, with "
+        "sharp edges, where the velocity jumps; measure with a larger range, or take a part without (--from S, --to S)"
+        for side, level, share in clipped(values)
     ]

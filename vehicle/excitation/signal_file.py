@@ -11,7 +11,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.excitation.chosen_plates import chosen_plates
-from vehicle.excitation.plausibility import aliasing_notices, check_level, drifts, pauses
+from vehicle.excitation.plausibility import aliasing_notices, check_level, clipping, drifts, pauses
 from vehicle.excitation.rest import start_from_rest
 from vehicle.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
 from vehicle.excitation.time_grid import FINE_RATE, LOWEST_RATE, SMOOTH_RATE, check_rate, fill_missing
@@ -97,7 +97,8 @@ def read_signal(
         values, filled = fill_missing(table, time, column)
         if table.header.cells[column].startswith("plate_") and not np.ptp(values) > 0.0:
             continue  # a run records the plate that it did not drive, too
-        notices.extend([*filled, *pauses(driven, time, values)])
+        plain_said = [*pauses(driven, time, values), *clipping(driven, values)] if plain else []  # else `choose` has
+        notices.extend([*filled, *plain_said])
         columns[driven] = values * _LENGTH_UNITS[unit]
     timestep, columns, recorded, brought = _uniform_columns(table, time, columns, resample)
     notices.extend(brought)

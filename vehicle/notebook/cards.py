@@ -37,5 +37,5 @@ def run_card(run: Any) -> str:
     if "seat_rail_acc_x" in run.recording.channels:
         value = run.comfort()
         low, high = value.band
-        rows["comfort, seat rail"] = f"{value.overall:.3g} m/s² RMS, {low:g} to {high:g} Hz; lower is better"
+        rows["comfort, seat rail"] = f"{value.overall:.3g} m/s² unweighted RMS, {low:g} to {high:g} Hz; lower is better"
     return card("Run", rows, line_drawing(run.time, run[shown], f"{shown} over {run.signal.duration:g} s"))

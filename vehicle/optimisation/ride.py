@@ -22,9 +22,9 @@ RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
 SEAT = tuple(f"seat_acc_{axis}" for axis in AXES)
 
 KINDS = {
-    "comfort": ("m/s2", "RMS of the seat rail in 2 to 50 Hz, all axes; comfort_x, _y, _z one of them"),
-    "weighted": ("m/s2", "RMS of the seat rail weighted as ISO 2631-1 does, all axes"),
-    "seat": ("m/s2", "the same of the seat, of a car with an occupant"),
+    "comfort": ("m/s2", "unweighted RMS of the seat rail, 2 to 50 Hz, all axes; comfort_x, _y, _z one of them"),
+    "weighted": ("m/s2", "weighted RMS of the seat rail (ISO 2631-1), all axes"),
+    "seat": ("m/s2", "weighted RMS of the seat (ISO 2631-1), all axes, of a car with an occupant"),
     "tyre_load": ("-", "RMS of dynamic over static tyre load, all tyres; tyre_load_fr that of one"),
     "lowest_load": ("-", "lowest tyre load over the static one, all tyres; lowest_load_fr that of one"),
     "travel": ("m", "largest travel of a damper from rest; travel_fr that of one"),

@@ -60,9 +60,10 @@ def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, st
     Returns:
         What the summary says of it.
     """
-    comparison = comparison_of(measured, of_run(run))
+    comparison = comparison_of(measured, of_run(run), command="python -m vehicle compare, after the run")
     files |= write_comparison(folder, comparison)
-    return {"file": comparison.measured, "table": comparison.summary()["table"]}
+    told = comparison.summary()
+    return {"file": comparison.measured, "table": told["table"], "notices": told["notices"]}
 
 
 def _place(channel: str) -> str:

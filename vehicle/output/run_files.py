@@ -136,6 +136,7 @@ def write_run(
         from vehicle.output.comparison_files import write_beside
 
         summary["measured"] = write_beside(folder, measured, run, files)
+        summary["notices"] += [f"{measured.file.path.name}: {text}" for text in summary["measured"]["notices"]]
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing

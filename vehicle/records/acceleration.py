@@ -10,6 +10,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.names import AXES
+from vehicle.records.channel_faults import faults
 from vehicle.records.choice import Choice, choose
 from vehicle.records.formats import is_table, read_columns
 from vehicle.records.integration import filtered
@@ -132,7 +133,9 @@ def read_acceleration(path: str | Path, place: str | None = None, choice: Choice
                 f"{LARGEST_ACCELERATION:g}; looks like mm/s2 or a spike? correct the unit in the header or the record"
             )
         xyz[axis] = values
-    notices = (*record.notices, *events, *_notices(xyz, 1.0 / record.step))
+    # Chosen channels were judged before they were filtered.
+    plain = faults(xyz, record.time, moving=list(xyz)) if choice is None and is_table(file) else []
+    notices = (*record.notices, *events, *plain, *_notices(xyz, 1.0 / record.step))
     return Record(
         time=record.time, channels=xyz, units=dict.fromkeys(xyz, "m/s2"), notices=notices, highest=record.highest
     )

@@ -12,6 +12,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.records.channel import Channel, Measurement, uniform_axis
+from vehicle.records.channel_faults import MOTIONS, faults
 from vehicle.records.clock import clock_options, is_uniform, longest_step, without_rounding
 from vehicle.records.resampled import resampled
 from vehicle.records.table import USABLE, Vector
@@ -217,6 +218,8 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
             raise DataError(f"{path}: {role}: {missing} missing values, the first at {at:.6g} s; cut them off with "
                             "--from and --to, or repair the file")  # fmt: skip
     time = _uniform(path, time, notices)
+    motions = {role: one for role, one in values.items() if channels[role].quantity in MOTIONS}
+    notices += faults(motions, time, moving=[role for role in motions if channels[role].quantity == "acceleration"])
     highest = USABLE / float(np.median(np.diff(time)))
     if choice.resample is not None and not _has_rate(time, choice.resample):
         values, said = resampled(

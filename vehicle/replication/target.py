@@ -11,6 +11,7 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal import MINIMUM_SAMPLES, uniform_time
+from vehicle.records.channel_faults import copies
 from vehicle.records.choice import Choice, choose
 from vehicle.records.integration import filtered
 from vehicle.records.reader import read_record
@@ -93,6 +94,10 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     _check_band(path, band, step, count, chosen.highest)
     found, said_of_band = _on_samples(np.array([values[name] for name in names]), step, band, rate)
     lines = Lines(found.shape[1], 1.0 / rate, band)
+    notices += [
+        f"{one} and {other} hold the same samples: right for heave alone; else choose another: --channel {other}=NAME"
+        for one, other in copies(chosen.values)
+    ]
     notices += [*said_of_band, *_outside(names, np.array([values[name] for name in names]), found, lines, band)]
     for name, inside in zip(names, lines.in_band(found), strict=True):
         if float(np.std(inside)) < SMALLEST:

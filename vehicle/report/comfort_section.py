@@ -32,7 +32,7 @@ def comfort(run: FinishedRun) -> Markup:
             "crest factor",
             "VDV [m/s¹·⁷⁵]",
             "MSDV [m/s¹·⁵]",
-            f"RMS {low:g} to {high:g} Hz [m/s²]",
+            f"unweighted RMS, {low:g} to {high:g} Hz [m/s²]",
         )
         rows = [
             (

@@ -94,8 +94,10 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     found: dict[tuple[str, str], float | None] = {}
     for place, value in summary["comfort"].items():
         words = place.replace("_", " ")
-        found[f"{words}: ISO 2631-1 vector sum", "m/s²"] = value["iso2631"]["vector_sum"]["weighted_rms"]
-        found |= {(f"{words}: unweighted RMS {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()}
+        found[f"{words}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"]["weighted_rms"]
+        found |= {
+            (f"{words}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
+        }
     shares = {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
     for wheel, share in shares.items():
         found[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
@@ -109,9 +111,23 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     return found
 
 
-def difference(first: float | None, other: float | None) -> str:
-    """Change from one number to another in percent; a dash where it cannot be told."""
-    if first is None or other is None or first == 0.0:
+DIFFERENCES = {"s": "s", "%": "percentage points"}
+"""Units of which a ratio says nothing, with the unit of their difference: a time at which something happens is counted
+from the start of the record, and a share may begin at next to none."""
+
+
+def difference(first: float | None, other: float | None, unit: str = "") -> str:
+    """Change from one number to another: a difference for the units of `DIFFERENCES`, else in percent; or a dash.
+
+    Args:
+        first, other: the numbers; None where there is none.
+        unit: of both.
+    """
+    if first is None or other is None:
+        return "–"
+    if unit in DIFFERENCES:
+        return f"{other - first:+.3g} {DIFFERENCES[unit]}"
+    if first == 0.0:
         return "–"
     change = 100.0 * (other / first - 1.0)
     return f"{change:+.0f} %" if abs(change) >= 10.0 else f"{change:+.1f} %"

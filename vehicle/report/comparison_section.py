@@ -24,7 +24,7 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
         values = [one.get((name, unit)) for one in figures]
         cells = [number(values[0])]
         for value in values[1:]:
-            cells += [number(value), difference(values[0], value)]
+            cells += [number(value), difference(values[0], value, unit)]
         rows.append((name, unit, *cells))
     inputs = [
         (

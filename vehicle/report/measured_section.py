@@ -18,12 +18,14 @@ UNITS = {
     "phase_deg": "phase, RMS [deg]",
     "iso18571": "ISO 18571",
     "lag_s": "lag [s]",
+    "drift_ppm": "drift [ppm]",
+    "window_s": "window of ISO 18571 [s]",
 }
 """Heads of columns with units."""
 
 ERROR = (
     "the error of a band is the root of the mean of |ln(simulated / measured)|², weighted by both coherences; "
-    "magnitude is positive where the simulation is larger, lag where it is late."
+    "magnitude is positive where the simulation is larger, lag where it is late; drift is the change of the lag."
 )
 
 

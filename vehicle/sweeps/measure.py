@@ -64,7 +64,7 @@ FRONT = tuple(CORNERS.values())[:2]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ComfortMeasure:
-    """Comfort values of the seat rail, slip shares, the first slip.
+    """Unweighted (comfort) and weighted RMS of the seat rail, slip shares, the first slip.
 
     Attributes:
         skip: seconds at the beginning that all but the first slip leave out: the car starts at rest.
@@ -96,14 +96,15 @@ class ComfortMeasure:
         slip = {f"{kind}_{wheel}": "-" for kind in ("slip_share", "saturated_share") for wheel in self.wheels}
         if self.seat:
             comfort |= {f"seat_weighted_{axis}": "m/s2" for axis in (*AXES, "overall")} | {"seat_value": "-"}
-        return comfort | slip | {f"first_slip_{wheel}": "s" for wheel in self.wheels}
+        weighted = {f"seat_rail_weighted_{axis}": "m/s2" for axis in (*AXES, "overall")}
+        return comfort | slip | {f"first_slip_{wheel}": "s" for wheel in self.wheels} | weighted
 
     def __call__(self, run: Run) -> dict[str, float]:
         """The numbers of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """Comfort [m/s2] in 2 to 50 Hz, its standard error as a share of it, the seat where it is asked for, slip.
+        """Unweighted RMS [m/s2] in 2 to 50 Hz (comfort) with its standard error as a share, weighted RMS, slip.
 
         The standard error is that over Gaussian roads of this class and length, see `vehicle.analysis.comfort_error`;
         weighted values, SEAT value and slip have none. Slip is above `damper.slip_velocity`, the saturated share above
@@ -111,11 +112,14 @@ class ComfortMeasure:
         """
         interval = runs.timestep
         kept = slice(round(self.skip / interval), None)
-        value = comfort_values(interval, runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))[:, :, kept])
+        rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
+        value = comfort_values(interval, rail[:, :, kept])
         numbers = {f"comfort_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)}
         numbers |= {"comfort_overall": value.overall, "comfort_error": value.error}
         # Not in `units`, so in no table: for the error of the difference of two cars.
         numbers |= dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True))
+        weighted = np.array([weighted_rms_of(interval, one, skip=self.skip) for one in rail])
+        numbers |= {f"seat_rail_weighted_{axis}": weighted[:, i] for i, axis in enumerate((*AXES, "overall"))}
         if self.seat:
             seat = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES))
             weighted = np.array([weighted_rms_of(interval, one, skip=self.skip) for one in seat])

@@ -102,7 +102,7 @@ def interfaces(
     if faults:
         raise DataError(
             f"{'. '.join(faults)}. Choose nodes with --point-nodes, a larger radius with --spread, or a "
-            "--point-distance up to 50 mm; check the frame of the model with --axes and --origin, and its unit of length."
+            "--point-distance up to 50 mm; check the frame with --axes and --origin, and the unit of length."
         )
     return found
 
