@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.flexbody.body_design import read_design
 from vehicle.flexbody.body_frame import body_frame
 from vehicle.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.flexbody.node_masses import NodeProperties
 from vehicle.flexbody.superelement_file import read_superelement
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.vehicle import load_vehicle
@@ -141,7 +142,7 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
     file.write_text(head.replace("mode_count = 9", "mode_count = 13") + body + members + "width = 0.05\nwall = 0.001\n")
     vehicle = load_vehicle()
     with pytest.raises(ConfigurationError, match="mode_count: found 13, but 6 nodes have 12 elastic modes"):
-        body_frame(read_design(file), vehicle.points, vehicle.body)
+        body_frame(read_design(file), vehicle.points, NodeProperties.of_body(vehicle.body, 0.0))
 
 
 def test_a_fit_prints_its_factors_and_builds_with_them(monkeypatch, capsys, tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from html import unescape
@@ -16,7 +17,7 @@ from vehicle.commands.body import main as body_command
 from vehicle.commands.report import main
 from vehicle.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.report.comfort_class import reactions
-from vehicle.report.comparison import changed_parameters, difference
+from vehicle.report.comparison import changed_parameters, difference, shipped_origin
 from vehicle.report.moving_modes import FULL
 
 EMPTY = {"meta", "link", "input", "img", "br"}
@@ -223,3 +224,14 @@ def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(re
     parts = {one["name"]: one["share"] for one in json.loads(capsys.readouterr().out)["contributions"]}
     assert first in parts and abs(parts[first]) == max(map(abs, parts.values()))
     assert f"made by {first} {100 * parts[first]:+.0f} %" in text
+
+
+def test_a_car_is_compared_with_the_shipped_one_that_it_was_made_from():
+    sedan = Car.load("sedan", ["name=mine", "body.mass=1300"]).vehicle
+    origin = shipped_origin(sedan)
+    assert origin is not None and origin.name == "sedan"
+    assert len(changed_parameters([origin, sedan])) == 6  # name, mass, four moments and products
+    # Most of it is of no shipped car: nothing is claimed.
+    table = dict(sedan.table)
+    table["front"], table["rear"] = {f"key_{number}": number for number in range(100)}, {}
+    assert shipped_origin(dataclasses.replace(sedan, table=table)) is None

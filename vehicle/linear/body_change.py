@@ -52,7 +52,7 @@ class BodyChange:
     move: Vector | None = None
     whole: Vector | None = None
     shift: Vector = field(default_factory=lambda: np.zeros(3))
-    hanging: Vector | float = 0.0
+    hanging: Vector | None = None
     first: int = 0
     modes: slice = field(default_factory=lambda: slice(0))
 
@@ -98,9 +98,13 @@ class BodyChange:
         """Return T' A T of a matrix over the known coordinates, (n, n)."""
         return matrix if self.whole is None else self.whole.T @ matrix @ self.whole
 
-    def frames(self, matrix: Vector | float) -> Vector | float:
+    def frames(self, matrix: Vector) -> Vector:
         """Return T' A T where the origin of the body alone moves: of what does not act on its modes."""
-        return matrix if self.move is None or isinstance(matrix, float) else self.move.T @ matrix @ self.move
+        return matrix if self.move is None else self.move.T @ matrix @ self.move
+
+    def shifted(self, rows: Vector) -> Vector:
+        """Return rows over the known coordinates, (..., n), where the origin of the body alone moves."""
+        return rows if self.move is None else rows @ self.move
 
 
 def same_body(body: TrimmedBody, known: TrimmedBody) -> bool:

@@ -174,8 +174,8 @@ class Terms:
             # The trimmed body is taken out before its origin moves, and comes back at the new one.
             own, rows = masses["body"], body_rows["body"]
             mass, weight = mass - rows.T @ own @ rows, weight - gravity * own[0, 0] * rows[2]
-            mass, turning, weight = change.frames(mass), change.frames(turning), weight @ change.move
-            body_rows = {name: one if name == "body" else one @ change.move for name, one in body_rows.items()}
+            mass, turning, weight = change.frames(mass), change.frames(turning), change.shifted(weight)
+            body_rows = {name: one if name == "body" else change.shifted(one) for name, one in body_rows.items()}
             mass, weight = mass + rows.T @ own @ rows, weight + gravity * own[0, 0] * rows[2]
         for one, other in zip(every, self.numbers, strict=True):
             for name, own in _fields({} if one is other else one, "mass/"):
@@ -185,7 +185,8 @@ class Terms:
                 mass = mass + rows.T @ more @ rows
                 weight = weight + gravity * more[0, 0] * rows[2]
                 turning = turning + more[0, 0] * change.frames(self.weight_terms[name])
-        turning = turning + change.frames(gravity * masses["body"][0, 0] * change.hanging)
+        if change.hanging is not None:
+            turning = turning + change.frames(gravity * masses["body"][0, 0] * change.hanging)
         return _Masses(masses=masses, rows=body_rows, mass=mass, weight=weight, turning=turning)
 
 

@@ -134,7 +134,9 @@ class TrimmedBody:
         """The body that the elastic model is of, before its mass was varied alone; moments to `DIGITS` digits."""
         if self.model_mass is None:
             return self
-        moments = {name: float(f"{getattr(self.inertia, name) / self.model_factor:.{DIGITS}g}") for name in MOMENTS}
+        moments: dict[str, Any] = {
+            name: float(f"{getattr(self.inertia, name) / self.model_factor:.{DIGITS}g}") for name in MOMENTS
+        }
         return replace(self, mass=self.model_mass, inertia=replace(self.inertia, **moments), model_mass=None)
 
 

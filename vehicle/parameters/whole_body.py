@@ -80,10 +80,10 @@ def followers(before: Mapping[str, Any], after: Mapping[str, Any], given: Collec
         after: the table with other values of mass or CoG.
         given: whole paths of what is given beside; that does not follow.
     """
-    numbers = [_numbers(one) for one in (before, after)]
-    if numbers[0] is None or numbers[1] is None:
+    own, other = _numbers(before), _numbers(after)
+    if own is None or other is None:
         return {}  # what is wrong with them is said where the table is read
-    (mass, cog, moments, about), (new_mass, new_cog, _, _) = numbers
+    (mass, cog, moments, about), (new_mass, new_cog, _, _) = own, other
     factor = new_mass / mass
     found = {f"body.inertia.{name}": factor * value for name, value in moments.items()}
     if about == "origin" and cog != new_cog:
