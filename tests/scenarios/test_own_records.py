@@ -1,6 +1,5 @@
 """Targets of a fit from a file of the user: another clock, another rate, other units, the noise that was put in."""
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 from scenarios.tuning.__main__ import add_options
 from scenarios.tuning.own_data import own_measurements
 from vehicle.car import Car
+from vehicle.commands.parser import Parser
 from vehicle.errors import DataError
 from vehicle.excitation.bump import bump
 from vehicle.records import uff_writer
@@ -41,7 +41,7 @@ def files(tmp_path_factory):
 
 
 def measured(folder: Path, *arguments: str):
-    parser = argparse.ArgumentParser()
+    parser = Parser()
     add_options(parser)
     given = ["--record", str(folder / "bump.uff"), "--signal", str(folder / "bump.csv")]
     given += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", *arguments]
