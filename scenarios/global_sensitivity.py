@@ -21,6 +21,7 @@ from scenarios.study import study_parser
 from vehicle.commands.command_line import ProgressLine, parse_and_run
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.options import VEHICLE_HELP, engine_option, resume_options
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.output.folder import write_json, write_text
@@ -80,7 +81,7 @@ MORRIS_RUNS = 440
 METHODS = ("sobol", "morris", "lhs")
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """The options of the command."""
     found = study_parser("global_sensitivity", quick="a few short runs, to see that everything works")
     found.add_argument("--method", choices=METHODS, default="sobol", help="sobol by default")

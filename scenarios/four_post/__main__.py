@@ -32,6 +32,7 @@ from scenarios.four_post.runs import (
 from scenarios.study import QUICK_NOTE, Study, study_parser
 from vehicle.car import Car
 from vehicle.commands.options import engine_option, vehicle_options
+from vehicle.commands.parser import Parser
 from vehicle.excitation.four_post import DURATION_S, MOTIONS
 from vehicle.linear.modes import Mode
 
@@ -302,7 +303,7 @@ def load(options: argparse.Namespace) -> list[Car]:
     return cars
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> Parser:
     jobs = "; this study runs in one process, so that it changes nothing"
     parser = study_parser("four_post", quick="short signals at two levels; peaks are left open", jobs=jobs)
     vehicle_options(parser)

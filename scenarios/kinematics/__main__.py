@@ -17,6 +17,7 @@ from scenarios.kinematics.claims import axle_table, claims
 from scenarios.kinematics.figures import compliance_figure, moved_figure, travel_figure
 from scenarios.study import Study, study_parser
 from vehicle.car import Car
+from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.shipped import CARS, vehicle_file
 
@@ -90,7 +91,7 @@ def load(options: argparse.Namespace) -> list[Path]:
     return options.vehicle or [vehicle_file(name) for name in CARS]
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """The options of the study."""
     found = study_parser("kinematics", quick="few points on the curves", jobs="; this study is one process")
     found.add_argument(

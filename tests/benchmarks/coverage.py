@@ -23,6 +23,7 @@ from vehicle.analysis.comfort_error import WAVES, difference_error
 from vehicle.car import Car
 from vehicle.commands.road import road_drive
 from vehicle.excitation.iso_road import CLASSES, REFERENCE, isotropic_coherence
+from vehicle.excitation.road_drive import RoadDrive
 from vehicle.names import AXES
 from vehicle.optimisation.trials import Spread, bands, samples_for
 from vehicle.parameters.ranges import Range
@@ -52,7 +53,9 @@ class LinearRide:
     def __init__(self, name: str, road: str, speed: float, overrides: Sequence[str] = ()) -> None:
         car = Car.load(name, overrides)
         numbers = argparse.Namespace(speed=speed, duration=None, rate=None, seed=1, coherence=None, patch=None)
-        self.drive = road_drive(road, numbers, car.vehicle)
+        drive = road_drive(road, numbers, car.vehicle)
+        assert isinstance(drive, RoadDrive)
+        self.drive = drive
         self.level, self.speed = CLASSES[road], speed / 3.6
         self.grid = np.arange(0.5, 60.0, 0.02)
         self.to_wheel = {

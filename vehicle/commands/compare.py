@@ -45,6 +45,7 @@ def parser() -> Parser:
     records.add_argument(
         "--delay", type=float, default=0.0, metavar="S", help="the measurement began this long after the run [s]; 0"
     )
+    drift_option(records)
     responses = found.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
     responses.add_argument(
         "--window",

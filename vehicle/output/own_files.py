@@ -17,7 +17,7 @@ def parameters_text(car: Car, header: str) -> str:
     """Return the vehicle file of a car; a body model of elsewhere is named as `write_own_files` copies it."""
     vehicle = car.vehicle
     if "/" in (name := vehicle.body.superelement or ""):
-        table = vehicle.table | {"body": vehicle.table["body"] | {"superelement": Path(name).name}}
+        table = {**vehicle.table, "body": {**vehicle.table["body"], "superelement": Path(name).name}}
         vehicle = replace(vehicle, table=table)
     return vehicle_text(vehicle, header)
 
