@@ -2,8 +2,8 @@
 
 Where the places stay, so do the rows J, the shapes of all outputs, and how forces of given size turn with the parts:
 
-    K = J' K_e J + sum of K_rot T' T + joint springs + stops + sum of p_i H_i + sum of m_b g G_b,
-    C = J' B_e J + joint dampers,    M = M0 + sum of J_b' (M_b - M_b0) J_b,
+    K = J' K_e J + sum of K_rot T' T + joint springs + stops + hold of the course + sum of p_i H_i + sum of m_b g G_b,
+    C = J' B_e J + joint dampers + what rolling adds,    M = M0 + sum of J_b' (M_b - M_b0) J_b,
 
 p_i being the preloads, H_i = -dg_i/du of the generalised force g_i of the preload i = 1, and G_b = dJ_bz'/du of the
 centre of gravity of part b. K is that of the other car plus the difference of this sum: what the sum misses would show
@@ -121,7 +121,7 @@ class Terms:
         left += np.einsum("nij,ni->j", self.rest.turned, preload[count:].reshape(-1, 3))
         static = static_loads(rows, settled, left)
         require_standing(vehicle, rows, static)
-        laws = law_matrices(rows, self.rest.jacobian, dampers)
+        laws = law_matrices(rows, self.rest.jacobian, dampers, preload)
         stiffness = self.matrices.system.stiffness + turning + self._stiffness(rows, springs, preload) - self.sum
         system = replace(self.matrices.system, mass=mass, stiffness=stiffness, **laws.system)
         return VariedCar(matrices=replace(self.matrices, system=system, body_masses=masses, **laws.car), static=static)
@@ -135,6 +135,9 @@ class Terms:
         turned = self.rest.turned.reshape(-1, j.shape[1])
         found += turned.T @ (np.repeat(e.rotations.stiffness, 3)[:, None] * turned)
         found[np.diag_indices(len(found))] += springs
+        if len(e.rolling.tyres):
+            course = e.rolling.course_rows(len(found))
+            found += course.T @ (e.rolling.hold[:3, None] * course)
         for index in np.flatnonzero(e.tables.kinds == 2).tolist():
             dof, curve = e.dampers.dofs[e.tables.elements[index]], curve_of(e.tables, index)
             ends = curve.force(np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]))

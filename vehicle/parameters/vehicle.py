@@ -14,6 +14,7 @@ from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.compose import compose
 from vehicle.parameters.composition import Composition
 from vehicle.parameters.curves import with_curve_files
+from vehicle.parameters.driving import Driving, driving_of, require_rolling
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.optional_keys import optional_paths
@@ -68,6 +69,7 @@ class Vehicle:
         name, gravity: as there; [m/s2].
         body: trimmed body.
         solver: numerics.
+        driving: whether its wheels roll.
         composition: everything else, placed and named.
     """
 
@@ -76,6 +78,7 @@ class Vehicle:
     gravity: float = field(compare=False)
     body: TrimmedBody = field(compare=False)
     solver: Solver = field(compare=False)
+    driving: Driving = field(compare=False)
     composition: Composition = field(compare=False)
 
     @property
@@ -182,7 +185,7 @@ class Vehicle:
         Args:
             path: whole path, of a value or of a component.
         """
-        kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, **self.composition.kinds}
+        kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, "driving": Driving, **self.composition.kinds}
         keys = path.removesuffix(".").split(".")
         # A component of a vector is one key behind its table, a number of a mode of the body two.
         for place, inner in (
@@ -225,9 +228,11 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
         gravity=head.gravity,
         body=body,
         solver=solver,
+        driving=driving_of(table),
         composition=compose(table, folders),
     )
     require_plausible(vehicle)
+    require_rolling(vehicle)
     return vehicle
 
 
