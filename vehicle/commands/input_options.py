@@ -43,6 +43,12 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
     )
     rate = "" if several else "; beside --input: in place of the times of the file"
     road_options(parser, several=several, rate_note=rate)
+    parser.add_argument(
+        "--tyre",
+        choices=("rolling", "standing"),
+        help="with a road: tyres that roll at its speed, as they do by default, or that stand on moving plates, as of a "
+        "car on a rig; the tyres of a car that stands on blocks too stand",
+    )
 
 
 def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate_note: str = "") -> None:
@@ -71,7 +77,7 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate
         help="of the tracks: 1 equal, 0 unrelated; isotropic plane by default",
     )
     group.add_argument(
-        "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m]; 0 by default"
+        "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m], 0 for none; 0.1 by default"
     )
 
 
@@ -110,6 +116,10 @@ def drives_on_road(options: argparse.Namespace) -> bool:
             if getattr(options, place, None) and not measured:
                 raise ConfigurationError(f"--{name}: belongs to --input; {words} drives all wheels of the car")
         return True
+    if getattr(options, "tyre", None) is not None:
+        raise ConfigurationError(
+            "--tyre: belongs to a road, as --road C --speed 80; on plates the tyres stand, unless --set driving.speed"
+        )
     if not options.input:
         raise ConfigurationError("needed is either --input FILE, or a road: --road C --speed 80")
     for name in ROAD_NUMBERS:

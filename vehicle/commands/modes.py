@@ -21,6 +21,9 @@ def parser() -> Parser:
     found.add_argument(
         "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
     )
+    found.add_argument(
+        "--speed", type=float, metavar="KM/H", help="modes of the car that drives at this speed, with tyres that roll"
+    )
     found.add_argument("--json", action="store_true", help="print JSON")
     found.add_argument(
         "--uff",
@@ -54,7 +57,8 @@ def _job(options: argparse.Namespace) -> None:
         if not (options.force and own):
             mend = "is of somebody else; give another name" if options.force else "exists; give --force"
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
-    car = Car.load(options.vehicle, options.overrides)
+    speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
+    car = Car.load(options.vehicle, [*options.overrides, *speed])
     found = modes_table(car, options.damper)
     if options.uff is not None:
         from vehicle.output.folder import write_whole
@@ -122,6 +126,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     found = car.modes(damper)
     return {
         "damper": damper,
+        "tyre": car.vehicle.driving.words,
         "inertia_variant": car.vehicle.body.inertia_variant,
         "modes": [
             {
@@ -145,7 +150,7 @@ def report(found: dict[str, Any]) -> str:
     """The table as text."""
     width = max((len(mode["description"]) for mode in found["modes"]), default=0)
     lines = [
-        f"assembled car, dampers {found['damper']}, inertia {found['inertia_variant']}",
+        f"assembled car, dampers {found['damper']}, tyres {found['tyre']}, inertia {found['inertia_variant']}",
         f"{'Hz':>8} {'damping':>8}  {'description':<{width}} energy",
     ]
     for mode in found["modes"]:
@@ -155,7 +160,8 @@ def report(found: dict[str, Any]) -> str:
             f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<{width}} {text}"
         )
     if found["growing"]:
-        lines.append(f"this car does not stand: {', '.join(found['growing'])} grows by itself (negative damping above)")
+        fault = "does not stand" if found["tyre"] == "standing" else "does not keep its course"
+        lines.append(f"this car {fault}: {', '.join(found['growing'])} grows by itself (negative damping above)")
     free = found["free_body"]
     if free["frequency_hz"]:
         lines.append("free trimmed body")

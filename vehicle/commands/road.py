@@ -64,11 +64,11 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
 
     Args:
         road: class of ISO 8608, or the file of a profile.
-        options: as of `road_options`.
+        options: as of `road_options`, or of `signal_options`.
         vehicle: the car.
 
     Raises:
-        ConfigurationError: no speed, or as of `RoadDrive`.
+        ConfigurationError: no speed, a car that cannot roll, or as of `RoadDrive`.
     """
     from vehicle.excitation.road_drive import RoadDrive
 
@@ -82,8 +82,27 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
         road=road,
         wheels=tuple((wheel.name, wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels),
         track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
+        driving=_driving(options, vehicle),
         **numbers,
     )
+
+
+def _driving(options: argparse.Namespace, vehicle: Vehicle) -> float | None:
+    """Speed at which the tyres roll on a road [m/s], 0 to let them stand; None where the car itself says it.
+
+    A car that stands on blocks too is on a rig, and its tyres stand where nothing is said.
+    """
+    from vehicle.parameters.elements import Tyre
+
+    asked, overrides = getattr(options, "tyre", None), getattr(options, "overrides", None) or ()
+    if any(text.partition("=")[0].strip().startswith("driving.speed") for text in overrides):
+        if asked is not None:
+            raise ConfigurationError(f"--tyre {asked} beside --set driving.speed: give one of them")
+        return None
+    on_blocks = any(one.ground for one in vehicle.composition.connections if not isinstance(one.law, Tyre))
+    if asked == "standing" or (asked is None and on_blocks):
+        return 0.0 if vehicle.driving.rolling else None
+    return float(options.speed) / 3.6
 
 
 main = command(parser, _job)

@@ -27,12 +27,14 @@ class MeasuredRoad:
         distance: places [m], (n,), increasing.
         right, left: heights of the tracks [m], (n,).
         source: name of the file.
+        patch: length of the contact patch [m] over which a tyre averages it; 0 for a point.
     """
 
     distance: NDArray[np.float64]
     right: NDArray[np.float64]
     left: NDArray[np.float64]
     source: str
+    patch: float = 0.0
 
     @property
     def length(self) -> float:
@@ -43,10 +45,12 @@ class MeasuredRoad:
     def words(self) -> str:
         """What it is, for messages and headers."""
         step = self.length / (self.distance.size - 1)
-        return f"measured road {self.source}, {self.length:.4g} m, a point every {step:.3g} m"
+        return f"measured road {self.source}, {self.length:.4g} m, a point every {step:.3g} m, contact patch {self.patch:g} m"
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
-        """Heights at equal distances, by a cubic spline; arguments as of `IsoRoad.height`.
+        """Heights at equal distances, by a cubic spline, or its mean over the patch; arguments as of `IsoRoad.height`.
+
+        Half a patch beyond its ends the road goes on level.
 
         Raises:
             DataError: the road ends before.
@@ -58,16 +62,21 @@ class MeasuredRoad:
                 "driven; ask for a shorter --duration"
             )
         heights = self.right if side == "right" else self.left
-        found: NDArray[np.float64] = scipy.interpolate.CubicSpline(self.distance, heights - heights[0])(
-            np.maximum(place, place[0])
-        )
+        spline = scipy.interpolate.CubicSpline(self.distance, heights - heights[0])
+        if self.patch > 0.0:
+            whole, first, last = spline.antiderivative(), self.distance[0], self.distance[-1]
+            ends = place + 0.5 * self.patch * np.array([[-1.0], [1.0]])
+            areas = whole(np.clip(ends, first, last)) + np.maximum(ends - last, 0.0) * (heights[-1] - heights[0])
+            return np.asarray((areas[1] - areas[0]) / self.patch)
+        found: NDArray[np.float64] = spline(np.maximum(place, place[0]))
         return np.where(place < self.distance[0], 0.0, found)
 
 
-def read_road(path: Path) -> MeasuredRoad:
+def read_road(path: Path, patch: float = 0.0) -> MeasuredRoad:
     """Read a profile.
 
     Args:
+        patch: length of the contact patch [m] over which it is averaged.
         path: columns `distance [m]`, `left [m]`, `right [m]` in any order; or a file of any format of
             `vehicle.records` with channels of these names in units of length.
 
@@ -90,7 +99,7 @@ def read_road(path: Path) -> MeasuredRoad:
         row = int(np.argmin(steps)) + 1 if steps.size else 0
         place = source or table.place(row)
         raise DataError(f"{place}: the distance must increase from row to row, over four rows or more")
-    return MeasuredRoad(distance=found["distance"], right=found["right"], left=found["left"], source=path.name)
+    return MeasuredRoad(distance=found["distance"], right=found["right"], left=found["left"], source=path.name, patch=patch)
 
 
 def _columns(header: Header) -> dict[str, tuple[int, float]]:
