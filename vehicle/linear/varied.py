@@ -119,6 +119,7 @@ class Terms:
         preload, count = settled.preload, len(self.rest.jacobian)
         left = unsolved(rows.layout, weight) - springs * settled.displacement + self.rest.jacobian.T @ preload[:count]
         left += np.einsum("nij,ni->j", self.rest.turned, preload[count:].reshape(-1, 3))
+        left[rows.layout.rolling.spins] = 0.0
         static = static_loads(rows, settled, left)
         require_standing(vehicle, rows, static)
         laws = law_matrices(rows, self.rest.jacobian, dampers, preload)
@@ -170,13 +171,17 @@ def same_places(vehicle: Vehicle, other: Vehicle) -> bool:
         return False
     if vehicle.body is not body and vehicle.body != replace(body, frequency_scale=vehicle.body.frequency_scale):
         return False
+    spinning = {wheel.part for wheel in car.wheels} if vehicle.driving.rolling else set[str]()
     for one, like in zip(car.parts, known.parts, strict=False):
+        # The inertia of a wheel about its axle is read from the model.
+        if (one.name in spinning or one.parent in spinning) and one.numbers != like.numbers:
+            return False
         # What is fixed to a flexible body changes its modes.
         if one.seat is not None and one.numbers != like.numbers:
             return False
     return (
         _alike(car.parts, known.parts, "numbers")
-        and _alike(car.connections, known.connections, "law")
+        and _alike(car.connections, known.connections, "law", "rolling")
         and _alike(car.springs, known.springs, "stiffness", "table")
         and _alike(car.joint_springs, known.joint_springs, "stiffness", "damping")
         and _alike(car.dampers, known.dampers, "law")

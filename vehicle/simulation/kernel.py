@@ -305,7 +305,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     generalised_forces(d, efc, e, s)
     modal_forces(d, e, s)
     rotations(d, e, c, s)
-    rolling_forces(d, e, s)
+    rolling_forces(d, efc, e, c, s)
     stops(d, e, s)
 
 

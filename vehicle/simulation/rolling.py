@@ -24,7 +24,7 @@ import numpy as np
 
 from vehicle.compiler import jitable
 from vehicle.simulation.element_records import Layout
-from vehicle.simulation.records import Efc, Fields, State
+from vehicle.simulation.records import Efc, Fields, State, Weights
 
 
 @jitable
@@ -84,13 +84,18 @@ def headings(time: float, d: Fields, e: Layout, s: State) -> None:
 
 
 @jitable
-def rolling_forces(d: Fields, e: Layout, s: State) -> None:
-    """Slope, aligning and gyroscopic moments on the hubs, and the hold of the course, on the coordinates."""
+def rolling_forces(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Slope, aligning and gyroscopic moments on the hubs, and the hold of the course, on the coordinates.
+
+    What the tyres hold level at rest, mN of the sliding share of the trim, is held by the hub and turns no wheel.
+    """
     own, push = e.rolling, s.push
     for dof in range(push.shape[0]):
         push[dof] = 0.0
     for n in range(own.tyres.shape[0]):
         tyre, frame, t = own.tyres[n], d.xmat[own.hubs[n]], s.turning[n]
+        row, spin = e.bushings.rows[tyre, 0], own.spins[n]
+        push[spin] = -c.preload[row] * efc.J[row, spin] - c.preload[row + 1] * efc.J[row + 1, spin]
         s.slope[n, 0] = max(0.0, s.force[tyre, 2]) * s.plate_velocity[own.plates[n], 2] / own.speeds[n]
         # -omega x (H e) = H e x omega
         momentum = -own.inertias[n] * own.speeds[n] / own.arms[n, 2]
