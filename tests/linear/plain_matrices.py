@@ -55,6 +55,7 @@ def plain_matrices(
         viscous=viscous,
         tyre_stiffness=tyre_stiffness,
         tyre_damping=tyre_damping,
+        tyre_rows=np.asarray(plate_stiffness) / np.reshape(tyre_stiffness, (-1, 1)),
         body_rows=body_rows,
         body_masses=body_masses,
         carried_by={},

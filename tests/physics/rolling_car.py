@@ -160,7 +160,9 @@ def pitch_plane(speed: float, hold: Vector, mount: Any = (2e5, 8e5, 4e4), turnin
     return state
 
 
-def single_track(speed: float, mass: float, turned: float, cog: float, hold: Vector, axles: Any, trail: float) -> Vector:
+def single_track(
+    speed: float, mass: float, turned: float, cog: float, hold: Vector, axles: Any, trail: float
+) -> Vector:
     """State matrix of the single-track car in y, psi, v, r: F = -C (v + V psi + x r)/V of each axle, at x + trail.
 
     Args:

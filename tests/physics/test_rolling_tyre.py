@@ -172,9 +172,7 @@ def ramp(car: Car, speed: float) -> Signal:
 
 def test_energy_of_free_rolling_over_a_ramp(tmp_path: Path) -> None:
     speed = 15.0
-    car = rolling_car(
-        tmp_path, speed, gravity=9.81, tyre={"trail": 0.03}, overrides=["solver.timestep=0.0005"]
-    )
+    car = rolling_car(tmp_path, speed, gravity=9.81, tyre={"trail": 0.03}, overrides=["solver.timestep=0.0005"])
     run = simulate(car.model, ramp(car, speed), native=False)
     energies = run.statistics.energies
     assert energies is not None

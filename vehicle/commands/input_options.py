@@ -77,7 +77,10 @@ def road_options(parser: argparse.ArgumentParser, *, several: bool = False, rate
         help="of the tracks: 1 equal, 0 unrelated; isotropic plane by default",
     )
     group.add_argument(
-        "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m], 0 for none; 0.1 by default"
+        "--patch",
+        type=float,
+        metavar="M",
+        help="length of the contact patch that averages the road [m], 0 for none; 0.1 by default",
     )
 
 

@@ -99,7 +99,9 @@ def read_road(path: Path, patch: float = 0.0) -> MeasuredRoad:
         row = int(np.argmin(steps)) + 1 if steps.size else 0
         place = source or table.place(row)
         raise DataError(f"{place}: the distance must increase from row to row, over four rows or more")
-    return MeasuredRoad(distance=found["distance"], right=found["right"], left=found["left"], source=path.name, patch=patch)
+    return MeasuredRoad(
+        distance=found["distance"], right=found["right"], left=found["left"], source=path.name, patch=patch
+    )
 
 
 def _columns(header: Header) -> dict[str, tuple[int, float]]:

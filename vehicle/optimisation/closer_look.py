@@ -58,6 +58,8 @@ def left_validity(trials: Trials, cars: Mapping[str, Car]) -> list[str]:
     found = []
     for name, car in cars.items():
         for source in trials.inputs:
-            run = car.varied(overrides_of(source)).run(signal_of(source), engine="reduced", channels=trials.measure.channels)
+            run = car.varied(overrides_of(source)).run(
+                signal_of(source), engine="reduced", channels=trials.measure.channels
+            )
             found += [f"{name} on {source.name}: {warning}" for warning in run.recording.statistics.warnings]
     return found

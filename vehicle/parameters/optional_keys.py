@@ -28,7 +28,11 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     """
     car = instances(table, (folder, folder / "templates"))
     own, given = (
-        ["solver.timestep", *(f"driving.{key}" for key in _keys(Driving, everything=False)), *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes")],
+        [
+            "solver.timestep",
+            *(f"driving.{key}" for key in _keys(Driving, everything=False)),
+            *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
+        ],
         kinds(car, table),
     )
     # An ideal joint becomes a bushing by numbers.

@@ -152,8 +152,9 @@ class ValidityWatch:
         interval: float,
     ) -> None:
         self.every = samples_of_a_look(interval)
-        self.matrices, self.bodies = model.matrices, tuple(
-            body for body in model.matrices.body_rows if body not in model.matrices.spinning
+        self.matrices, self.bodies = (
+            model.matrices,
+            tuple(body for body in model.matrices.body_rows if body not in model.matrices.spinning),
         )
         self.rotations, self.tyres, self.stretches = (
             Readout(outputs, factors, model.pairs, columns)
