@@ -118,8 +118,8 @@ def rolling_car(
 def pitch_plane(speed: float, hold: Vector, mount: Any = (2e5, 8e5, 4e4), turning: float = 3e4) -> Vector:
     """State matrix of the motions that are alike on both sides, derived on paper, without preloads.
 
-    x, z, theta of the body; of each axle x, z of the wheel centres, phi of the hubs, alpha of the wheels (absolute), and
-    the slip force f with f' = k (x' - R alpha') - f V k / C; the wheel feels -f at its centre along x and +R f about y.
+    x, z, theta of the body; of each axle x, z of the wheel centres, phi of the hubs, alpha of the wheels (absolute),
+    and the slip force f with f' = k (x' - R alpha') - f V k / C; the wheel feels -f along x and +R f about y.
 
     Args:
         speed: V [m/s].

@@ -82,7 +82,7 @@ def test_side_force_relaxes_over_its_length(tmp_path: Path) -> None:
     start, way = data.qpos.copy(), np.zeros(model.nv)
     for name in ("body", *(f"knuckle_{wheel}" for wheel in car.vehicle.wheels)):
         joint = model.joint(name)
-        place = car.origins[name] if hasattr(car, "origins") else car.model.origins[name]
+        place = car.model.origins[name]
         x, y = place[0] - COG[0], place[1]
         way[joint.dofadr[0] : joint.dofadr[0] + 6] = -y * psi, x * psi, 0.0, 0.0, 0.0, psi
     mujoco.mj_integratePos(model, start, way, 1.0)
@@ -95,7 +95,7 @@ def test_side_force_relaxes_over_its_length(tmp_path: Path) -> None:
     relaxed = 1.0 - np.exp(-20.0 * time * TYRE["carcass_lateral"] / cornering)
     assert rows.state.branch_past[tyre, 1] == pytest.approx(cornering * psi * relaxed, rel=1e-4)
     system = car.matrices.system
-    number = [index for index, row in enumerate(system.branch_drifts) if np.any(row)][0]
+    number = next(index for index, row in enumerate(system.branch_drifts) if np.any(row))
     force = system.branch_stiffness[number] * system.branch_time[number] * (system.branch_drifts[number] @ way)
     assert force == pytest.approx(cornering * psi, rel=1e-9)
 
@@ -139,7 +139,7 @@ def test_gyroscopic_moment_of_a_wheel(tmp_path: Path) -> None:
 
 
 def test_locked_wheel_at_no_speed_is_the_standing_tyre() -> None:
-    """Spin held to the hub and V = 0: the sedan on springs k_x, k_y; without weight, which a round tyre carries else."""
+    """Spin held to the hub and V = 0: the sedan on springs k_x, k_y; with weight a round tyre rolls under its load."""
     carcass = [3.58e5, 1.03e5]
     common = ["gravity=0", *(f"{axle}.bushings.tyre.trail=0" for axle in AXLES)]
     standing = [f"{axle}.bushings.tyre.stiffness=[{carcass[0]}, {carcass[1]}, 310526.0]" for axle in AXLES]

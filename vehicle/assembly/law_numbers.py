@@ -135,7 +135,7 @@ def element_numbers(
         like: another car with the same elements and body, and its numbers: those of equal elements are taken.
 
     Returns:
-        Of each element, in the order: body, parts, springs on joints, connections, springs, dampers, hold of the course.
+        Of each element, in the order: body, parts, springs on joints, connections, springs, dampers, hold.
     """
     makers: list[Callable[[Any], Numbers]] = []
     elements: list[list[Any]] = []

@@ -46,8 +46,8 @@ def signal_options(parser: argparse.ArgumentParser, *, several: bool = False) ->
     parser.add_argument(
         "--tyre",
         choices=("rolling", "standing"),
-        help="with a road: tyres that roll at its speed, as they do by default, or that stand on moving plates, as of a "
-        "car on a rig; the tyres of a car that stands on blocks too stand",
+        help="with a road: tyres that roll at its speed, as they do by default, or that stand on moving plates, as on "
+        "a rig; the tyres of a car that stands on blocks too stand",
     )
 
 

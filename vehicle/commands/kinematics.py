@@ -46,6 +46,13 @@ def parser() -> Parser:
             "right, z up), as x=1000; with --opposite against each other; may be repeated",
         )
     found.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
+    found.add_argument(
+        "--tyre",
+        choices=("rolling", "standing"),
+        default="rolling",
+        help="patches that roll freely, or that stand, with the horizontal force and torque with which the car was set "
+        "down; %(default)s by default",
+    )
     found.add_argument("--output", type=Path, metavar="DIR", help="write kinematics.csv and kinematics.png there")
     found.add_argument("--replace", action="store_true", help=FORCE_HELP)
     found.add_argument("--json", action="store_true", help="print JSON")
@@ -67,7 +74,10 @@ def _job(options: argparse.Namespace) -> None:
     if options.ideal and load.any():
         raise ConfigurationError("--ideal: ideal joints do not yield to --force or --moment; leave one of them out")
     car = Car.load(options.vehicle, options.overrides)
-    statics = axle_statics(car, options.axle, ideal=options.ideal)
+    if car.vehicle.driving.rolling:
+        # The axle does not drive on its rig: the wheel is fixed to the hub there.
+        car = Car.load(options.vehicle, [*options.overrides, "driving.speed=0"])
+    statics = axle_statics(car, options.axle, ideal=options.ideal, standing=options.tyre == "standing")
     rates = design_slopes(statics, opposite=options.opposite, load=load)
     poses = travel_curve(statics, travels, opposite=options.opposite, load=load)
     if options.output is not None:
@@ -79,13 +89,14 @@ def _job(options: argparse.Namespace) -> None:
         print(_report(options, poses, rates))
 
 
-def axle_statics(car: Any, name: str, *, ideal: bool) -> AxleStatics:
+def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
     """An axle of a car, ready to be lifted.
 
     Args:
         car: the car.
         name: table of the axle in its vehicle file.
         ideal: every connection an ideal ball joint.
+        standing: as of `AxleStatics`.
 
     Raises:
         ConfigurationError: no wheel belongs to such a table.
@@ -96,7 +107,7 @@ def axle_statics(car: Any, name: str, *, ideal: bool) -> AxleStatics:
     if not wheels:
         axles = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
         raise ConfigurationError(f"--axle {name!r}: no axle with wheels; {car.vehicle.name} has {', '.join(axles)}")
-    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal)
+    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=standing)
 
 
 def _travels(text: str) -> list[float]:

@@ -28,8 +28,8 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
     plates = summary["input"]["plate_rms_m"]
     moved = [f"{1e3 * rms:.4g} mm ({side_of(wheel, plates)})" for wheel, rms in plates.items() if rms > 0.0]
     lines = [
-        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s, plate RMS {', '.join(moved)}; tyres "
-        f"{summary['tyre']}",
+        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s, plate RMS {', '.join(moved)}; "
+        f"tyres {summary['tyre']}",
         f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
         f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
         f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",

@@ -45,7 +45,8 @@ class MeasuredRoad:
     def words(self) -> str:
         """What it is, for messages and headers."""
         step = self.length / (self.distance.size - 1)
-        return f"measured road {self.source}, {self.length:.4g} m, a point every {step:.3g} m, contact patch {self.patch:g} m"
+        every = f"{self.length:.4g} m, a point every {step:.3g} m, contact patch {self.patch:g} m"
+        return f"measured road {self.source}, {every}"
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
         """Heights at equal distances, by a cubic spline, or its mean over the patch; arguments as of `IsoRoad.height`.

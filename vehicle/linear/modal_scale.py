@@ -12,8 +12,8 @@ def modal_a(system: LinearSystem, pole: complex, shape: npt.NDArray[np.complex12
     """Modal A of a mode with pole s and shape u: u^T D'(s) u, D the dynamic stiffness.
 
     D(s) = s^2 M + s C + K + sum_b h_b^T K2 tau / (1 + s tau) (s e_b + g_b), so near s the receptance is
-    u u^T / (A (j w - s)): the residue of the response at i to a force at k is u_i u_k / A. It is exact where the matrices
-    are symmetric, which preloads disturb slightly; those of a rolling car are not, by slip and gyroscopic moments.
+    u u^T / (A (j w - s)): the residue of the response at i to a force at k is u_i u_k / A. It is exact where the
+    matrices are symmetric, which preloads disturb slightly; those of a rolling car are not: slip, gyroscopic moments.
 
     Args:
         system: the matrices.

@@ -167,8 +167,8 @@ def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.c
         raise ConfigurationError(
             f"this car does not keep its course at {vehicle.driving.speed:g} m/s: "
             f"{worst.description.removeprefix('grows: ')} grows by itself, e-fold in {1.0 / worst.growth:.3g} s. Lower "
-            "driving.speed, or look at cornering_stiffness of the tyres, more in front than behind; where it grows with "
-            "driving.speed=0 too, its springs do not hold it: python -m vehicle.modes"
+            "driving.speed, or look at cornering_stiffness of the tyres, more in front than behind; where it grows "
+            "with driving.speed=0 too, its springs do not hold it: python -m vehicle.modes"
         )
     raise ConfigurationError(
         f"this car does not stand: {worst.description.removeprefix('grows: ')} grows by itself, e-fold in "

@@ -3,7 +3,7 @@
 The wheel turns at -V/R + theta' about its axle e, the car driving along -x; theta is a coordinate of the model, the
 steady part is not. The lowest point of the tread lies at r = -a_y e - R d below the centre c, d being the vertical
 without its part along e. It is a point of the wheel, so its velocity has the column e x r of the spin, and not one of
-the hub: a hub that pitches about e does not move it. The rows of a tyre at the point of the hub become those of this one,
+the hub: a hub that pitches about e does not move it. The rows of a tyre at the point of the hub become those of it,
 
     J -> J + w x (c + r - p_hub),   J_spin = e x r,
 
