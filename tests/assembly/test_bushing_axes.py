@@ -110,7 +110,9 @@ def test_both_sides_are_mirrored_and_stand(tmp_path):
     )
     compliance = []
     for car in (plain, turned):
-        statics = AxleStatics(car.model.model, car.model.static.preload, wheels=car.vehicle.composition.wheels)
+        statics = AxleStatics(
+            car.model.model, car.model.static.preload, wheels=car.vehicle.composition.wheels, standing=True
+        )
         still = statics.solve([0.0, 0.0])
         assert max(abs(pose.lateral_m) for pose in still) < 1e-9
         load = np.zeros((2, 6))

@@ -56,6 +56,7 @@ def plain_matrices(
         viscous=viscous,
         tyre_stiffness=tyre_stiffness,
         tyre_damping=tyre_damping,
+        tyre_rows=np.asarray(plate_stiffness) / np.reshape(tyre_stiffness, (-1, 1)),
         body_rows=body_rows,
         body_masses=body_masses,
         body_places=body_places or {name: np.zeros(3) for name in body_masses},

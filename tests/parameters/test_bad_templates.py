@@ -27,9 +27,9 @@ TEMPLATES = {
     ),
     "unknown point": ('at = "tie_outer"', 'at = "tie_outa"', "'tie_outa' leads nowhere; the nearest is tie_outer"),
     "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: 'dampr' leads nowhere"),
-    "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.1.child: found side 'lft', allowed are left"),
+    "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', allowed are left"),
     "side of a point": ('at = "tie_outer"', 'at = "tie_outer:links"', "found side 'links', allowed are left, right"),
-    "a number for a part": ('child = "a_arm"', "child = 3", "joint.1.child: found 3, needed is a list"),
+    "a number for a part": ('child = "a_arm"', "child = 3", "joint.2.child: found 3, needed is a list"),
     "a number for all": ("joint = [", "spring = 3\njoint = [", "not a TOML file"),
     "a word for a table": ("joint = [", 'joint = ["a",', "joint: found 'a', needed is a table"),
     "a word for a switch": ("mirrored = true", 'mirrored = "yes"', "mirrored: found 'yes', needed is true or false"),
@@ -93,7 +93,7 @@ TEMPLATES = {
     "free on a part": (
         'child = "a_arm" }',
         'child = "a_arm", parent = "knuckle" }',
-        "joint.1.parent: found 'knuckle'; a",
+        "joint.2.parent: found 'knuckle'; a",
     ),
     "held by nothing": (', "main_spring_lower"]', "]", "nothing holds main_spring_lower_fr; give it a joint"),
     "a joint on the body": (

@@ -13,7 +13,7 @@ from vehicle.simulation.axle_statics import AxleStatics
 def axle(car, *, ideal=False):
     wheels = car.vehicle.composition.wheels
     assert [wheel.name for wheel in wheels] == ["fr", "fl"]
-    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal)
+    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=True)
 
 
 @pytest.mark.parametrize("travel", [-0.06, -0.02, 0.03, 0.06])

@@ -35,7 +35,7 @@ def bent_car(**damper: Any) -> Car:
 
 
 def axle(car: Car) -> AxleStatics:
-    return AxleStatics(car.model.model, car.model.static.preload, wheels=car.vehicle.composition.wheels)
+    return AxleStatics(car.model.model, car.model.static.preload, wheels=car.vehicle.composition.wheels, standing=True)
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from vehicle.laws.series import in_series
 from vehicle.names import AXES
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.composition import PlacedConnection
-from vehicle.parameters.elements import Bushing, Hydromount
+from vehicle.parameters.elements import Bushing, Hydromount, Tyre
 
 Vector = npt.NDArray[np.float64]
 
@@ -68,6 +68,8 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
 
     Source: Bommer 2006, section 3.1.3.
     """
+    if connection.rolling is not None and isinstance(connection.law, Tyre):
+        return _rolling_law(connection.law, connection.rolling.speed)
     local = None
     if body.attachment_flexibility and "body" in (connection.moving, connection.carrier):
         node = attached_nodes(superelement, {connection.point: connection.at}).get(connection.at, "")
@@ -88,6 +90,20 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
         law = _bushing_law(connection.law, local)
         return law if connection.axes is None else replace(law, directions=np.array(connection.axes))
     return None if local is None else ElementLaw(stiffness=local, damping=STRUCTURAL_LOSS_TIME * local, averaged=True)
+
+
+def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
+    """Law of a tyre that rolls: slip C/V in series with the carcass along x and y, the standing one along z."""
+    slip = np.array([tyre.slip_stiffness, tyre.cornering_stiffness, 0.0], dtype=float)
+    carcass = np.array([tyre.carcass_longitudinal, tyre.carcass_lateral, 0.0], dtype=float)
+    time = np.divide(slip, speed * carcass, out=np.zeros(3), where=carcass > 0.0)
+    vertical = np.array([0.0, 0.0, 1.0])
+    return ElementLaw(
+        stiffness=vertical * tyre.stiffness,
+        damping=vertical * tyre.damping,
+        branch_stiffness=carcass,
+        branch_time=time,
+    )
 
 
 def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> ElementLaw:

@@ -13,6 +13,7 @@ from vehicle.assembly.law_numbers import (
     connection_name,
     connection_numbers,
     damper_numbers,
+    hold_numbers,
     joint_numbers,
     mass_numbers,
     mode_numbers,
@@ -218,6 +219,10 @@ class ElementBuilder:
                 self._site(f"sensor/{placed.name}/{end}", part, at)
                 if part == "body":
                     self._node_shape(f"sensor/{placed.name}/{end}", at)
+
+    def add_hold(self) -> None:
+        """Write the hold of the course of a rolling car, which acts on the trimmed body."""
+        self._numerics(hold_numbers(self.vehicle))
 
     def add_place(self, output: PlacedOutput) -> None:
         """Site and acceleration sensor of a recorded place."""

@@ -21,7 +21,7 @@ from vehicle.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.names import AXES
 from vehicle.parameters.body import TrimmedBody
 from vehicle.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
-from vehicle.parameters.elements import Damper, ForceTable
+from vehicle.parameters.elements import Damper, ForceTable, Tyre
 from vehicle.parameters.vehicle import Vehicle
 
 Vector = npt.NDArray[np.float64]
@@ -47,6 +47,8 @@ def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superele
     # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
     branch_damping = law.branch_stiffness * law.branch_time
     constants = [law.stiffness, law.damping, law.branch_stiffness, branch_damping]
+    if connection.rolling is not None and isinstance(connection.law, Tyre):
+        found[f"rolling/{name}"] = np.array([connection.rolling.speed, connection.law.trail, *connection.rolling.arm])
     found[f"law/{name}"] = np.concatenate([*constants, [law.rotational_stiffness, float(law.averaged)]])
     if law.directions is not None:
         found[f"directions/{name}"] = law.directions.ravel()
@@ -108,6 +110,26 @@ def mass_numbers(part: PlacedPart) -> Numbers:
     return {f"mass/{part.name}": np.array([numbers.mass, *moments, *-products])}
 
 
+def hold_numbers(vehicle: Vehicle) -> Numbers:
+    """Hold of the course, stiffness and damping along x, y [N/m, N s/m] and in yaw; nothing where the tyres stand.
+
+    k = m (2 pi f)^2 with the mass of the car, and in yaw its inertia about the centre of gravity of the trimmed body.
+    The one along y acts at the foremost wheels, the last number behind the body [m]: where a driver steers. At the
+    centre of gravity it would let every car diverge that oversteers ever so little.
+    """
+    driving, body = vehicle.driving, vehicle.body
+    if not driving.rolling:
+        return {}
+    mass, turned = body.mass, float(rigid_body(body).inertia[2, 2])
+    for part in vehicle.composition.parts:
+        x, y = part.cog[0] - body.cog[0], part.cog[1] - body.cog[1]
+        own = 0.0 if part.numbers.inertia is None else part.numbers.inertia[2]
+        mass, turned = mass + part.numbers.mass, turned + own + part.numbers.mass * (x**2 + y**2)
+    omega, inertia = 2.0 * np.pi * driving.hold_frequency, np.array([mass, mass, turned])
+    ahead = min(wheel.center[0] for wheel in vehicle.composition.wheels) - body.cog[0]
+    return {"hold/body": np.concatenate([inertia * omega**2, 2.0 * driving.hold_damping * omega * inertia, [ahead]])}
+
+
 def element_numbers(
     vehicle: Vehicle, body: Superelement, like: tuple[Vehicle, Sequence[Numbers]] | None = None
 ) -> list[Numbers]:
@@ -119,7 +141,7 @@ def element_numbers(
         like: another car with the same elements and body, and its numbers: those of equal elements are taken.
 
     Returns:
-        Of each element, in the order: body, parts, springs on joints, connections, springs, dampers.
+        Of each element, in the order: body, parts, springs on joints, connections, springs, dampers, hold.
     """
     makers: list[Callable[[Any], Numbers]] = []
     elements: list[list[Any]] = []
@@ -132,6 +154,7 @@ def element_numbers(
             (car.connections, lambda part: connection_numbers(part, vehicle.body, body)),
             (car.springs, spring_numbers),
             (car.dampers, damper_numbers),
+            ((one,), hold_numbers),
         ):
             own += chosen
             makers += [make] * len(chosen)

@@ -81,6 +81,7 @@ def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:
         builder.add_spring(spring)
     for damper in car.dampers:
         builder.add_damper(damper)
+    builder.add_hold()
     for output in car.outputs:
         builder.add_place(output)
     return Assembly(spec=spec, vehicle=vehicle, superelement=superelement, origins=builder.origins)

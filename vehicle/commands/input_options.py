@@ -66,8 +66,14 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     def is_class(options: argparse.Namespace) -> bool:
         return any(len(road) == 1 for road in _listed(options.road))
 
-    note = "" if several else "; beside --input: in place of the times of the file"
-    road_options(parser, lambda options: bool(options.road), is_class, several=several, rate_note=note)
+    note = "" if several else "; with --input: in place of the times of the file"
+    road = road_options(parser, lambda options: bool(options.road), is_class, several=several, rate_note=note)
+    road.add_argument(
+        "--tyre",
+        choices=("rolling", "standing"),
+        help="tyres that roll at the speed, as they do by default, or that stand on moving plates, as on a rig; on "
+        "plates the tyres stand, unless --set driving.speed=M/S; the tyres of a car that stands on blocks too stand",
+    )
     return group
 
 
@@ -89,7 +95,7 @@ def record_group(parser: Parser) -> argparse._ArgumentGroup:
 
 def road_options(
     parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
-) -> None:
+) -> argparse._ArgumentGroup:
     """Add the numbers of a drive over a road; each is None where it is not given.
 
     Args:
@@ -98,6 +104,9 @@ def road_options(
         is_class: True if a road is a class of ISO 8608.
         several: --speed may be repeated, once for each road, and --seed; then their values are lists.
         rate_note: what the help of --rate says in addition, where it acts on a file of signals too.
+
+    Returns:
+        The group of the options that act on any road.
     """
     group = parser.scoped_group("a road", needs=ROAD_NEEDS, active=on_road)
     group.add_argument(
@@ -127,9 +136,13 @@ def road_options(
         metavar="G",
         help="of the tracks: 1 equal, 0 unrelated; isotropic plane by default",
     )
-    random.add_argument(
-        "--patch", type=float, metavar="M", help="length of the contact patch that averages the road [m]; 0 by default"
+    group.add_argument(
+        "--patch",
+        type=float,
+        metavar="M",
+        help="length of the contact patch that averages the road [m], 0 for none; 0.1 by default",
     )
+    return group
 
 
 def _listed(value: str | list[str] | None) -> list[str]:

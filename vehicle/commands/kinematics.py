@@ -53,6 +53,13 @@ def parser() -> Parser:
             "right, z up), as x=1000; with --opposite against each other; may be repeated",
         )
     found.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
+    found.add_argument(
+        "--tyre",
+        choices=("rolling", "standing"),
+        default="rolling",
+        help="patches that roll freely, or that stand, with the horizontal force and torque with which the car was set "
+        "down; %(default)s by default",
+    )
     extra_output_options(found, "kinematics.csv and kinematics.png")
     found.former("--replace", "--replace: files are replaced by --force, as in all commands")
     found.former(
@@ -77,7 +84,10 @@ def _job(options: argparse.Namespace) -> None:
     load = np.array([*_vector("--contact-force", options.contact_force), *_vector("--moment", options.moment)])
     folder = None if options.output is None else output_folder_of(options, options.output)
     car = Car.load(options.vehicle, options.overrides)
-    statics = axle_statics(car, options.axle, ideal=options.ideal)
+    if car.vehicle.driving.rolling:
+        # The axle does not drive on its rig: the wheel is fixed to the hub there.
+        car = Car.load(options.vehicle, [*options.overrides, "driving.speed=0"])
+    statics = axle_statics(car, options.axle, ideal=options.ideal, standing=options.tyre == "standing")
     rates = design_slopes(statics, opposite=options.opposite, load=load)
     poses = travel_curve(statics, travels, opposite=options.opposite, load=load)
     if folder is not None:
@@ -89,13 +99,14 @@ def _job(options: argparse.Namespace) -> None:
         print(_report(options, poses, rates))
 
 
-def axle_statics(car: Any, name: str, *, ideal: bool) -> AxleStatics:
+def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
     """An axle of a car, ready to be lifted.
 
     Args:
         car: the car.
         name: table of the axle in its vehicle file.
         ideal: every connection an ideal ball joint.
+        standing: as of `AxleStatics`.
 
     Raises:
         ConfigurationError: no wheel belongs to such a table.
@@ -106,7 +117,7 @@ def axle_statics(car: Any, name: str, *, ideal: bool) -> AxleStatics:
     if not wheels:
         axles = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
         raise ConfigurationError(f"--axle {name!r}: no axle with wheels; {car.vehicle.name} has {', '.join(axles)}")
-    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal)
+    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=standing)
 
 
 def _travels(text: str) -> list[float]:

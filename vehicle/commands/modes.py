@@ -23,6 +23,9 @@ def parser() -> Parser:
     found.add_argument(
         "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
     )
+    found.add_argument(
+        "--speed", type=float, metavar="KM/H", help="modes of the car that drives at this speed, with tyres that roll"
+    )
     found.add_argument("--json", action="store_true", help="print JSON")
     found.add_argument(
         "--uff",
@@ -54,11 +57,13 @@ def _job(options: argparse.Namespace) -> None:
     _check_film_options(options)
     from vehicle.car import Car
 
-    if options.uff is not None:
-        from vehicle.output.destination import named_file
-
-        named_file(options.held, options.uff, "--uff", force=options.force)
-    car = Car.load(options.vehicle, options.overrides)
+    if options.uff is not None and options.uff.exists():
+        own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
+        if not (options.force and own):
+            mend = "is of somebody else; give another name" if options.force else "exists; give --force"
+            raise ConfigurationError(f"--uff {options.uff}: {mend}")
+    speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
+    car = Car.load(options.vehicle, [*options.overrides, *speed])
     found = modes_table(car, options.damper)
     if options.uff is not None:
         from vehicle.output.folder import write_whole
@@ -127,6 +132,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     found = car.modes(damper)
     return {
         "damper": damper,
+        "tyre": car.vehicle.driving.words,
         "inertia_about": car.vehicle.body.inertia.about,
         "notices": body_notices(car.vehicle, car.overrides),
         "modes": [
@@ -152,7 +158,7 @@ def report(found: dict[str, Any]) -> str:
     """The table as text."""
     width = max((len(mode["description"]) for mode in found["modes"]), default=0)
     lines = [
-        f"assembled car, dampers {found['damper']}",
+        f"assembled car, dampers {found['damper']}, tyres {found['tyre']}",
         f"{'Hz':>8} {'damping':>8}  {'description':<{width}} energy",
     ]
     for mode in found["modes"]:
@@ -162,7 +168,8 @@ def report(found: dict[str, Any]) -> str:
             f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<{width}} {text}"
         )
     if found["growing"]:
-        lines.append(f"this car does not stand: {', '.join(found['growing'])} grows by itself (negative damping above)")
+        fault = "does not stand" if found["tyre"] == "standing" else "does not keep its course"
+        lines.append(f"this car {fault}: {', '.join(found['growing'])} grows by itself (negative damping above)")
     lines += [f"note     {text}" for text in found["notices"]]
     free = found["free_body"]
     if free["frequency_hz"]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -67,11 +68,11 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
 
     Args:
         road: class of ISO 8608, or the file of a profile.
-        options: as of `road_options`.
+        options: as of `road_options`, or of `signal_options`.
         vehicle: the car.
 
     Raises:
-        ConfigurationError: no speed, or as of `RoadDrive`.
+        ConfigurationError: no speed, a car that cannot roll, or as of `RoadDrive`.
     """
     from vehicle.excitation.road_drive import RoadDrive
 
@@ -87,6 +88,7 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
         road=road,
         wheels=_places(vehicle),
         track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
+        driving=_driving(options, vehicle),
         **numbers,
     )
 
@@ -100,7 +102,7 @@ def _recorded_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehi
         raise ConfigurationError(f"--speed {options.speed}: belongs to a recorded road, --road FILE; {road} is a class")
     for name in ("seed", "coherence", "patch"):
         if getattr(options, name) is not None:
-            raise ConfigurationError(f"--{name}: belongs to a class; a recorded road is taken as it is")
+            raise ConfigurationError(f"--{name}: belongs to a class or a profile; a recorded road is taken as it is")
     choice = Choice()
     if hasattr(options, "picks"):
         # --rate is that of the run; the times are those of the file.
@@ -108,7 +110,12 @@ def _recorded_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehi
         choice = record_choice(argparse.Namespace(**own), "height", known=("speed",)) or Choice()
     numbers = {name: value for name in ("duration", "rate") if (value := getattr(options, name)) is not None}
     return RecordedDrive(
-        road=road, channel=options.speed.removeprefix(PREFIX), wheels=_places(vehicle), choice=choice, **numbers
+        road=road,
+        channel=options.speed.removeprefix(PREFIX),
+        wheels=_places(vehicle),
+        choice=choice,
+        driving=_driving(options, vehicle),
+        **numbers,
     )
 
 
@@ -118,6 +125,25 @@ def _places(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:
     foremost = min(wheel.center[0] for wheel in wheels)
     side: dict[bool, Side] = {True: "right", False: "left"}
     return tuple((wheel.name, wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels)
+
+
+def _driving(options: argparse.Namespace, vehicle: Vehicle) -> float | None:
+    """Speed at which the tyres roll on a road [m/s], 0 to let them stand; None where the car itself says it.
+
+    A car that stands on blocks too is on a rig, and its tyres stand where nothing is said. NaN stands for the mean
+    speed of a recorded drive.
+    """
+    from vehicle.parameters.elements import Tyre
+
+    asked, overrides = getattr(options, "tyre", None), getattr(options, "overrides", None) or ()
+    if any(text.partition("=")[0].strip().startswith("driving.speed") for text in overrides):
+        if asked is not None:
+            raise ConfigurationError(f"--tyre {asked} beside --set driving.speed: give one of them")
+        return None
+    on_blocks = any(one.ground for one in vehicle.composition.connections if not isinstance(one.law, Tyre))
+    if asked == "standing" or (asked is None and on_blocks):
+        return 0.0 if vehicle.driving.rolling else None
+    return math.nan if isinstance(options.speed, str) else float(options.speed) / 3.6
 
 
 main = command(parser, _job)

@@ -114,13 +114,14 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.excitation.signal_file import read_signal
     from vehicle.output.folder import output_folder
 
-    drive = None
+    drive, overrides = None, list(options.overrides)
     if drives_on_road(options):
         from vehicle.commands.road import class_or_profile, road_drive
         from vehicle.parameters.vehicle import load_vehicle
 
         drive = road_drive(class_or_profile(options.road), options, load_vehicle(options.vehicle, options.overrides))
         source, stem = drive.road, drive.name
+        overrides += drive.overrides
     else:
         source = find_input(options.input)
         stem = source.stem
@@ -141,7 +142,6 @@ def _job(options: argparse.Namespace) -> None:
         video_name = _film_path(options, stem, output)
         require_film()
     report_name = None if options.report is None else _report_path(options, output)
-    overrides = list(options.overrides)
     if options.timestep is not None:
         overrides.append(f"solver.timestep={options.timestep!r}")
 

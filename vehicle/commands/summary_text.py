@@ -31,7 +31,7 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
     span = f", evaluated from {begin:g} to {end:g} s" if begin > 0.0 else ""
     lines = [
         f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, plate RMS "
-        f"{', '.join(moved)}",
+        f"{', '.join(moved)}; tyres {summary['tyre']}",
         f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
         f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
         f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",

@@ -34,6 +34,7 @@ class MeasuredRoad:
         right, left: heights of the tracks [m], (n,).
         source: name of the file.
         notices: a sentence for everything that was accepted.
+        patch: length of the contact patch [m] over which a tyre averages it; 0 for a point.
     """
 
     distance: NDArray[np.float64]
@@ -41,6 +42,7 @@ class MeasuredRoad:
     left: NDArray[np.float64]
     source: str
     notices: tuple[str, ...] = ()
+    patch: float = 0.0
 
     @property
     def length(self) -> float:
@@ -56,7 +58,8 @@ class MeasuredRoad:
     def words(self) -> str:
         """What it is, for messages and headers."""
         step = self.length / (self.distance.size - 1)
-        return f"measured road {self.source}, {self.length:.4g} m, a point every {step:.3g} m"
+        every = f"{self.length:.4g} m, a point every {step:.3g} m, contact patch {self.patch:g} m"
+        return f"measured road {self.source}, {every}"
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
         """Return heights at equal distances, by a cubic spline; arguments as of `IsoRoad.height`.
@@ -67,7 +70,9 @@ class MeasuredRoad:
         return self.height_at(uniform_axis(steps, step, start), side)
 
     def height_at(self, place: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
-        """Return heights above the first point [m], (m,), by a cubic spline; 0 before the road begins.
+        """Return heights above the first point [m], (m,): a cubic spline or its mean over the patch; 0 before the road.
+
+        Half a patch beyond its last point the road goes on level.
 
         Args:
             place: distances from the beginning of the road [m], (m,).
@@ -82,12 +87,16 @@ class MeasuredRoad:
                 "shorter --duration"
             )
         heights = self.right if side == "right" else self.left
-        inside = np.clip(place, 0.0, self.length)
-        found = scipy.interpolate.CubicSpline(self.distance - self.distance[0], heights - heights[0])(inside)
-        return np.where(place < 0.0, 0.0, found)
+        spline = scipy.interpolate.CubicSpline(self.distance - self.distance[0], heights - heights[0])
+        if self.patch > 0.0:
+            whole, ends = spline.antiderivative(), place + 0.5 * self.patch * np.array([[-1.0], [1.0]])
+            areas = whole(np.clip(ends, 0.0, self.length))
+            areas += np.maximum(ends - self.length, 0.0) * (heights[-1] - heights[0])
+            return np.asarray((areas[1] - areas[0]) / self.patch)
+        return np.where(place < 0.0, 0.0, spline(np.clip(place, 0.0, self.length)))
 
 
-def read_road(path: Path, track: float) -> MeasuredRoad:
+def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
     """Read a profile.
 
     Args:
@@ -95,6 +104,7 @@ def read_road(path: Path, track: float) -> MeasuredRoad:
             `vehicle.records` with channels of these names, or those of `TRACKS`, in units of length; or an OpenCRG
             surface, whose reference line is the middle of the car.
         track: distance of the tracks of the car [m], for a surface.
+        patch: length of the contact patch [m] over which the profile is averaged.
 
     Raises:
         ConfigurationError: there is no such file.
@@ -102,7 +112,7 @@ def read_road(path: Path, track: float) -> MeasuredRoad:
     """
     name = recognise(path)
     if name == "crg":
-        return _surface_road(path, track)
+        return _surface_road(path, track, patch)
     source = ""
     notices: tuple[str, ...] = ()
     try:
@@ -122,7 +132,12 @@ def read_road(path: Path, track: float) -> MeasuredRoad:
         place = source or table.place(row)
         raise DataError(f"{place}: the distance must increase from row to row, over four rows or more")
     return MeasuredRoad(
-        distance=found["distance"], right=found["right"], left=found["left"], source=path.name, notices=notices
+        distance=found["distance"],
+        right=found["right"],
+        left=found["left"],
+        source=path.name,
+        notices=notices,
+        patch=patch,
     )
 
 
@@ -142,7 +157,7 @@ def _named_tracks(path: Path) -> tuple[dict[str, Vector], tuple[str, ...]]:
     return {"distance": found["distance"], "left": found[left], "right": found[right]}, ()
 
 
-def _surface_road(path: Path, track: float) -> MeasuredRoad:
+def _surface_road(path: Path, track: float, patch: float) -> MeasuredRoad:
     """Take the two tracks of a car from a surface; v goes to the left."""
     surface = read_surface(path)
     found = {}
@@ -155,7 +170,7 @@ def _surface_road(path: Path, track: float) -> MeasuredRoad:
                 f"places, first at u = {surface.u[missing[0]]:g} m; the road holds v from {surface.v[0]:g} to "
                 f"{surface.v[-1]:g} m; repair the surface, or cut it off there"
             )
-    return MeasuredRoad(distance=surface.u, **found, source=path.name, notices=(road_words(surface),))
+    return MeasuredRoad(distance=surface.u, **found, source=path.name, notices=(road_words(surface),), patch=patch)
 
 
 def _columns(header: Header) -> dict[str, tuple[int, float]]:

@@ -70,6 +70,8 @@ class RecordedDrive:
         choice: channels of the heights (left and right, or height for both tracks), and what is done to them.
         duration: length [s]; the whole record where None.
         rate: samples a second [Hz].
+        driving: speed at which the tyres roll [m/s]; NaN for the mean speed of the record while the car drives, 0 for
+            tyres that stand, None for what the car itself specifies.
     """
 
     road: Path
@@ -78,6 +80,7 @@ class RecordedDrive:
     choice: Choice = field(default_factory=Choice, hash=False)
     duration: float | None = None
     rate: float = FINE_RATE
+    driving: float | None = None
 
     @property
     def name(self) -> str:
@@ -135,6 +138,15 @@ class RecordedDrive:
         reached = int(np.searchsorted(distance, risen + max(behind for _, behind, _ in self.wheels)))
         last = float(time[min(reached, time.size - 1)] - time[0])
         return max(SKIP_S, math.ceil(10.0 * last) / 10.0)
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """Parameters that the drive sets on its car, as texts of `Car.load`: the speed at which the tyres roll."""
+        if self.driving is None or not math.isnan(self.driving):
+            return () if self.driving is None else (f"driving.speed={self.driving!r}",)
+        measurement = read_record(self.road, self.choice.databases)
+        v = self._driven(measurement, self._heights(measurement)[0])[0]
+        return (f"driving.speed={round(float(v[v > STANDING].mean()), 2)!r}",)
 
     def _driven(self, measurement: Measurement, time: Vector) -> tuple[Vector, list[str]]:
         """Return the speed at the times of the heights [m/s], (n,), and all notices on the speed."""

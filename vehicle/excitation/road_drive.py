@@ -16,6 +16,9 @@ from vehicle.excitation.signal import Signal
 FASTEST = 400.0
 """Largest speed [km/h]."""
 
+CONTACT_PATCH = 0.10
+"""Length of a contact patch [m], assumed: of a car tyre at its load; the tyre averages the road over it."""
+
 USUAL_DURATION = 60.0
 """Length of a drive over a class [s] where none is asked for."""
 
@@ -41,8 +44,9 @@ class RoadDrive:
         rate: samples a second [Hz].
         seed: of a class.
         coherence: of the tracks of a class; None for the isotropic plane.
-        patch: length of the contact patch [m] that averages a class; none where None.
         tagged: the name contains the seed, for several seeds of one road.
+        patch: length of the contact patch [m] over which a tyre averages the road; 0 for a point.
+        driving: speed [m/s] at which the tyres roll, 0 where they stand; None leaves that to the car.
 
     Raises:
         ConfigurationError: a value out of range, or one that a measured profile does not have.
@@ -56,16 +60,18 @@ class RoadDrive:
     rate: float = 1000.0
     seed: int = 1
     coherence: float | None = None
-    patch: float | None = None
+    patch: float = CONTACT_PATCH
     tagged: bool = False
+    driving: float | None = None
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.speed) and 0.0 < self.speed <= FASTEST):
             raise ConfigurationError(f"--speed {self.speed:g} km/h: allowed above 0 to {FASTEST:g}")
         if isinstance(self.road, Path):
-            for name in ("coherence", "patch"):
-                if getattr(self, name) is not None:
-                    raise ConfigurationError(f"--{name}: belongs to a class; a measured profile is taken as it is")
+            if self.coherence is not None:
+                raise ConfigurationError("--coherence: belongs to a class; a measured profile is taken as it is")
+            if not 0.0 <= self.patch < 1.0:
+                raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
         elif self.road not in CLASSES:
             raise ConfigurationError(
                 f"road class {self.road!r}: allowed are {', '.join(CLASSES)}, from good to poor; or give the file of a "
@@ -84,6 +90,11 @@ class RoadDrive:
         last = max(behind for _, behind, _ in self.wheels) / (self.speed / 3.6)
         return max(SKIP_S, math.ceil(10.0 * (RISE_S + AFTER_RISE_S + last)) / 10.0)
 
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """What the drive asks of its car: whether the tyres roll, as texts of `Car.load`."""
+        return () if self.driving is None else (f"driving.speed={self.driving!r}",)
+
     def signal(self) -> Signal:
         """The plate signals.
 
@@ -93,7 +104,7 @@ class RoadDrive:
         speed, duration = self.speed / 3.6, self.duration
         road: IsoRoad | MeasuredRoad
         if isinstance(self.road, Path):
-            road = read_road(self.road, self.track)
+            road = read_road(self.road, self.track, self.patch)
             duration = math.floor(road.length / speed * self.rate) / self.rate if duration is None else duration
         else:
             road = IsoRoad(
@@ -101,7 +112,7 @@ class RoadDrive:
                 seed=self.seed,
                 track=self.track,
                 coherence=self.coherence,
-                patch=self.patch or 0.0,
+                patch=self.patch,
             )
         places = {name: (behind, side) for name, behind, side in self.wheels}
         duration = USUAL_DURATION if duration is None else duration
@@ -131,7 +142,7 @@ class RoadDrive:
             "speed_kmh": self.speed,
             "seed": None if measured else self.seed,
             "coherence": self.coherence,
-            "contact_patch_m": self.patch or 0.0,
+            "contact_patch_m": self.patch,
             "behind_m": {name: behind for name, behind, _ in self.wheels},
             "words": signal.source,
         }

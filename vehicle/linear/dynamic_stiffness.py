@@ -1,6 +1,6 @@
 """The steady motion of a linear system on driven displacements, from its dynamic stiffness line by line.
 
-    D(s) u = s^2 M u + s C u + K u + sum_b e_b' K2 s tau / (1 + s tau) e_b u = (s Bc + Bk) z + what is held
+    D(s) u = s^2 M u + s C u + K u + sum_b h_b' K2 tau / (1 + s tau) (s e_b + g_b) u = (s Bc + Bk) z + what is held
 
 `vehicle.linear.response` gives the same for a few outputs, by the poles; here are all coordinates and the forces of
 joints and of locked sliding pairs.
@@ -54,17 +54,19 @@ def steady_motion(
     share, basis = np.asarray(driven, dtype=float), free_basis(system, stuck=stuck)
     mass, damping, stiffness = (basis.T @ one @ basis for one in (system.mass, system.damping, system.stiffness))
     drag, push = system.input_damping @ share, system.input_stiffness @ share
-    rows = system.branch_rows @ basis
+    effects = system.effects @ basis
     branches = system.branch_stiffness * s[:, None] * system.branch_time / (1.0 + s[:, None] * system.branch_time)
-    motion = np.empty((system.size, len(s)), dtype=complex)
+    drifts = np.zeros_like(system.branch_rows) if system.branch_drifts is None else system.branch_drifts
+    motion, forces = np.empty((system.size, len(s)), dtype=complex), np.empty((len(drifts), len(s)), dtype=complex)
     for index, (one, branch) in enumerate(zip(s, branches, strict=True)):
-        dynamic = one**2 * mass + one * damping + stiffness + (rows.T * branch) @ rows
+        rows = branch[:, None] * (system.branch_rows + drifts / one)
+        dynamic = one**2 * mass + one * damping + stiffness + effects.T @ (rows @ basis)
         motion[:, index] = basis @ np.linalg.solve(dynamic, basis.T @ (one * drag + push))
-    forces = branches.T * (system.branch_rows @ motion)
+        forces[:, index] = rows @ motion[:, index]
     friction = np.zeros((len(system.slide_rows), len(s)), dtype=complex)
     if stuck and len(friction):
         inertia = system.mass @ (s**2 * motion) + system.damping @ (s * motion) + system.stiffness @ motion
-        carried = inertia + system.branch_rows.T @ forces - np.outer(drag, s) - push[:, None]
+        carried = inertia + system.effects.T @ forces - np.outer(drag, s) - push[:, None]
         held = np.vstack([system.constraints, system.slide_rows]).T
         friction = np.linalg.lstsq(held, carried, rcond=None)[0][len(system.constraints) :]
     return SteadyMotion(s=s, motion=motion, branch=forces, friction=friction)

@@ -3,7 +3,7 @@
 An element follows its law in the axes of its carrier, f = p - K r - B r' - f2, with r = J u - z and the preload p. What
 an ideal joint carries follows from the equation of motion,
 
-    Jc' f = M u'' + C u' + K u + E' f_b - Bk z - Bc z' - S' phi,
+    Jc' f = M u'' + C u' + K u + H' f_b - Bk z - Bc z' - S' phi,
 
 phi being the nonlinear damper forces; K holds the turning of the preloads, so that this f is in world axes. In the axes
 of a carrier that turns by theta it is f - theta x p. Where joints hold one freedom twice, the split is the least one.
@@ -139,7 +139,7 @@ def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
         "displacement": split @ system.stiffness,
         "velocity": split @ system.damping,
         "acceleration": split @ system.mass,
-        "branch": split @ system.branch_rows.T,
+        "branch": split @ system.effects.T,
         "height": -split @ system.input_stiffness,
         "height_rate": -split @ system.input_damping,
         "friction": -split @ system.slide_rows.T,

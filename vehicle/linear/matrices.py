@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.linear.rolling_terms import rolling_terms
 from vehicle.linear.system import LinearSystem
 from vehicle.names import AXES
 from vehicle.simulation.callbacks import compiled_rows, installed
@@ -64,7 +65,9 @@ class CarMatrices:
             body name to (6, n).
         body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
         body_places: centre of gravity of each body in the design position [m]; (3,).
+        tyre_rows: rows that turn u into the height of the tyres over their plates; (w, n).
         one_sided: wheels whose tyres do not pull.
+        spinning: bodies that turn with a rolling wheel: their angle is of no importance, and not known.
         carried_by: body that each body is fixed to, itself where it can move on its parent.
         modal: velocity coordinates of the flexible modes.
     """
@@ -77,6 +80,8 @@ class CarMatrices:
     one_sided: frozenset[str] = frozenset()
     tyre_stiffness: Vector
     tyre_damping: Vector
+    tyre_rows: Vector
+    spinning: frozenset[str] = frozenset()
     body_rows: dict[str, Vector]
     body_masses: dict[str, Vector]
     body_places: dict[str, Vector]
@@ -106,8 +111,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
     mujoco.mj_fullM(model, data, mass)
     jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
     dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
-    laws = law_matrices(rows, jacobian, joint_dampers(model))
     rows_of_bodies = _body_rows(model, data)
+    laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
+    turning = set(model.dof_bodyid[e.rolling.spins].tolist())
     return CarMatrices(
         system=LinearSystem(
             coordinates=(),
@@ -118,6 +124,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
             slide_inputs=np.zeros((len(dofs), len(e.tyres))),
             constraints=jacobian[e.joints.ravel()],
             load=np.zeros(model.nv),
+            cyclic=tuple(e.rolling.spins.tolist()),
             outputs={
                 name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modes.velocities).items()
             },
@@ -129,6 +136,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
         one_sided=frozenset(
             wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in e.bushings.one_sided
         ),
+        spinning=frozenset(str(model.body(i).name) for i, root in enumerate(model.body_weldid) if int(root) in turning),
         body_rows=rows_of_bodies,
         body_masses=_body_masses(model, data),
         body_places={name: data.xipos[model.body(name).id].copy() for name in rows_of_bodies},
@@ -146,13 +154,14 @@ class LawMatrices(NamedTuple):
     car: dict[str, Any]
 
 
-def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector) -> LawMatrices:
+def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: Vector) -> LawMatrices:
     """Fields of `LinearSystem` and of `CarMatrices` that depend on the numbers of the laws.
 
     Args:
         rows: of the car at rest.
         jacobian: of its rows; (rows, n).
         joint_damping: damping inside joints; (n,).
+        preload: static forces of the rows; a rolling tyre takes its load on the slope of the road.
     """
     e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
     viscous = e.dampers.laws["viscous_damping"]
@@ -165,18 +174,27 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector) -> LawMatr
     present = bushings.branch_stiffness > 0.0
     vertical = jacobian[bushings.rows[e.tyres][:, 2]]
     tyres = {"stiffness": bushings.stiffness[e.tyres, 2], "damping": bushings.damping[e.tyres, 2]}
+    inputs = {f"input_{kind}": vertical.T * numbers for kind, numbers in tyres.items()}
+    branch_rows = jacobian[bushings.rows[present]]
+    rolling = None
+    if len(e.rolling.tyres):
+        rolling = rolling_terms(rows, preload)
+        damping += rolling.damping
+        inputs["input_damping"] = inputs["input_damping"] + rolling.slope
     return LawMatrices(
         system={
             "damping": damping,
-            "branch_rows": jacobian[bushings.rows[present]],
+            "branch_rows": branch_rows,
+            **({} if rolling is None else rolling.branches(branch_rows, present)),
             "branch_inputs": np.zeros((int(np.count_nonzero(present)), len(e.tyres))),
             "branch_stiffness": bushings.branch_stiffness[present],
             "branch_time": bushings.branch_time[present],
-            **{f"input_{kind}": vertical.T * numbers for kind, numbers in tyres.items()},
+            **inputs,
         },
         car={
             "viscous": viscous,
             "bends": _bends(rows, jacobian),
+            "tyre_rows": vertical,
             **{f"tyre_{kind}": numbers for kind, numbers in tyres.items()},
         },
     )

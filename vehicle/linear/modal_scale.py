@@ -11,9 +11,9 @@ from vehicle.linear.system import LinearSystem
 def modal_a(system: LinearSystem, pole: complex, shape: npt.NDArray[np.complex128]) -> complex:
     """Modal A of a mode with pole s and shape u: u^T D'(s) u, D the dynamic stiffness.
 
-    D(s) = s^2 M + s C + K + sum_b e_b^T K2 s tau / (1 + s tau) e_b, so near s the receptance is u u^T / (A (j w - s)):
-    the residue of the response at i to a force at k is u_i u_k / A. It is exact where the matrices are symmetric, which
-    preloads disturb slightly.
+    D(s) = s^2 M + s C + K + sum_b h_b^T K2 tau / (1 + s tau) (s e_b + g_b), so near s the receptance is
+    u u^T / (A (j w - s)): the residue of the response at i to a force at k is u_i u_k / A. It is exact where the
+    matrices are symmetric, which preloads disturb slightly; those of a rolling car are not: slip, gyroscopic moments.
 
     Args:
         system: the matrices.
@@ -27,5 +27,7 @@ def modal_a(system: LinearSystem, pole: complex, shape: npt.NDArray[np.complex12
     """
     time = system.branch_time
     rate = system.branch_stiffness * time / (1.0 + pole * time) ** 2
-    motion = system.branch_rows @ shape
-    return complex(shape @ (2.0 * pole * system.mass + system.damping) @ shape + np.sum(rate * motion**2))
+    motion, felt = system.branch_rows @ shape, system.effects @ shape
+    if system.branch_drifts is not None:
+        motion = motion - time * (system.branch_drifts @ shape)
+    return complex(shape @ (2.0 * pole * system.mass + system.damping) @ shape + np.sum(rate * motion * felt))

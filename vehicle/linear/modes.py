@@ -119,6 +119,13 @@ def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.c
     growing = [mode for mode in car_modes(matrices, stuck=False) if mode.grows]
     worst = max(growing, key=lambda mode: mode.growth)
     vehicle = car.vehicle
+    if vehicle.driving.rolling:
+        raise ConfigurationError(
+            f"this car does not keep its course at {vehicle.driving.speed:g} m/s: "
+            f"{worst.description.removeprefix('grows: ')} grows by itself, e-fold in {1.0 / worst.growth:.3g} s. Lower "
+            "driving.speed, or look at cornering_stiffness of the tyres, more in front than behind; where it grows "
+            "with driving.speed=0 too, its springs do not hold it: python -m vehicle.modes"
+        )
     raise ConfigurationError(
         f"this car does not stand: {worst.description.removeprefix('grows: ')} grows by itself, e-fold in "
         f"{1.0 / worst.growth:.3g} s. Its weight and preloads are more than its springs hold: what works most there is "

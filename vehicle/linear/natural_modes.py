@@ -72,4 +72,5 @@ def natural_modes(form: FirstOrder) -> NaturalModes:
     poles, vectors = np.linalg.eig(form.state)
     kept = (poles.imag > 1e-6) | (grows(poles) & (poles.imag >= 0.0))
     order = [i for i in np.argsort(np.abs(poles), kind="stable") if kept[i]]
-    return NaturalModes(pole=poles[order].astype(complex), motion=form.shape(vectors[:, order]).T.astype(complex))
+    motion = form.shapes(vectors[:, order], poles[order]).T.astype(complex)
+    return NaturalModes(pole=poles[order].astype(complex), motion=motion)

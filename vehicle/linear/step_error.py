@@ -222,8 +222,7 @@ class _Judge:
         """The acceleration whose ringing after a step of friction is farthest off; the map is that of sliding."""
         values, vectors = np.linalg.eig(made.matrix)
         form = self.forms[False]
-        size = form.basis.shape[1]
-        velocity = slice(size, 2 * size)
+        velocity = slice(form.placed, 2 * form.placed)
         places = np.array([form.output(name)[0] for name in self.names])
         poles, shapes = self.poles, self.shapes
         # a(t) = sum_i r_i exp(s_i t), and of the map r_i z_i^n.

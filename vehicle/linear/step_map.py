@@ -7,7 +7,9 @@ motions u = N y that the ideal joints allow, with v the velocity at the middle o
     p = e F + g j v,   f2 = p + beta ((e - 2) p + g j v + F),   F+ = p + s j a,
 
 e, g, s being decay, gain and slope of a branch over the step. An eigenvalue z of this map stands for the pole
-ln(z)/h that the run has, where the matrices have s.
+ln(z)/h that the run has, where the matrices have s. A branch that drifts with d y is driven by d (y - v h/2) beside
+j v, and its rate changes by d (v + a h/2) h in a step. Gyroscopic forces are taken in the middle of two steps, as
+their extrapolation is meant to be.
 """
 
 from __future__ import annotations
@@ -77,6 +79,8 @@ def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows
     present = e.bushings.branch_stiffness > 0.0
     mass = matrices.system.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model))
     mass[matrices.dampers, matrices.dampers] += own.damper_impedance
+    if matrices.system.cyclic:
+        mass += 0.25 * timestep * (matrices.system.damping - matrices.system.damping.T)
     return StepRows(
         timestep=timestep,
         mass=mass,
@@ -99,27 +103,28 @@ def step_map(rows: StepRows, form: FirstOrder) -> StepMap:
         The map.
     """
     h, basis, system = rows.timestep, form.basis, form.system
-    branch = system.branch_rows @ basis
+    branch, size, placed = system.branch_rows @ basis, basis.shape[1], form.placed
+    drift = np.zeros_like(branch) if system.branch_drifts is None else system.branch_drifts @ basis
+    effect, late = system.effects @ basis, branch - 0.5 * h * drift
     e, beta = rows.decay, rows.average
     force, rate = e + beta * ((e - 2.0) * e + 1.0), (1.0 + beta * (e - 1.0)) * rows.gain
     forces = np.hstack(
         [
-            -basis.T @ system.stiffness @ basis,
-            -basis.T @ rows.damping @ basis - branch.T @ (rate[:, None] * branch),
-            -branch.T * force,
+            (-basis.T @ system.stiffness @ basis - effect.T @ (rate[:, None] * drift))[:, :placed],
+            -basis.T @ rows.damping @ basis - effect.T @ (rate[:, None] * late),
+            -effect.T * force,
             (system.slide_rows @ basis).T,
         ]
     )
     acceleration = np.linalg.solve(basis.T @ rows.mass @ basis, forces)
-    size, count = basis.shape[1], len(branch)
-    v, f = slice(size, 2 * size), slice(2 * size, 2 * size + count)
-    states = 2 * size + count
+    v, f, states = form.velocities, form.branches, form.branches.stop
     whole = np.zeros((states, states + len(system.slide_rows)))
     whole[v] = h * acceleration
     whole[v, v] += np.eye(size)
-    whole[:size] = h * whole[v]
-    whole[:size, :size] += np.eye(size)
-    whole[f] = rows.slope[:, None] * (branch @ acceleration)
-    whole[f, v] += rows.gain[:, None] * branch
+    whole[:placed] = h * whole[v][:placed]
+    whole[:placed, :placed] += np.eye(placed)
+    whole[f] = rows.slope[:, None] * ((branch + 0.5 * h * drift) @ acceleration)
+    whole[f, v] += rows.gain[:, None] * late + rows.slope[:, None] * drift
+    whole[f, :placed] += rows.gain[:, None] * drift[:, :placed]
     whole[f, f] += np.diag(e)
     return StepMap(matrix=whole[:, :states], load=whole[:, states:])

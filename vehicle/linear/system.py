@@ -1,11 +1,13 @@
 """The one linear system that every model of the house makes: quarter car, half car, engine on mounts, complete car.
 
-    M x'' + C x' + K x + sum_b e_b' f_b + sum_p s_p' phi_p = Bc z' + Bk z + l F,    Jc x = 0
-    f_b' = K2 (e_b x' + r_b z') - f_b / tau_b,    v_p = s_p x' + d_p z'
+    M x'' + C x' + K x + sum_b h_b' f_b + sum_p s_p' phi_p = Bc z' + Bk z + l F,    Jc x = 0
+    f_b' = K2 (e_b x' + g_b x + r_b z') - f_b / tau_b,    v_p = s_p x' + d_p z'
 
 x are the coordinates, z the driven displacements, f_b the forces of Maxwell branches, phi_p those of sliding pairs
 (friction, and what else depends on their velocity v_p alone), F an applied force, Jc the ideal joints. Leading axes
-"..." stand for many systems at once.
+"..." stand for many systems at once. Of most branches g_b = 0 and h_b = e_b; a tyre that rolls slips sideways by its
+heading too, and its side force acts behind its middle. No force depends on the place of a cyclic coordinate, as the
+angle of a free wheel: its velocity alone is a state.
 """
 
 from __future__ import annotations
@@ -44,6 +46,8 @@ class LinearSystem:
         branch_rows, branch_inputs: e_b and r_b; (..., b, n), (..., b, w).
         branch_stiffness, branch_time: K2 [N/m] and tau [s]; (..., b).
         slide_rows, slide_inputs: s_p and d_p; (..., p, n), (..., p, w).
+        branch_drifts, branch_effects: g_b and h_b, (b, n); None for 0 and e_b.
+        cyclic: positions of the cyclic coordinates; (c,).
         constraints: Jc; (k, n).
         load: l, where the applied force acts; (..., n).
         outputs: name -> coefficients of the coordinates and behind them those of the inputs; (..., n + w).
@@ -67,11 +71,19 @@ class LinearSystem:
     load: Array
     outputs: Mapping[str, Array]
     slides: tuple[Slide, ...] = ()
+    branch_drifts: Array | None = None
+    branch_effects: Array | None = None
+    cyclic: tuple[int, ...] = ()
 
     @property
     def size(self) -> int:
         """Number of coordinates n."""
         return int(self.mass.shape[-1])
+
+    @property
+    def effects(self) -> Array:
+        """h_b; (..., b, n)."""
+        return self.branch_rows if self.branch_effects is None else self.branch_effects
 
     def output(self, name: str) -> tuple[Array, Array]:
         """Coefficients of an output on the coordinates (..., n) and on the inputs (..., w).

@@ -2,8 +2,8 @@
 
 Where the places stay, so do the rows J, the shapes of all outputs, and how forces of given size turn with the parts:
 
-    K = J' K_e J + sum of K_rot T' T + joint springs + stops + sum of p_i H_i + sum of m_b g G_b,
-    C = J' B_e J + joint dampers,    M = M0 + sum of J_b' (M_b - M_b0) J_b,
+    K = J' K_e J + sum of K_rot T' T + joint springs + stops + hold of the course + sum of p_i H_i + sum of m_b g G_b,
+    C = J' B_e J + joint dampers + what rolling adds,    M = M0 + sum of J_b' (M_b - M_b0) J_b,
 
 p_i being the preloads, H_i = -dg_i/du of the generalised force g_i of the preload i = 1, and G_b = dJ_bz'/du of the
 centre of gravity of part b. K is that of the other car plus the difference of this sum: what the sum misses would show
@@ -126,9 +126,10 @@ class Terms:
         preload, count = settled.preload, len(rest.jacobian)
         left = unsolved(rows.layout, rest.weight) - springs * settled.displacement + rest.jacobian.T @ preload[:count]
         left += np.einsum("nij,ni->j", rest.turned, preload[count:].reshape(-1, 3))
+        left[rows.layout.rolling.spins] = 0.0
         static = static_loads(rows, settled, left)
         require_standing(vehicle, rows, static)
-        laws, known = law_matrices(rows, rest.jacobian, dampers), self.matrices.system
+        laws, known = law_matrices(rows, rest.jacobian, dampers, preload), self.matrices.system
         stiffness = parts.turning + self._stiffness(rows, springs, preload, rest, change)
         stiffness += change.carried(rest.weight)
         system = replace(
@@ -159,6 +160,9 @@ class Terms:
         turned = rest.turned.reshape(-1, j.shape[1])
         found += turned.T @ (np.repeat(e.rotations.stiffness, 3)[:, None] * turned)
         found[np.diag_indices(len(found))] += springs
+        if len(e.rolling.tyres):
+            course = e.rolling.course_rows(len(found))
+            found += course.T @ (e.rolling.hold[:3, None] * course)
         for index in np.flatnonzero(e.tables.kinds == 2).tolist():
             dof, curve = e.dampers.dofs[e.tables.elements[index]], curve_of(e.tables, index)
             ends = curve.force(np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]))
@@ -211,6 +215,11 @@ def same_places(vehicle: Vehicle, other: Vehicle) -> bool:
         return False
     if not same_body(vehicle.body, body):
         return False
+    spinning = {wheel.part for wheel in car.wheels} if vehicle.driving.rolling else set[str]()
+    for one, like in zip(car.parts, known.parts, strict=False):
+        # The inertia of a wheel about its axle is read from the model.
+        if (one.name in spinning or one.parent in spinning) and one.numbers != like.numbers:
+            return False
     if vehicle.body.flexible:
         # What is fixed to a flexible body changes its modes; a load is in the body model, which is scaled whole.
         scaled = vehicle.body.model_factor != body.model_factor
@@ -219,7 +228,7 @@ def same_places(vehicle: Vehicle, other: Vehicle) -> bool:
                 return False
     return (
         _alike(car.parts, known.parts, "numbers")
-        and _alike(car.connections, known.connections, "law")
+        and _alike(car.connections, known.connections, "law", "rolling")
         and _alike(car.springs, known.springs, "stiffness", "table")
         and _alike(car.joint_springs, known.joint_springs, "stiffness", "damping")
         and _alike(car.dampers, known.dampers, "law")

@@ -11,7 +11,7 @@ from vehicle.car import Car
 from vehicle.optimisation.outcome import BASE, Outcome
 from vehicle.optimisation.problem import Vector
 from vehicle.optimisation.trials import ALONE, Trials
-from vehicle.sweeps.case import signal_of
+from vehicle.sweeps.case import overrides_of, signal_of
 
 Differences = Mapping[str, Mapping[str, float | None]]
 """Name of a car to number to its relative difference between two engines, None where there is none."""
@@ -24,12 +24,12 @@ NEW_CARS = 64
 
 
 def chosen_cars(trials: Trials, found: Outcome) -> dict[str, Car]:
-    """The named cars."""
-    alone = replace(trials, spread=ALONE)
-    return {
-        name: Car.load(trials.vehicle, alone.cases(found.tried.points[row][None])[0].overrides)
-        for name, row in found.named.items()
-    }
+    """The named cars, without what single inputs ask of them."""
+    alone, cars = replace(trials, spread=ALONE), dict[str, Car]()
+    for name, row in found.named.items():
+        case = alone.cases(found.tried.points[row][None])[0]
+        cars[name] = Car.load(trials.vehicle, [*trials.fixed, *case.overrides[case.shared :]])
+    return cars
 
 
 def without_tolerances(trials: Trials, found: Outcome) -> Vector:
@@ -92,6 +92,8 @@ def left_validity(trials: Trials, cars: Mapping[str, Car]) -> list[str]:
     found = []
     for name, car in cars.items():
         for source in trials.inputs:
-            run = car.run(signal_of(source), engine="reduced", channels=trials.measure.channels)
+            run = car.varied(overrides_of(source)).run(
+                signal_of(source), engine="reduced", channels=trials.measure.channels
+            )
             found += [f"{name} on {source.name}: {warning}" for warning in run.recording.statistics.warnings]
     return found

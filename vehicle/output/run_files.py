@@ -138,6 +138,7 @@ def write_run(
         summary["measured"] = write_beside(folder, measured, run, files)
         summary["notices"] += [f"{measured.file.path.name}: {text}" for text in summary["measured"]["notices"]]
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
+    summary["tyre"] = run.car.vehicle.driving.words
     summary["input"]["road"] = None if road is None else dict(road)
     summary["notices"] += missing
     summary["command"] = command or None

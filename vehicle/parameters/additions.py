@@ -9,7 +9,7 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.parameters.axes import Axes, axes_along
 from vehicle.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
-from vehicle.parameters.elements import Bushing, Hydromount
+from vehicle.parameters.elements import Bushing, Hydromount, Tyre
 from vehicle.parameters.hardpoints import Point, require_apart, require_point
 from vehicle.parameters.loads import Load
 from vehicle.parameters.quantity import NAME_PATTERN
@@ -37,9 +37,9 @@ def own_point(path: str, value: Any) -> Point:
     return point
 
 
-def law_kind(table: Mapping[str, Any]) -> type[Bushing] | type[Hydromount]:
-    """Class of the numbers of a connection."""
-    return Hydromount if any(key.startswith("maxwell_") for key in table) else Bushing
+def law_kind(table: Mapping[str, Any], *, plate: bool = False) -> type[Bushing] | type[Hydromount]:
+    """Class of the numbers of a connection; `plate`: of a tyre on its plate."""
+    return Hydromount if any(key.startswith("maxwell_") for key in table) else Tyre if plate else Bushing
 
 
 def _place(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:

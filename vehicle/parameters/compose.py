@@ -20,10 +20,11 @@ from vehicle.parameters.composition import (
     PlacedPart,
     PlacedSpring,
     PlacedWheel,
+    Rolling,
     Source,
 )
 from vehicle.parameters.dampers import placed_damper
-from vehicle.parameters.elements import Damper
+from vehicle.parameters.elements import Bushing, Damper, Hydromount
 from vehicle.parameters.freedoms import freedoms
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import Instance
@@ -244,7 +245,7 @@ def _wheels(car: Mapping[str, Instance]) -> list[PlacedWheel]:
 def _connection(i: Instance, e: topology.Connection, side: str | None) -> PlacedConnection:
     law = None
     if not e.ideal or i.has("bushings", e.name):
-        law = i.get(law_kind(i.numbers.get("bushings", {}).get(e.name, {})), side, "bushings", e.name)
+        law = i.get(_law_kind(i, e), side, "bushings", e.name)
         for axis, stiffness in zip("xyz", law.stiffness, strict=True):
             if stiffness < e.least:
                 raise ConfigurationError(
@@ -261,7 +262,22 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
         ground=e.ground or e.carrier == "plate",
         path=f"{i.name}.bushings.{e.name}",
         axes=None if e.axes is None else axes_along(i.point(e.axes[0], side), i.point(e.axes[1], side)),
+        rolling=_rolling(i, side) if e.carrier == "plate" and i.driving.rolling else None,
     )
+
+
+def _rolling(i: Instance, side: str | None) -> Rolling | None:
+    """What a rolling tyre knows beside its law."""
+    wheel = i.template.wheel
+    if wheel is None:
+        return None
+    low, high = i.point(wheel.patch, side), i.point(wheel.center, side)
+    arm = (high[0] - low[0], high[1] - low[1], high[2] - low[2])
+    return Rolling(speed=i.driving.speed, arm=arm)
+
+
+def _law_kind(i: Instance, e: topology.Connection) -> type[Bushing] | type[Hydromount]:
+    return law_kind(i.numbers.get("bushings", {}).get(e.name, {}), plate=e.carrier == "plate")
 
 
 def kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, type]:
@@ -273,7 +289,7 @@ def kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> dict[str, ty
         for one in i.template.connection:
             if not one.ideal or i.has("bushings", one.name):
                 path = f"{i.name}.bushings.{one.name}"
-                found[path] = law_kind(i.numbers.get("bushings", {}).get(one.name, {}))
+                found[path] = _law_kind(i, one)
         found |= {f"{i.name}.{one.name}": Damper for one in i.template.damper}
         found |= {f"{i.name}.{one.name}": spring_kind(i, one) for one in i.template.spring}
     return found

@@ -53,9 +53,17 @@ class PlacedPart:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Rolling:
+    """A tyre that rolls: speed of the car [m/s], wheel centre from the patch [m]."""
+
+    speed: float
+    arm: Point
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedConnection:
     """Two parts that meet at a point [m]; `law` None of an ideal ball joint; `path` of its numbers; `axes` of the law,
-    by default those of the carrier."""
+    by default those of the carrier; `rolling` None of all but tyres that roll."""
 
     name: str
     moving: str
@@ -66,6 +74,7 @@ class PlacedConnection:
     ground: bool
     path: str
     axes: Axes | None = None
+    rolling: Rolling | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

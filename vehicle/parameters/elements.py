@@ -64,6 +64,35 @@ class Bushing:
             )
 
 
+SLIPPING: dict[str, Any] = {"at_least": 1e3, "at_most": 1e7, "why": "a car tyre has 2e4 to 2e5 per unit of slip"}
+CARCASS: dict[str, Any] = {"at_least": 1e4, "at_most": 1e7, "why": "a car tyre has 5e4 to 8e5 N/m"}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Tyre(Bushing):
+    """A tyre on its plate: a bushing where it stands. Where it rolls, its horizontal force comes from slip.
+
+    Then K and D along x and y and the stiffness against rotation, which are those of a standing tyre, do not act.
+    """
+
+    slip_stiffness: float | None = quantity(
+        "N", "C_kappa, force over longitudinal slip of the rolling tyre at its static load", default=None, **SLIPPING
+    )
+    cornering_stiffness: float | None = quantity(
+        "N/rad", "C_alpha, force over slip angle of the rolling tyre at its static load", default=None, **SLIPPING
+    )
+    carcass_longitudinal: float | None = quantity(
+        "N/m", "stiffness of the carcass along x; C_kappa over it is the relaxation length", default=None, **CARCASS
+    )
+    carcass_lateral: float | None = quantity(
+        "N/m", "stiffness of the carcass along y; C_alpha over it is the relaxation length", default=None, **CARCASS
+    )
+    trail: float = quantity(
+        "m", "pneumatic trail, by which the side force acts behind the middle of the contact patch", at_least=0.0,
+        at_most=0.1, why="a third of half the contact length by the brush model, 0.02 to 0.04 m", default=0.0,
+    )  # fmt: skip
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Hydromount:
     """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s."""

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
 from vehicle.names import SIDE_SIGN
+from vehicle.parameters.driving import STANDING, Driving
 from vehicle.parameters.hardpoints import Point, mirrored, require_apart, require_point, require_triangle
 from vehicle.parameters.parts import Part
 from vehicle.parameters.toml_file import build, convert, nearest
@@ -29,6 +30,7 @@ class Instance:
         template: topology.
         others: all instances of the car by name.
         given: hardpoints of the vehicle file by name [m].
+        driving: how the car drives.
         typed: parameter objects of the whole instance that are there already, by path.
         taken: tables and points of a side that something took.
     """
@@ -38,6 +40,7 @@ class Instance:
     template: Template
     others: Mapping[str, Instance]
     given: Mapping[str, Point] = field(default_factory=dict)
+    driving: Driving = STANDING
     typed: dict[str, Any] = field(default_factory=dict)
     taken: set[str] = field(default_factory=set)
 

@@ -8,13 +8,14 @@ from types import MappingProxyType
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.driving import as_driven, driving_of
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.instance import OWN, Instance
 from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.template import read_template
 from vehicle.parameters.toml_file import convert, nearest
 
-KEPT = ("name", "gravity", "body", "solver", "hardpoints", "outputs", "connection", "load", "alias")
+KEPT = ("name", "gravity", "body", "solver", "driving", "hardpoints", "outputs", "connection", "load", "alias")
 """Keys of a vehicle file that are no instance."""
 
 
@@ -32,9 +33,11 @@ def instances(
         ConfigurationError: as of `compose`.
     """
     car: dict[str, Instance] = {}
+    driving = driving_of(table)
     for path, numbers in _instances(table, "", ""):
         found = read_template(convert(str, numbers["template"], f"{path}.template"), numbers, folders)
-        car[path] = Instance(name=path, numbers=numbers, template=found, others=car, given=own)
+        found = as_driven(found, driving)
+        car[path] = Instance(name=path, numbers=numbers, template=found, others=car, given=own, driving=driving)
     return car
 
 

@@ -11,7 +11,8 @@ from typing import Any
 from vehicle.names import SIDE_SIGN
 from vehicle.parameters.body import MOST_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.parameters.compose import kinds
-from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount
+from vehicle.parameters.driving import Driving
+from vehicle.parameters.elements import Bushing, Damper, ForceTable, Hydromount, Tyre
 from vehicle.parameters.instances import instances
 
 
@@ -27,7 +28,11 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     """
     car = instances(table, (folder, folder / "templates"))
     own, given = (
-        ["solver.timestep", *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes")],
+        [
+            "solver.timestep",
+            *(f"driving.{key}" for key in _keys(Driving, everything=False)),
+            *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
+        ],
         kinds(car, table),
     )
     own += [f"body.inertia.{key}" for key in _keys(BodyInertia, everything=False)]
@@ -38,8 +43,8 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     own += [f"{path}.{key}" for path in ideal for key in _keys(Bushing, everything=True)]
     for path, kind in every.items():
         # A bushing becomes a hydromount by the numbers of its branch.
-        for one in (kind, Hydromount) if kind is Bushing else (kind,):
-            own += [f"{path}.{key}" for key in _keys(one, everything=one is Hydromount and kind is Bushing)]
+        for one in (kind, Hydromount) if kind in (Bushing, Tyre) else (kind,):
+            own += [f"{path}.{key}" for key in _keys(one, everything=one is Hydromount and kind is not Hydromount)]
     sides = []
     for i in car.values():
         inside = [path.removeprefix(f"{i.name}.") for path in every if path.startswith(f"{i.name}.")]

@@ -31,6 +31,14 @@ class Part:
     between: tuple[str, ...] | None = quantity(
         "-", "hardpoints whose mean is the centre of gravity; by default those of the template", default=None
     )
+    radius: float = quantity(
+        "m",
+        "radius of a rod without inertia",
+        above=0.0,
+        at_most=0.2,
+        why="steering and stabilizer rods have 5 to 15 mm",
+        default=ROD_RADIUS,
+    )
     offset: Point = quantity("m", "added to that mean; right side", length=3, default=(0.0, 0.0, 0.0))
 
     def as_rod(self, start: Point, end: Point) -> Part:
@@ -43,7 +51,7 @@ class Part:
             return self
         way = [b - a for a, b in zip(start, end, strict=True)]
         square = sum(x * x for x in way)
-        across, along = self.mass * (square / 12.0 + ROD_RADIUS**2 / 4.0), self.mass * ROD_RADIUS**2 / 2.0
+        across, along = self.mass * (square / 12.0 + self.radius**2 / 4.0), self.mass * self.radius**2 / 2.0
         x, y, z = (each / math.sqrt(square) for each in way)
         less = across - along
         moments = (across - less * x * x, across - less * y * y, across - less * z * z)

@@ -25,9 +25,12 @@ class RolePart:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Joint:
-    """What holds `child`: free, or on `parent`, fixed or with the freedom of its kind; two of one pair stack."""
+    """What holds `child`: free, or on `parent`, fixed or with the freedom of its kind; two of one pair stack.
 
-    kind: str = quantity("-", "kind", choices=("free", "fixed", "ball", "hinge", "slide", "cardan"))
+    Of kind "spin" are a tyre and what turns with it on their hub: fixed where the tyre stands, turning where it rolls.
+    """
+
+    kind: str = quantity("-", "kind", choices=("free", "fixed", "ball", "hinge", "slide", "cardan", "spin"))
     child: tuple[str, ...]
     parent: str = "world"
     name: str | None = None
@@ -38,7 +41,7 @@ class Joint:
 
     def __post_init__(self) -> None:
         validate(self)
-        if self.kind in ("ball", "hinge", "slide", "cardan") and self.at is None:
+        if self.kind in ("ball", "hinge", "slide", "cardan", "spin") and self.at is None:
             raise ConfigurationError(f"Joint.at: missing; a {self.kind} has a point")
         if self.kind in ("hinge", "slide", "cardan") and (self.along is None) == (self.axis is None):
             raise ConfigurationError(f"Joint.along: a {self.kind} needs two points in along, or its axis, one of them")

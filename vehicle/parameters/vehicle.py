@@ -15,6 +15,7 @@ from vehicle.parameters.body import TrimmedBody, require_inertia_table
 from vehicle.parameters.compose import compose
 from vehicle.parameters.composition import Composition
 from vehicle.parameters.curves import with_curve_files
+from vehicle.parameters.driving import Driving, driving_of, require_rolling
 from vehicle.parameters.elements import Damper
 from vehicle.parameters.hardpoints import Point
 from vehicle.parameters.optional_keys import optional_paths
@@ -69,6 +70,7 @@ class Vehicle:
         name, gravity: as there; [m/s2].
         body: trimmed body.
         solver: numerics.
+        driving: whether its wheels roll.
         composition: everything else, placed and named.
     """
 
@@ -77,6 +79,7 @@ class Vehicle:
     gravity: float = field(compare=False)
     body: TrimmedBody = field(compare=False)
     solver: Solver = field(compare=False)
+    driving: Driving = field(compare=False)
     composition: Composition = field(compare=False)
 
     @property
@@ -183,7 +186,7 @@ class Vehicle:
         Args:
             path: whole path, of a value or of a component.
         """
-        kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, **self.composition.kinds}
+        kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, "driving": Driving, **self.composition.kinds}
         keys = path.removesuffix(".").split(".")
         # A component of a vector is one key behind its table, a number of a mode of the body two.
         for place, inner in (
@@ -227,9 +230,11 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
         gravity=head.gravity,
         body=body,
         solver=solver,
+        driving=driving_of(table),
         composition=compose(table, folders),
     )
     require_plausible(vehicle)
+    require_rolling(vehicle)
     return vehicle
 
 

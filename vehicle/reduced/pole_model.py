@@ -93,8 +93,8 @@ class PoleModel:
         """Tyre force on the wheel: k (z - J u) + c (z' - J u')."""
         m, wheels = self.matrices, self.matrices.system.inputs
         index = wheels.index(channel.removeprefix("tyre_").removesuffix("_force_z"))
-        spring = m.system.input_stiffness[:, index] @ self.modal
-        drag = (m.system.input_damping[:, index] @ self.modal) * self.poles
+        spring = (m.tyre_rows[index] * m.tyre_stiffness[index]) @ self.modal
+        drag = ((m.tyre_rows[index] * m.tyre_damping[index]) @ self.modal) * self.poles
         here = np.zeros(len(wheels))
         here[index] = 1.0
         return -(spring + drag), m.tyre_stiffness[index] * here, m.tyre_damping[index] * here
@@ -125,7 +125,7 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         velocity=residues[:, w : 2 * w],
         force=residues[:, 2 * w :],
         slip=form.slide @ weighted,
-        modal=form.shape(weighted),
-        branch=weighted[2 * form.basis.shape[1] :],
+        modal=form.shapes(weighted, poles[kept]),
+        branch=weighted[form.branches],
         matrices=matrices,
     )

@@ -103,7 +103,7 @@ def turning_bodies(matrices: CarMatrices) -> tuple[str, ...]:
     first: dict[str, str] = {}
     for body in matrices.body_rows:
         first.setdefault(matrices.carried_by.get(body, body), body)
-    return tuple(first.values())
+    return tuple(body for body in first.values() if body not in matrices.spinning)
 
 
 def rotation_outputs(model: PoleModel, bodies: Sequence[str]) -> Outputs:
@@ -152,7 +152,10 @@ class ValidityWatch:
         interval: float,
     ) -> None:
         self.every = samples_of_a_look(interval)
-        self.matrices, self.bodies = model.matrices, tuple(model.matrices.body_rows)
+        self.matrices, self.bodies = (
+            model.matrices,
+            tuple(body for body in model.matrices.body_rows if body not in model.matrices.spinning),
+        )
         self.rotations, self.tyres, self.stretches = (
             Readout(outputs, factors, model.pairs, columns)
             for outputs in (rotation_outputs(model, self.bodies), tyre_outputs(model), bend_outputs(model))

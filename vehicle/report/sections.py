@@ -89,6 +89,7 @@ def what_was_run(run: FinishedRun) -> Markup:
         ("name", vehicle.name),
         ("file", _origin(run)),
         ("wheels on plates", ", ".join(vehicle.wheels)),
+        ("tyres", vehicle.driving.words),
         ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
     about = (("Car", car), ("Signal", signal), ("Engine", engine))

@@ -70,6 +70,7 @@ class AxleStatics:
         *,
         wheels: Sequence[PlacedWheel],
         ideal: bool = False,
+        standing: bool = False,
     ) -> None:
         """Find the parts; arguments as of `axle_parts`.
 
@@ -78,10 +79,13 @@ class AxleStatics:
             preload: as of the trim.
             wheels: of the axle.
             ideal: every connection to be an ideal ball joint.
+            standing: the wheels stand, with the horizontal force and the torque of tyres that were set down; else
+                their patches roll freely.
         """
         self.model, self.data, self.ideal = model, mujoco.MjData(model), ideal
         self.parts = axle_parts(model, np.asarray(preload), [wheel.part for wheel in wheels], ideal=ideal)
         self.wheels, self.columns = self.parts.wheels, self.parts.columns
+        self.ground = self.parts.standing if standing else np.zeros_like(self.parts.standing)
         mujoco.mj_forward(model, self.data)
         self.at_rest = [(np.array(wheel.center), np.array(wheel.patch)) for wheel in wheels]
         self.offsets = [
@@ -103,7 +107,7 @@ class AxleStatics:
             SimulationError: there is no such position, or the parts are not held.
         """
         model, data = self.model, self.data
-        loads = self.parts.standing if loads is None else self.parts.standing + loads
+        loads = self.ground if loads is None else self.ground + loads
         count, reactions = self.columns.size, np.zeros(0)
         for _ in range(ITERATIONS):
             force, stiffness = self._forces(loads)
@@ -154,7 +158,7 @@ class AxleStatics:
         return moved[:, self.columns], turned[:, self.columns]
 
     def _relative(self, tie: Tie) -> tuple[Vector, Vector, Vector, Vector]:
-        """Displacement r [m] and turn [rad] of the moving part against the carrier in its axes, and Jacobians."""
+        """Displacement r [m] and sin(angle) n of the moving part against the carrier in its axes, and Jacobians."""
         data, bodies = self.data, self.model.site_bodyid
         one, other = tie.moving, tie.carrier
         # Forces along the directions of the law, turns about the axes of the car.
@@ -164,9 +168,9 @@ class AxleStatics:
         moved, turned = self.jacobian(int(bodies[one]), data.site_xpos[one])
         carried, rotated = self.jacobian(int(bodies[other]), data.site_xpos[one])
         gap = own.T @ (data.site_xpos[one] - data.site_xpos[other])
-        relative, quaternion, angle = frame.T @ data.site_xmat[one].reshape(3, 3), np.zeros(4), np.zeros(3)
-        mujoco.mju_mat2Quat(quaternion, relative.ravel())
-        mujoco.mju_quat2Vel(angle, quaternion, 1.0)
+        relative = frame.T @ data.site_xmat[one].reshape(3, 3)
+        # sin(angle) n, the law of the runs (`vehicle.simulation.rotations`).
+        angle = 0.5 * np.array([relative[i, j] - relative[j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
         return gap, angle, own.T @ (moved - carried), frame.T @ (turned - rotated)
 
     def _forces(self, loads: Vector) -> tuple[Vector, Vector]:

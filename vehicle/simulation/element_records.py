@@ -186,15 +186,52 @@ class ModalSpace(NamedTuple):
     spread: Table
 
 
+class Rolling(NamedTuple):
+    """The w tyres that roll, and the hold of the course; none where the tyres stand.
+
+    Attributes:
+        tyres, plates: positions among the bushings, and among the plates; (w,).
+        sites, hubs: points of the hubs at the patches, and the hubs; (w,).
+        spins: velocity coordinates about the axles; (w,).
+        arms: wheel centre from the patch in the axes of the hub [m]; (w, 3).
+        speeds, trails, inertias: V [m/s], trail [m], inertia of what turns about the axle [kg m2]; (w,).
+        dofs: what moves the hubs: wheel, velocity coordinate, its tree; a row each.
+        course: velocity coordinates of the trimmed body along x, y and in yaw, positions along x and y; (5,) or none.
+        rest: these positions at rest; (2,).
+        hold: stiffness and damping of the hold along x, y and in yaw, and how far behind the body its y acts; (7,).
+    """
+
+    tyres: Index
+    plates: Index
+    sites: Index
+    hubs: Index
+    spins: Index
+    arms: Table
+    speeds: Vector
+    trails: Vector
+    inertias: Vector
+    dofs: Indices
+    course: Index
+    rest: Vector
+    hold: Vector
+
+    def course_rows(self, size: int) -> Table:
+        """What the hold resists over the velocity coordinates: x, y and yaw; (3, size)."""
+        rows = np.zeros((3, size))
+        rows[np.arange(3), self.course[:3]] = 1.0
+        rows[1, self.course[2]] = self.hold[6]
+        return rows
+
+
 class Layout(NamedTuple):
     """The elements of a car in its rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, controls, tables, modes, space: see there.
+        bushings, rotations, springs, dampers, controls, tables, modes, space, rolling: see there.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: positions among the bushings of those on a plate, in the order of the plates; (t,).
         reach: where rows with explicit forces are not zero: first row, number of rows (3 or 1), first column, end.
-        row_count: number of constraint rows.
+        row_count, velocity_count: number of constraint rows, and of velocity coordinates.
     """
 
     bushings: Bushings
@@ -205,7 +242,9 @@ class Layout(NamedTuple):
     tables: Tables
     modes: Modes
     space: ModalSpace
+    rolling: Rolling
     joints: Indices
     tyres: Index
     reach: Indices
     row_count: int
+    velocity_count: int

@@ -39,6 +39,7 @@ from vehicle.simulation.element_records import Layout, Tables
 from vehicle.simulation.modal_rows import modal_rows
 from vehicle.simulation.modal_space import advance_modes, modal_forces
 from vehicle.simulation.records import Efc, Fields, State, Weights
+from vehicle.simulation.rolling import headings, rolling_forces, rolling_rows
 from vehicle.simulation.rotations import rotations
 
 EMPTY_ROW = 1e-9
@@ -292,7 +293,9 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     if e.modes.size > 0:
         modal_rows(d, efc, e, s)
     oblique_rows(d, efc, e)
+    rolling_rows(d, efc, e)
     local_axes(d, efc, e, s)
+    headings(time, d, e, s)
     control(time, d, e, s)
     advance_branches(time, c, s)
     elements(d, efc, e, c, s)
@@ -302,6 +305,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     generalised_forces(d, efc, e, s)
     modal_forces(d, e, s)
     rotations(d, e, c, s)
+    rolling_forces(d, efc, e, c, s)
     stops(d, e, s)
 
 

@@ -69,6 +69,8 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
         The layout; its curves stand without load.
     """
     laws, present = laws_of(names, numbers), laws_of(names, numbers)[:, 6:9] > 0.0
+    rolling = [numbers[f"rolling/{name}"] for name in names.bushings if f"rolling/{name}" in numbers]
+    own = np.reshape(rolling, (-1, 5)).astype(float)
     controls = [numbers[f"control/{name}"] for name in names.dampers if f"control/{name}" in numbers]
     return layout._replace(
         bushings=layout.bushings._replace(
@@ -96,6 +98,12 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             laws=in_steps(np.reshape(controls, (-1, 8)), timestep),
         ),
         tables=_tables(names, numbers),
+        rolling=layout.rolling._replace(
+            speeds=own[:, 0].copy(),
+            trails=own[:, 1].copy(),
+            arms=own[:, 2:].copy(),
+            hold=np.array(numbers.get("hold/body", np.zeros(0))),
+        ),
     )
 
 

@@ -21,6 +21,7 @@ from vehicle.simulation.element_records import (
     Layout,
     ModalSpace,
     Modes,
+    Rolling,
     Rotations,
     Springs,
     Table,
@@ -63,7 +64,13 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             ends[name] = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
         elif types[index] == kinds.mjEQ_TENDON:
             ends[name] = model.site(f"{name}/lower").id, model.site(f"{name}/upper").id
-    reach = [run for name, sites in ends.items() for run in _reach(model, sites, modal, equalities[name], first_rows)]
+    rolling = [name for name in names if f"rolling/{name}" in numbers]
+    spins = {name: _spin(model, ends[name]) for name in rolling}
+    reach = [
+        run
+        for name, sites in ends.items()
+        for run in _reach(model, sites, (*modal, *spins.get(name, ())), equalities[name], first_rows)
+    ]
 
     def rows_of(chosen: Sequence[str]) -> Index:
         return _whole([first_rows[equalities[name]] for name in chosen])
@@ -108,10 +115,12 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal
         ),
         space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
+        rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=_whole(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
         reach=_whole(reach, 4),
         row_count=int(first_rows[-1]) + int(np.count_nonzero(model.dof_frictionloss > 0.0)) + len(law.valves),
+        velocity_count=int(model.nv),
     )
     return with_numbers(layout, law, numbers, float(model.opt.timestep))
 
@@ -277,11 +286,54 @@ def _above(model: mujoco.MjModel, body: int) -> list[int]:
     return found
 
 
+def _spin(model: mujoco.MjModel, sites: tuple[int, int]) -> tuple[int]:
+    """Velocity coordinate about the axle of the wheel on a plate."""
+    wheel = str(model.body(model.site_bodyid[sites[1]]).name).removeprefix("plate_")
+    return (int(model.joint(f"spin_{wheel}").dofadr[0]),)
+
+
+def _rolling(
+    model: mujoco.MjModel, wheels: Sequence[tuple[int, tuple[int, int], int]], plates: dict[int, Any]
+) -> Rolling:
+    """The rolling tyres: position among the bushings, sites and spin of each; their numbers are zero."""
+    order = sorted(int(place) for place in plates.values() if place >= 0)
+    hubs = [int(model.site_bodyid[sites[0]]) for _, sites, _ in wheels]
+    inertias = []
+    for _, _, spin in wheels:
+        turning = np.flatnonzero(model.body_weldid == model.dof_bodyid[spin])
+        frames = np.zeros((len(turning), 9))
+        for frame, body in zip(frames, turning, strict=True):
+            mujoco.mju_quat2Mat(frame, model.body_iquat[body])
+        inertias.append(float(np.sum(frames.reshape(-1, 3, 3)[:, 1] ** 2 * model.body_inertia[turning])))
+    count, course, rest = len(wheels), np.zeros(0), np.zeros(0)
+    if count:
+        joint = model.joint("body")
+        first, place = int(joint.dofadr[0]), int(joint.qposadr[0])
+        course, rest = np.array([first, first + 1, first + 5, place, place + 1]), model.qpos0[place : place + 2].copy()
+    return Rolling(
+        tyres=_whole([index for index, _, _ in wheels]),
+        plates=_whole([order.index(int(plates[index])) for index, _, _ in wheels]),
+        sites=_whole([sites[0] for _, sites, _ in wheels]),
+        hubs=_whole(hubs),
+        spins=_whole([spin for _, _, spin in wheels]),
+        arms=np.zeros((count, 3)),
+        speeds=np.zeros(count),
+        trails=np.zeros(count),
+        inertias=np.array(inertias),
+        dofs=_whole(
+            [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 3
+        ),
+        course=_whole(course),
+        rest=rest,
+        hold=np.zeros(0),
+    )
+
+
 def _reach(
-    model: mujoco.MjModel, sites: tuple[int, int], modal: range, equality: int, first_rows: Index
+    model: mujoco.MjModel, sites: tuple[int, int], further: Sequence[int], equality: int, first_rows: Index
 ) -> list[tuple[int, int, int, int]]:
     """Rows, and the runs of columns in which the motion of two sites has derivatives."""
-    columns = np.unique([*_moved_by(model, sites[0]), *_moved_by(model, sites[1]), *modal])
+    columns = np.unique([*_moved_by(model, sites[0]), *_moved_by(model, sites[1]), *further])
     runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
     row, rows = int(first_rows[equality]), int(first_rows[equality + 1] - first_rows[equality])
     return [(row, rows, int(run[0]), int(run[-1]) + 1) for run in runs if len(run)]

@@ -85,6 +85,8 @@ class Recorder:
             frames=np.zeros((CHUNK, 12 * len(bodies))),
             springs=np.zeros((CHUNK, 2 * len(joints))),
             contact=np.zeros((CHUNK, len(e.bushings.one_sided))),
+            heading=np.zeros((CHUNK, len(e.rolling.tyres))),
+            pushed=np.zeros(CHUNK),
         )
         self.sources = Sources(
             position=data.qpos,
@@ -105,6 +107,8 @@ class Recorder:
             bodies=bodies,
             springs=joints,
             contact=rows.state.contact,
+            heading=rows.state.heading,
+            push=rows.state.push,
             space=e.space,
         )
         self.order = Order(
@@ -274,6 +278,9 @@ class Recorder:
         losses[:, ground, 2] = (b.contact - total[:, bushings.rows[ground, 2]]) * true_rate[:, ground, 2]
         loss = np.sum(losses, axis=(1, 2))
         branch = self._branch_force(b.solved, b.branch)
+        # Of a rolling car what keeps it on its way: slope, moments and hold by all velocities, side slip by V psi.
+        power_in = power_in + b.pushed
+        power_in = power_in + np.sum(branch[:, e.rolling.tyres, 1] * b.heading * e.rolling.speeds, axis=1)
         present = bushings.branch_stiffness > 0.0
         dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
         loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)

@@ -73,6 +73,10 @@ class State(NamedTuple):
         modal: modal coordinates and their velocities at the last evaluation; (2, modes).
         modal_force, modal_rate, modal_pull: of the coordinates that stand for them: force of their springs, velocity,
             and what the attachments pulled over the last step; (r,), none where the model holds the modes.
+        heading: of the rolling wheels [rad] now and at the time before; (2, w).
+        turning: angular velocity of their hubs [rad/s] now, x, y, z, and at the time before; (w, 6).
+        slope: what acts on their hubs beside the rows: force along x [N], moment [N m]; (w, 4).
+        push: all such forces on the coordinates; (nv,), none where the tyres stand.
         contact: elastic force of the one-sided elements [N], and their r' at the last evaluation [m/s]; (2, k).
         coefficient: what the dampers have in place of D v, F = c v [N s/m]; (w,).
         sensed: velocities at the sensors in the middle of the past step and of the one before it [m/s]; (2 k, 2).
@@ -100,6 +104,10 @@ class State(NamedTuple):
     modal_force: Vector
     modal_rate: Vector
     modal_pull: Vector
+    heading: Table
+    turning: Table
+    slope: Table
+    push: Vector
     contact: Table
     coefficient: Vector
     sensed: Table

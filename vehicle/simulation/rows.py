@@ -254,6 +254,9 @@ def _at_rest(layout: Layout) -> State:
     controls, dampers = len(layout.controls.dampers), len(layout.dampers.dofs)
     shapes |= {"coefficient": (dampers,), "sensed": (2 * controls, 2), "past": (controls, longest), "steps": (1,)}
     shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}
+    rolling = len(layout.rolling.tyres)
+    shapes |= {"heading": (2, rolling), "turning": (rolling, 6), "slope": (rolling, 4)}
+    shapes |= {"push": (layout.velocity_count if rolling else 0,)}
     shapes |= {"contact": (2, len(layout.bushings.one_sided)), "modal": (2, layout.modes.size)}
     if layout.space.mass.size:
         shapes["modal"] = (2, layout.space.mass.size)

@@ -46,6 +46,8 @@ class Sources(NamedTuple):
     bodies: Index
     springs: Indices
     contact: Table
+    heading: Table
+    push: Vector
     space: ModalSpace
 
 
@@ -68,6 +70,8 @@ class Samples(NamedTuple):
     frames: Table
     springs: Table
     contact: Table
+    heading: Table
+    pushed: Vector
 
 
 class Order(NamedTuple):
@@ -147,6 +151,10 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
         copy_row(b.rate[row, element], s.rate[element])
         copy_row(b.branch[row, element], s.branch[element])
     copy_row(b.contact[row], s.contact[0])
+    copy_row(b.heading[row], s.heading[0])
+    b.pushed[row] = 0.0
+    for dof in range(s.push.shape[0]):
+        b.pushed[row] += s.push[dof] * (s.velocity[dof] + half * s.acceleration[dof])
     for body in range(s.bodies.shape[0]):
         for axis in range(3):
             b.frames[row, 12 * body + axis] = s.origins[s.bodies[body], axis]

@@ -4,7 +4,7 @@ A car whose elements were stress-free in the design position would settle by u u
 K u + Jc' lambda = g, Jc u = 0, with K = sum of J' K_e J over all elements. The forces that the elements then carry,
 f_e = -K_e J u, are given to them as preloads, and the reaction -lambda to the ideal joints: in the design position
 these forces and gravity are in equilibrium exactly, and the share of each element is that of its stiffness. Tyres and
-rubber blocks are set down without horizontal force: while the car settles, they slide.
+rubber blocks are set down without horizontal force: while the car settles, they slide; wheels do not turn meanwhile.
 """
 
 from __future__ import annotations
@@ -180,8 +180,12 @@ def settle(rows: Rows, rest: AtRest, joint_stiffness: Vector) -> Settled:
 def _settled(rows: Rows, rest: AtRest, joint_stiffness: Vector) -> Settled:
     """Trim of a car whose laws are linear."""
     e, twist, jacobian, turned = rows.layout, rows.layout.rotations.stiffness, rest.jacobian, rest.turned
-    row_stiffness = _row_stiffness(rows)
+    row_stiffness, spins = _row_stiffness(rows), rows.layout.rolling.spins
+    if len(spins):
+        jacobian = jacobian.copy()
+        jacobian[:, spins] = 0.0
     stiffness = jacobian.T @ (row_stiffness @ jacobian)
+    stiffness[spins, spins] = 1.0
     flat = turned.reshape(-1, turned.shape[2])
     stiffness += flat.T @ (np.repeat(twist, 3)[:, None] * flat)
     stiffness[np.diag_indices(len(stiffness))] += joint_stiffness
@@ -199,6 +203,8 @@ def _row_stiffness(rows: Rows) -> Vector:
     ground = ground_contacts(rows)
     found = np.zeros(e.row_count)
     found[b.rows] = b.stiffness
+    rolling = e.rolling.tyres
+    found[b.rows[rolling, :2]] = b.branch_stiffness[rolling, :2]
     found[b.rows[ground, :2]] *= SLIDING_SHARE
     found[e.springs.rows] = e.springs.stiffness
     whole = np.diag(found)

@@ -107,14 +107,23 @@ def table_cases(
         rows: values.
         inputs: the inputs, varying slowest.
         engine, vehicle: as of `Case`.
-        fixed: overrides of every case, before the varied ones.
+        fixed: overrides of every case, before those of its input and the varied ones.
     """
-    changes = [(*fixed, *(f"{path}={value}" for path, value in zip(paths, row, strict=True))) for row in rows]
-    return [
-        Case(source=one, overrides=each, engine=engine, vehicle=vehicle, shared=len(fixed))
-        for one in inputs
-        for each in changes
-    ]
+    changes = [tuple(f"{path}={value}" for path, value in zip(paths, row, strict=True)) for row in rows]
+    found = []
+    for one in inputs:
+        shared = (*fixed, *overrides_of(one))
+        found += [
+            Case(source=one, overrides=(*shared, *each), engine=engine, vehicle=vehicle, shared=len(shared))
+            for each in changes
+        ]
+    return found
+
+
+def overrides_of(source: Input) -> tuple[str, ...]:
+    """What an input asks of the car: tyres that roll at the speed of a road."""
+    asked: tuple[str, ...] = getattr(source, "overrides", ())
+    return asked
 
 
 def digest(parts: object) -> str:
