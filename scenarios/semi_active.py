@@ -30,7 +30,7 @@ from vehicle.parameters.semi_active import LAWS, PASSIVE
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.rendering.figure import COLOURS
-from vehicle.sweeps.case import Case
+from vehicle.sweeps.case import Case, overrides_of
 from vehicle.sweeps.measure import of_one
 from vehicle.sweeps.runs import Runs, Vector
 from vehicle.sweeps.sweep import sweep
@@ -133,10 +133,9 @@ def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: 
     for one in listed:
         options = argparse.Namespace(**dict.fromkeys(ROAD_NUMBERS) | {"speed": one.speed, "duration": duration})
         source = road_drive(one.road, options, vehicle)
-        changes = (*runs.overrides, *one.changes(vehicle))
-        cases.append(
-            Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(runs.overrides))
-        )
+        shared = (*runs.overrides, *overrides_of(source))
+        changes = (*shared, *one.changes(vehicle))
+        cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(shared)))
     table = sweep(cases, RideMeasure(wheels=vehicle.wheels), jobs=runs.jobs)
     if table.failed:
         raise ConfigurationError(f"{table.failed[0][0].label}: {table.failed[0][1]}")

@@ -225,3 +225,11 @@ def test_cars_that_cannot_roll_are_refused(vehicle: str, override: str, message:
 
     with pytest.raises(ConfigurationError, match=message):
         Car.load(vehicle, ["driving.speed=20", override])
+
+
+def test_pitch_of_a_hub_does_not_move_the_contact(tmp_path: Path) -> None:
+    """The load stays below the wheel centre: no share F_z R of it in the stiffness of the hub's pitch."""
+    for gravity in (0.0, 9.81):
+        car = rolling_car(tmp_path, 20.0, gravity=gravity, overrides=["solver.timestep=0.0005"])
+        pitch = int(car.model.model.joint("knuckle_fr").dofadr[0]) + 4
+        assert car.matrices.system.stiffness[pitch, pitch] == pytest.approx(3e4, rel=1e-6)

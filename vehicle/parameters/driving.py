@@ -108,16 +108,17 @@ def require_rolling(vehicle: Vehicle) -> None:
     driving, car = vehicle.driving, vehicle.composition
     if not driving.rolling:
         return
-    mend = "give it, or let the tyres stand: --tyre standing, or driving.speed=0"
+    standing = "let the tyres stand: --tyre standing, or driving.speed=0"
+    mend = f"give it, or {standing}"
     on_plates = {one.carrier: one for one in car.connections}
     if not car.wheels or any(one.ground and one.rolling is None for one in car.connections):
         raise ConfigurationError(
-            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} does not stand on wheels alone; {mend}"
+            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} does not stand on wheels alone; {standing}"
         )
     for wheel in car.wheels:
         tyre = on_plates[wheel.plate]
         if not isinstance(tyre.law, Tyre):
-            raise ConfigurationError(f"{tyre.path}: found a hydromount, which cannot roll; {mend}")
+            raise ConfigurationError(f"{tyre.path}: found a hydromount, which cannot roll; {standing}")
         for key in ("slip_stiffness", "cornering_stiffness", "carcass_longitudinal", "carcass_lateral"):
             if getattr(tyre.law, key) is None:
                 raise ConfigurationError(
