@@ -95,6 +95,7 @@ def test_side_force_relaxes_over_its_length(tmp_path: Path) -> None:
     relaxed = 1.0 - np.exp(-20.0 * time * TYRE["carcass_lateral"] / cornering)
     assert rows.state.branch_past[tyre, 1] == pytest.approx(cornering * psi * relaxed, rel=1e-4)
     system = car.matrices.system
+    assert system.branch_drifts is not None
     number = next(index for index, row in enumerate(system.branch_drifts) if np.any(row))
     force = system.branch_stiffness[number] * system.branch_time[number] * (system.branch_drifts[number] @ way)
     assert force == pytest.approx(cornering * psi, rel=1e-9)
@@ -124,7 +125,7 @@ def test_rigid_car_is_the_single_track_car(tmp_path: Path, speed: float, trail: 
     turned, about = yaw_inertia(cog) - own * 0.999, yaw_inertia(COG[0]) - own * 0.999
     hold = np.array([WHOLE * omega**2, 2 * zeta * WHOLE * omega, about * omega**2, 2 * zeta * about * omega])
     axles = [(AXLES[axle], 2 * cornering[axle]) for axle in AXLES]
-    wanted = np.linalg.eigvals(single_track(speed, WHOLE, turned, cog, hold, axles, trail))
+    wanted = np.linalg.eigvals(single_track(speed, WHOLE, turned, cog, hold, axles, trail)).astype(complex)
     assert farthest(wanted, poles_of(car)) < 1e-4
 
 

@@ -134,8 +134,17 @@ def require_rolling(vehicle: Vehicle) -> None:
                 f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, needed is that of {wheel.paths[0]}, "
                 f"{wheel.center[0]:g} m: ahead of the centre the load would drive or brake a rolling wheel"
             )
+        spinning = {part.name for part in car.parts if part.parent == wheel.part and not part.joints} | {wheel.part}
+        held = [(one.path, {one.moving, one.carrier}) for one in car.connections]
+        held += [(f"outputs.{one.name}", {one.on}) for one in car.outputs]
+        for path, parts in held:
+            if parts & spinning:
+                raise ConfigurationError(
+                    f"{path}: is on {', '.join(sorted(parts & spinning))}, which turns with the rolling wheel; put it "
+                    "on the hub"
+                )
         for part in car.parts:
-            if part.name != wheel.part and (part.parent != wheel.part or part.joints):
+            if part.name not in spinning:
                 continue
             x, _, z = (a - b for a, b in zip(part.cog, wheel.center, strict=True))
             ixx, _, izz = part.numbers.inertia or (0.0, 0.0, 0.0)

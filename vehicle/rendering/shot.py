@@ -222,7 +222,7 @@ class Shot:
         road, exaggerated = [], "motion"
         if self.road is not None:
             road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long; tyres "]
-            road[0] += "roll" if run.car.vehicle.driving.rolling else "stand"
+            road[0] += "roll" if run.car.model.vehicle.driving.rolling else "stand"
             exaggerated = "motion and road"
         return [
             f"{Path(run.signal.source).name}: {level} under the {wheel_words(run.wheel, self.wheels)}",
