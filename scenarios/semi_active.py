@@ -147,8 +147,9 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run all settings, draw the figures into the folder, and say what they show."""
     engine, duration = chosen_engine(options.engine), 20.0 if options.quick else 60.0
     points = computed(runs, settings(options.quick), duration, engine)
-    name = runs.car().vehicle.name
-    about = f"{name}, {duration:g} s of road, engine {engine}"
+    name, car = runs.car().vehicle.name, runs.car().vehicle.composition
+    tyres = "standing" if any(one.ground and one.carrier == "world" for one in car.connections) else "rolling"
+    about = f"{name}, {duration:g} s of road, {tyres} tyres, engine {engine}"
     trade_off(folder / "trade_off.png", points, about)
     delays(folder / "delay.png", points, about)
     checks = [] if options.quick or engine == "mujoco" else [engines(runs, points, duration)]

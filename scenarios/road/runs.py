@@ -185,7 +185,9 @@ class RideRuns:
         """For captions."""
         many = f"{self.records} records" if self.records > 1 else "1 record"
         seeds = f"seeds 1 to {self.records}" if self.records > 1 else "seed 1"
-        return f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, engine {self.engine}"
+        return (
+            f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, engine {self.engine}, rolling tyres"
+        )
 
     def compute(self, rides: Sequence[Ride]) -> None:
         """Compute what is missing.
