@@ -30,7 +30,7 @@ from vehicle.parameters.semi_active import LAWS, PASSIVE
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.rendering.figure import COLOURS
-from vehicle.sweeps.case import Case
+from vehicle.sweeps.case import Case, overrides_of
 from vehicle.sweeps.measure import of_one
 from vehicle.sweeps.runs import Runs, Vector
 from vehicle.sweeps.sweep import sweep
@@ -133,10 +133,9 @@ def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: 
     for one in listed:
         options = argparse.Namespace(**dict.fromkeys(ROAD_NUMBERS) | {"speed": one.speed, "duration": duration})
         source = road_drive(one.road, options, vehicle)
-        changes = (*runs.overrides, *one.changes(vehicle))
-        cases.append(
-            Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(runs.overrides))
-        )
+        shared = (*runs.overrides, *overrides_of(source))
+        changes = (*shared, *one.changes(vehicle))
+        cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(shared)))
     table = sweep(cases, RideMeasure(wheels=vehicle.wheels), jobs=runs.jobs)
     if table.failed:
         raise ConfigurationError(f"{table.failed[0][0].label}: {table.failed[0][1]}")
@@ -148,8 +147,9 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run all settings, draw the figures into the folder, and say what they show."""
     engine, duration = chosen_engine(options.engine), 20.0 if options.quick else 60.0
     points = computed(runs, settings(options.quick), duration, engine)
-    name = runs.car().vehicle.name
-    about = f"{name}, {duration:g} s of road, engine {engine}"
+    name, car = runs.car().vehicle.name, runs.car().vehicle.composition
+    tyres = "standing" if any(one.ground and one.carrier == "world" for one in car.connections) else "rolling"
+    about = f"{name}, {duration:g} s of road, {tyres} tyres, engine {engine}"
     trade_off(folder / "trade_off.png", points, about)
     delays(folder / "delay.png", points, about)
     checks = [] if options.quick or engine == "mujoco" else [engines(runs, points, duration)]

@@ -67,8 +67,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     about = [(rides, car, roads, SPEED, frictions) for car in cars]
     claims = [one for each in about for one in (*friction_claims(*each), *scaling_claim(*each))]
     notes = [
-        f"{rides.text()}; the same roads under every car. Isotropic tracks, wheelbase delay, no contact patch. ± is "
-        "one standard error over the records; that of a ratio is over the ratios of the single records.",
+        f"{rides.text()}; the same roads under every car. Isotropic tracks, wheelbase delay, contact patch of 0.1 m. ± "
+        "is one standard error over the records; that of a ratio is over the ratios of the single records.",
         "Class and speed, friction of the vehicle file:",
         class_table(rides, grid),
         f"Friction of every damper at {SPEED:g} km/h; % of the same car without friction on the same records:",

@@ -21,7 +21,7 @@ from vehicle.commands.road import road_drive
 from vehicle.errors import SimulationError
 from vehicle.names import AXES
 from vehicle.parameters.vehicle import Vehicle
-from vehicle.sweeps.case import Case
+from vehicle.sweeps.case import Case, overrides_of
 from vehicle.sweeps.measure import of_one
 from vehicle.sweeps.runs import Runs, Vector
 from vehicle.sweeps.sweep import sweep
@@ -185,7 +185,9 @@ class RideRuns:
         """For captions."""
         many = f"{self.records} records" if self.records > 1 else "1 record"
         seeds = f"seeds 1 to {self.records}" if self.records > 1 else "seed 1"
-        return f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, engine {self.engine}"
+        return (
+            f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, engine {self.engine}, rolling tyres"
+        )
 
     def compute(self, rides: Sequence[Ride]) -> None:
         """Compute what is missing.
@@ -225,7 +227,7 @@ class RideRuns:
     def cases(self, ride: Ride) -> list[Case]:
         """The runs of a ride, one for each record."""
         vehicle = self.vehicles[ride.car]
-        changes = self.overrides if ride.friction is None else (*self.overrides, *all_friction(vehicle, ride.friction))
+        changes = () if ride.friction is None else all_friction(vehicle, ride.friction)
         changes = (*changes, *one_sided_tyres(vehicle)) if ride.one_sided else changes
         numbers = {**dict.fromkeys(ROAD_NUMBERS), "speed": ride.speed, "duration": self.duration + LEAD_S}
         drives = [
@@ -233,10 +235,13 @@ class RideRuns:
             for seed in range(1, self.records + 1)
         ]
         engine, file = ride.engine or self.engine, self.cars[ride.car]
-        shared = len(self.overrides)
-        return [
-            Case(source=drive, overrides=tuple(changes), engine=engine, vehicle=file, shared=shared) for drive in drives
-        ]
+        found = []
+        for drive in drives:
+            shared = (*self.overrides, *overrides_of(drive))
+            found.append(
+                Case(source=drive, overrides=(*shared, *changes), engine=engine, vehicle=file, shared=len(shared))
+            )
+        return found
 
 
 def all_friction(vehicle: Vehicle, friction: float) -> tuple[str, ...]:

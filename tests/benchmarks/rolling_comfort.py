@@ -11,7 +11,7 @@ from vehicle.car import Car
 from vehicle.commands.road import road_drive
 from vehicle.output.run_comfort import comfort_values
 
-CASES = {
+CASES: dict[str, tuple[dict[str, object], list[str]]] = {
     "standing, no contact patch": ({"tyre": "standing", "patch": 0.0}, []),
     "standing": ({"tyre": "standing"}, []),
     "rolling": ({}, []),
@@ -31,7 +31,14 @@ def main() -> None:
     for name in ("sedan", "focus_road"):
         for road in "AB":
             for words, (chosen, overrides) in CASES.items():
-                numbers: dict[str, object] = {"tyre": None, "rate": None, "seed": None, "coherence": None, "patch": None, **chosen}
+                numbers: dict[str, object] = {
+                    "tyre": None,
+                    "rate": None,
+                    "seed": None,
+                    "coherence": None,
+                    "patch": None,
+                    **chosen,
+                }
                 asked = argparse.Namespace(**{**vars(options), **numbers, "overrides": []})
                 drive = road_drive(road, asked, Car.load(name).vehicle)
                 car = Car.load(name, [*overrides, *drive.overrides])

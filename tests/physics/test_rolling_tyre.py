@@ -125,8 +125,8 @@ def test_rigid_car_is_the_single_track_car(tmp_path: Path, speed: float, trail: 
     turned, about = yaw_inertia(cog) - own * 0.999, yaw_inertia(COG[0]) - own * 0.999
     hold = np.array([WHOLE * omega**2, 2 * zeta * WHOLE * omega, about * omega**2, 2 * zeta * about * omega])
     axles = [(AXLES[axle], 2 * cornering[axle]) for axle in AXLES]
-    wanted = np.linalg.eigvals(single_track(speed, WHOLE, turned, cog, hold, axles, trail))
-    assert farthest(np.asarray(wanted, dtype=np.complex128), poles_of(car)) < 1e-4
+    wanted = np.linalg.eigvals(single_track(speed, WHOLE, turned, cog, hold, axles, trail)).astype(complex)
+    assert farthest(wanted, poles_of(car)) < 1e-4
 
 
 def test_gyroscopic_moment_of_a_wheel(tmp_path: Path) -> None:
@@ -226,3 +226,11 @@ def test_cars_that_cannot_roll_are_refused(vehicle: str, override: str, message:
 
     with pytest.raises(ConfigurationError, match=message):
         Car.load(vehicle, ["driving.speed=20", override])
+
+
+def test_pitch_of_a_hub_does_not_move_the_contact(tmp_path: Path) -> None:
+    """The load stays below the wheel centre: no share F_z R of it in the stiffness of the hub's pitch."""
+    for gravity in (0.0, 9.81):
+        car = rolling_car(tmp_path, 20.0, gravity=gravity, overrides=["solver.timestep=0.0005"])
+        pitch = int(car.model.model.joint("knuckle_fr").dofadr[0]) + 4
+        assert car.matrices.system.stiffness[pitch, pitch] == pytest.approx(3e4, rel=1e-6)

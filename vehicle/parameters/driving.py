@@ -108,16 +108,17 @@ def require_rolling(vehicle: Vehicle) -> None:
     driving, car = vehicle.driving, vehicle.composition
     if not driving.rolling:
         return
-    mend = "give it, or let the tyres stand: --tyre standing, or driving.speed=0"
+    standing = "let the tyres stand: --tyre standing, or driving.speed=0"
+    mend = f"give it, or {standing}"
     on_plates = {one.carrier: one for one in car.connections}
     if not car.wheels or any(one.ground and one.rolling is None for one in car.connections):
         raise ConfigurationError(
-            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} does not stand on wheels alone; {mend}"
+            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} does not stand on wheels alone; {standing}"
         )
     for wheel in car.wheels:
         tyre = on_plates[wheel.plate]
         if not isinstance(tyre.law, Tyre):
-            raise ConfigurationError(f"{tyre.path}: found a hydromount, which cannot roll; {mend}")
+            raise ConfigurationError(f"{tyre.path}: found a hydromount, which cannot roll; {standing}")
         for key in ("slip_stiffness", "cornering_stiffness", "carcass_longitudinal", "carcass_lateral"):
             if getattr(tyre.law, key) is None:
                 raise ConfigurationError(
@@ -133,8 +134,17 @@ def require_rolling(vehicle: Vehicle) -> None:
                 f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, needed is that of {wheel.paths[0]}, "
                 f"{wheel.center[0]:g} m: ahead of the centre the load would drive or brake a rolling wheel"
             )
+        spinning = {part.name for part in car.parts if part.parent == wheel.part and not part.joints} | {wheel.part}
+        held = [(one.path, {one.moving, one.carrier}) for one in car.connections]
+        held += [(f"outputs.{one.name}", {one.on}) for one in car.outputs]
+        for path, parts in held:
+            if parts & spinning:
+                raise ConfigurationError(
+                    f"{path}: is on {', '.join(sorted(parts & spinning))}, which turns with the rolling wheel; put it "
+                    "on the hub"
+                )
         for part in car.parts:
-            if part.name != wheel.part and (part.parent != wheel.part or part.joints):
+            if part.name not in spinning:
                 continue
             x, _, z = (a - b for a, b in zip(part.cog, wheel.center, strict=True))
             ixx, _, izz = part.numbers.inertia or (0.0, 0.0, 0.0)

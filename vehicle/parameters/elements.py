@@ -60,7 +60,8 @@ class Bushing:
         validate(self)
         if self.one_sided and self.table_z is not None:
             raise ConfigurationError(
-                "Bushing.one_sided: found true beside table_z; a one-sided contact has a stiffness, so leave one out"
+                f"{type(self).__name__}.one_sided: found true beside table_z; a one-sided contact has a stiffness, so "
+                "leave one out"
             )
 
 

@@ -1,0 +1,73 @@
+"""Which commands let the tyres roll, and what they say of it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import pytest
+
+from vehicle.commands import modes, shaker
+from vehicle.commands.road import road_drive
+from vehicle.parameters.vehicle import load_vehicle
+
+ROAD = ["--road", "A", "--speed", "72", "--duration", "3", "--engine", "reduced", "--quiet"]
+
+
+def drive(vehicle: str, **given: object) -> tuple[str, ...]:
+    """What a road at 72 km/h asks of a car."""
+    names = ("duration", "rate", "seed", "coherence", "patch", "tyre")
+    options = argparse.Namespace(**{**dict.fromkeys(names), "speed": 72.0, "overrides": [], **given})
+    return road_drive("A", options, load_vehicle(Path(vehicle))).overrides
+
+
+def test_tyres_roll_on_a_road_by_default() -> None:
+    assert drive("sedan") == ("driving.speed=20.0",)
+    assert drive("sedan", tyre="standing") == ()
+    assert drive("sedan", overrides=["driving.speed=10"]) == ()
+    # On blocks behind, as on its rig.
+    assert drive("focus") == ()
+    assert drive("focus", tyre="rolling") == ("driving.speed=20.0",)
+
+
+def test_a_run_says_what_its_tyres_do(tmp_path: Path) -> None:
+    said = {}
+    for name, more in (("rolling", []), ("standing", ["--tyre", "standing"])):
+        assert shaker.main([*ROAD, *more, "--vehicle", "sedan", "--output", str(tmp_path / name)]) == 0
+        summary = json.loads((tmp_path / name / "summary.json").read_text())
+        assert summary["tyre"] == {"rolling": "rolling at 20 m/s", "standing": "standing"}[name]
+        said[name] = summary["comfort"]["seat_rail"]["rms_2_50_hz"]["x"]
+    assert said["rolling"] < 0.7 * said["standing"]
+    # Its vehicle file repeats it.
+    again = ["--vehicle", str(tmp_path / "rolling" / "vehicle.toml"), "--output", str(tmp_path / "again")]
+    assert shaker.main([*ROAD, *again]) == 0
+    repeated = json.loads((tmp_path / "again" / "summary.json").read_text())
+    assert repeated["comfort"]["seat_rail"]["rms_2_50_hz"]["x"] == said["rolling"]
+
+
+def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert modes.main(["--vehicle", "sedan", "--speed", "80", "--damper", "sliding", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["tyre"] == "rolling at 22.22 m/s"
+    roll = next(mode for mode in found["modes"] if mode["description"].startswith("body roll"))
+    assert 1.7 < roll["frequency_hz"] < 2.2  # on standing tyres 3.8 Hz
+    assert found["growing"] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--input", "low.csv", "--tyre", "rolling"], "--tyre: belongs to a road"),
+        (
+            [*ROAD, "--tyre", "standing", "--set", "driving.speed=3", "--vehicle", "sedan"],
+            "--tyre standing beside --set driving.speed",
+        ),
+        ([*ROAD, "--tyre", "rolling"], "does not stand on wheels alone"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(
+    words: list[str], message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert shaker.main([*words, "--output", str(tmp_path / "out")]) == 2
+    assert message in capsys.readouterr().err

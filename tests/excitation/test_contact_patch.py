@@ -1,0 +1,48 @@
+"""The contact patch averages a road over its length."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError
+from vehicle.excitation.iso_road import IsoRoad
+from vehicle.excitation.measured_road import MeasuredRoad
+from vehicle.excitation.road_drive import CONTACT_PATCH, RoadDrive
+
+PATCH = 0.1
+
+
+def test_a_measured_wave_is_lower_by_its_sinc() -> None:
+    """sin(2 pi n x) over a length a is sinc(n a) of it."""
+    distance, wave = np.arange(0.0, 20.0, 0.002), 4.0
+    height = np.sin(2.0 * np.pi * wave * distance)
+    road = MeasuredRoad(distance=distance, right=height, left=0.0 * height, source="wave", patch=PATCH)
+    found = road.height(5.0, 0.01, 1000, "right", 50.0)
+    place = 5.0 + 0.01 * np.arange(1000)
+    assert found == pytest.approx(np.sinc(wave * PATCH) * np.sin(2.0 * np.pi * wave * place), abs=1e-7)
+    # Ahead of its first place it is a plane, which half a patch reaches into.
+    whole = replace(road, left=1.0 + 0.3 * distance)
+    starting = whole.height(-0.1, 0.05, 5, "left", 50.0)
+    assert starting == pytest.approx([0.0, 0.0, 0.3 * 0.05**2 / 2.0 / PATCH, 0.3 * 0.05, 0.3 * 0.1], abs=1e-12)
+
+
+def test_a_class_is_lower_by_its_sinc() -> None:
+    sharp, mean = (
+        np.fft.rfft(IsoRoad(level=1e-6, seed=1, track=1.5, patch=patch).height(0.0, 0.02, 5000, "right", 20.0))
+        for patch in (0.0, PATCH)
+    )
+    wavenumber = np.fft.rfftfreq(5000, 0.02)
+    inside = (wavenumber > 0.02) & (wavenumber < 9.9)
+    assert mean[inside] / sharp[inside] == pytest.approx(np.sinc(wavenumber[inside] * PATCH), rel=1e-6)
+
+
+def test_a_drive_has_a_patch_and_may_do_without() -> None:
+    drive = RoadDrive(road="B", speed=80.0, wheels=(("fr", 0.0, "right"),), track=1.5, duration=3.0)
+    assert drive.summary(drive.signal())["contact_patch_m"] == CONTACT_PATCH
+    point = replace(drive, patch=0.0)
+    assert np.std(point.signal().displacement["fr"]) > np.std(drive.signal().displacement["fr"])
+    with pytest.raises(ConfigurationError, match="contact patch"):
+        replace(drive, patch=2.0).signal()
