@@ -229,11 +229,14 @@ def _trials(options: argparse.Namespace) -> tuple[Trials, Vehicle]:
 
 def _caption(options: argparse.Namespace, trials: Trials, vehicle: Vehicle, cars: int) -> str:
     """What the picture says below it."""
+    from vehicle.sweeps.case import overrides_of
+
     limits = ", ".join(wish.words for wish in trials.problem.limits)
+    tyres = ", rolling tyres" if any(map(overrides_of, trials.inputs)) else ""
     count = len(trials.spread.bands)
     how = "mean" if math.isnan(trials.spread.quantile) else f"quantile {trials.spread.quantile:g}"
     return (
-        f"{vehicle.name} on {', '.join(trials.problem.inputs)}; engine {options.engine}, {cars} cars, seed "
+        f"{vehicle.name} on {', '.join(trials.problem.inputs)}{tyres}; engine {options.engine}, {cars} cars, seed "
         f"{options.search_seed}"
         + (f"; limits {limits}" if limits else "")
         + (f"; {how} of {count} cars within the tolerances" if count > 1 else "")
