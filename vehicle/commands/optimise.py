@@ -268,10 +268,13 @@ def _quantile_and_samples(options: argparse.Namespace) -> tuple[float, int]:
 
 def _caption(options: argparse.Namespace, trials: Trials, vehicle: Vehicle, cars: int) -> str:
     """What the picture says below it."""
+    from vehicle.sweeps.case import overrides_of
+
     limits = ", ".join(wish.words for wish in trials.problem.limits)
+    tyres = ", rolling tyres" if any(map(overrides_of, trials.inputs)) else ""
     count = len(trials.spread.bands)
     return (
-        f"{vehicle.name} on {', '.join(trials.problem.inputs)}; engine {options.engine}, {cars} cars, seed "
+        f"{vehicle.name} on {', '.join(trials.problem.inputs)}{tyres}; engine {options.engine}, {cars} cars, seed "
         f"{options.search_seed}"
         + (f"; limits {limits}" if limits else "")
         + (f"; {trials.spread.words} within the tolerances" if count > 1 else "")
