@@ -75,7 +75,7 @@ def case(folder, kind):
                              ("Speed", "km/h", 40.0 + time)])  # fmt: skip
         return path, ["--road", "--speed channel:Speed", "focus_road"]
     if kind == "profile":
-        place = np.arange(0.0, 40.0, 0.1)
+        place = np.arange(0.0, 80.0, 0.1)  # 3.6 s: the evaluation begins after 2 s
         heights = 0.005 * np.sin(place)
         table = np.column_stack([place, heights, heights])
         np.savetxt(path, table, fmt="%.8g", delimiter=",", header="distance [m],left [m],right [m]", comments="")

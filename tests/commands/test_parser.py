@@ -19,6 +19,7 @@ LINES: dict[str, dict[str, tuple[list[str], list[str]]]] = {
         "a road of a class": (["--road", "road.csv"], ["--road", "C"]),
         "a film": (["--input", "low.csv"], ["--input", "low.csv", "--video"]),
         "a measurement": (["--input", "low.csv"], ["--input", "low.csv", "--measured", "m.uff"]),
+        "a file of signals or a recorded road": (["--road", "C"], ["--road", "r.csv", "--speed", "channel:v"]),
         "a file of signals or of a measurement": (["--road", "C"], ["--road", "C", "--measured", "m.uff"]),
     },
     "sweep": {
@@ -81,7 +82,7 @@ def test_a_group_that_only_the_command_can_judge():
         ("body", ["import", "f.sti", "--output", "b.npz", "--origin", "-1.2,0,.3"], "origin", "-1.2,0,.3"),
         ("shaker", ["--input", "low.csv", "--from", "-2.5"], "first", -2.5),
         ("compare", ["runs/low", "--measured", "m.uff", "--delay", "-1e-3"], "delay", -1e-3),
-        ("inspect", ["-my file.csv"], "file", "-my file.csv"),
+        ("inspect", ["-my file.csv"], "files", ["-my file.csv"]),
     ],
 )
 def test_values_that_begin_with_a_minus(name, words, place, value):

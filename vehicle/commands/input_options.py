@@ -89,7 +89,7 @@ def record_group(parser: Parser) -> argparse._ArgumentGroup:
     return parser.scoped_group(
         "a file of signals or a recorded road",
         needs=RECORD_NEEDS,
-        active=lambda options: bool(options.input) or any(isinstance(speed, str) for speed in speeds_of(options)),
+        active=lambda options: bool(options.input) or recorded_over_time(options),
     )
 
 
@@ -156,6 +156,15 @@ def speed_value(text: str) -> float | str:
         text: of the option.
     """
     return text if text.startswith("channel:") and len(text) > len("channel:") else float(text)
+
+
+def recorded_over_time(options: argparse.Namespace) -> bool:
+    """Return True if a road was recorded over time, with its speed.
+
+    Args:
+        options: of `road_options`.
+    """
+    return any(isinstance(speed, str) for speed in speeds_of(options))
 
 
 def speeds_of(options: argparse.Namespace) -> list[float | str]:

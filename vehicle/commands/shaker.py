@@ -17,6 +17,7 @@ from vehicle.commands.input_options import (
     record_choice,
     record_group,
     record_options,
+    recorded_over_time,
     signal_options,
     unit_option,
 )
@@ -49,8 +50,8 @@ def parser() -> Parser:
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
     read = found.scoped_group(
         "a file of signals or of a measurement",
-        needs="--input or --measured; a road has none",
-        active=lambda options: bool(options.input or options.measured),
+        needs="--input, --measured, or a road that was recorded over time; any other road has none",
+        active=lambda options: bool(options.input or options.measured) or recorded_over_time(options),
     )
     unit_option(read)
     output_options(found, None, default="runs/<input stem>, or runs/road_C_80,")

@@ -146,6 +146,7 @@ class Terms:
             sensors=moved(self.matrices.sensors),
             body_rows=parts.rows,
             body_masses=parts.masses,
+            body_places={**self.matrices.body_places, "body": np.array(vehicle.body.cog)},
             **laws.car,
         )
         return VariedCar(matrices=matrices, static=static)
