@@ -110,6 +110,7 @@ SAME_IDEA = {
     "--channel": "a channel of a file, for a role or for an axis",
     "--channels": "channels by name; the shaker has groups of them too",
     "--wheel": "a wheel of the car",
+    "--speed": "speed of the car; on a road also a channel of its record",
     "--video": "a film",
 }
 """Options whose values are written in several ways, and the one meaning that they have."""

@@ -69,7 +69,6 @@ def rolling_car(
     from vehicle.parameters.paths import override
 
     (folder / "corner.toml").write_text(TEMPLATE)
-    x, y, z = COG
     table: dict[str, Any] = {
         "name": "small_car",
         "gravity": gravity,
@@ -78,12 +77,7 @@ def rolling_car(
         "body": {
             "mass": BODY,
             "cog": list(COG),
-            "ixx_improved": INERTIA[0] + BODY * (y**2 + z**2),
-            "iyy": INERTIA[1] + BODY * (x**2 + z**2),
-            "izz": INERTIA[2] + BODY * (x**2 + y**2),
-            "ixy": BODY * x * y,
-            "izx": BODY * z * x,
-            "iyz": BODY * y * z,
+            "inertia": dict(zip(("ixx", "iyy", "izz"), INERTIA, strict=True)),
             "flexible": False,
             "attachment_flexibility": False,
         },

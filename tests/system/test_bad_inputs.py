@@ -37,7 +37,7 @@ SIGNALS = [
     ("6 decimal comma", csv_text(GOOD).replace(",", ";").replace(".", ","), 0, ""),
     ("7 millimetres as metres", csv_text(GOOD * 1e3), 3, "mm"),
     ("9 acceleration", csv_text(GOOD, header="time [s],acceleration [m/s2]"), 3, "displacement"),
-    ("11 too slow", csv_text(GOOD[::200], rate=5.0), 3, "Hz"),
+    ("11 too slow", csv_text(GOOD[::50], rate=8.0), 3, "Hz"),
 ]
 
 
