@@ -112,7 +112,8 @@ def test_the_last_steps_lead_to_the_full_simulation(build, car, high_run):
         assert final.moved[path] == pytest.approx(
             result.deviation(path, final.result.values[path]) * -1.0, rel=0.02
         )  # the logarithm of a change below a percent
-    assert max(abs(result.deviation(path, value)) for path, value in true.items()) > 3.0
+    before, after = (max(abs(one.values[path] / true[path] - 1.0) for path in true) for one in (result, final.result))
+    assert after < before
 
 
 def test_a_run_and_its_target_have_the_same_residuals(build, car, high_piece):
