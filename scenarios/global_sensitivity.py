@@ -144,7 +144,7 @@ def _job(options: argparse.Namespace) -> None:
     )
     seconds = clock.perf_counter() - started
     caption = (
-        f"comfort value (unfiltered RMS of the seat rail, 2 to 50 Hz) on the {options.road} road, RMS "
+        f"comfort value (unweighted RMS of the seat rail, 2 to 50 Hz) on the {options.road} road, RMS "
         f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, engine {engine}, "
         f"seed {options.seed}"
     )

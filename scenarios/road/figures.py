@@ -51,7 +51,7 @@ def draw_friction(path: Path, runs: RideRuns, roads: Sequence[str], speed: float
     """Comfort at rail and seat and tyre load over the friction of all dampers, relative to none."""
     load = f"load_{runs.measure.by_axle[0][0]}"
     panels = [
-        ("rail", "seat rail, unfiltered, 2 to 50 Hz [%]"),
+        ("rail", "seat rail, unweighted, 2 to 50 Hz [%]"),
         ("rail_weighted", "seat rail, ISO 2631-1 [%]"),
         ("seat_weighted", "seat, ISO 2631-1 [%]"),
         (load, f"dynamic tyre load, {load.removeprefix('load_')} [%]"),

@@ -76,6 +76,21 @@ def test_the_rear_plate_is_the_front_plate_at_the_same_place(tmp_path):
     assert "12 s rise" not in signal.source and "km/h" in signal.source
 
 
+def test_tyres_roll_at_the_mean_speed_and_the_evaluation_begins_behind_the_rise(tmp_path):
+    path = recorded(tmp_path / "road.csv")
+    rolling = drive(path, driving=np.nan)
+    (text,) = rolling.overrides
+    # The mean of a sampled speed is its integral over the record, but for a sample of 1 ms; two digits are kept.
+    assert float(text.removeprefix("driving.speed=")) == pytest.approx(distance_at(12.0) / 12.0, abs=6e-3)
+    assert any("mean speed" in notice for notice in rolling.signal().notices)
+    assert drive(path, driving=0.0).overrides == ("driving.speed=0.0",) and drive(path).overrides == ()
+    assert not any("mean speed" in notice for notice in drive(path).signal().notices)
+    # 2 s after the start all wheels are over the rise and 0.5 s more; with a long wheelbase it takes longer.
+    assert rolling.skip == 2.0
+    far = RecordedDrive(road=path, channel="v", wheels=(WHEELS[0], ("rr", 50.0, "right")))
+    assert distance_at(far.skip - 0.1) < distance_at(1.5) + 50.0 <= distance_at(far.skip)
+
+
 def test_the_speed_may_be_slower_and_in_another_unit(tmp_path):
     first = drive(recorded(tmp_path / "a.csv")).signal()
     wrong = recorded(tmp_path / "b.csv", unit="V", factor=3.6)

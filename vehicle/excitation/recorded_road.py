@@ -118,6 +118,11 @@ class RecordedDrive:
             plates[wheel] = np.where(met, spline(at) * half_cosine_at(at, RISE_S), 0.0) + 0.0
         notices += acceleration_events(plates, 1.0 / self.rate)
         moving = v[v > STANDING]
+        if self.driving is not None and math.isnan(self.driving):
+            notices.append(
+                f"the tyres roll at the mean speed of the record, {moving.mean():.4g} m/s: their slip at "
+                f"{moving.min():.3g} to {moving.max():.3g} m/s is that of the mean"
+            )
         return Signal(
             time=grid,
             displacement=plates,
