@@ -30,26 +30,27 @@ ROOMS: dict[str, set[str]] = {
     "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation"},
     "analysis": set(),
     "lumped": {"parameters", "laws", "linear"},
-    "comparison": {"analysis", "car", "linear", "records", "rendering"},
+    "comparison": {"analysis", "car", "linear", "notebook", "records", "rendering"},
     "notebook": {"analysis", "rendering", "simulation"},
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
-    "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "reduced", "rendering"}
-    | {"simulation"},
+    "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
+    | {"rendering", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
     | {"replication"},
-    "sweeps": {"analysis", "car", "excitation", "flexbody", "output", "parameters", "records", "reduced"}
-    | {"simulation", "threads"},
+    "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
+    | {"reduced", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "records", "reduced"},
-    "report": {"analysis", "car", "linear", "parameters", "records", "rendering", "simulation"},
+    "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation"},
     "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "linear", "optimisation"}
     | {"output", "parameters", "records", "rendering", "replication", "report", "simulation", "sweeps"},
     "threads": set(),
     "compiler": set(),
     "errors": set(),
     "names": set(),
-    "__init__": set(),
+    "__init__": {"car", "comparison", "excitation", "optimisation", "output", "parameters", "records", "replication"}
+    | {"report", "sweeps", "tuning"},
     "__main__": {"commands"},
     **{name: {"commands"} for name in OLDER},
 }

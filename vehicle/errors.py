@@ -5,13 +5,13 @@ from typing import Any
 
 
 class VehicleError(Exception):
-    """What went wrong, where, the value found, what is allowed and how to mend it, in one message."""
+    """Any error of this package: what is wrong, where, the value, what is allowed and the remedy, in one message."""
 
     exit_code = 4
 
 
 class ConfigurationError(VehicleError):
-    """A parameter, an option or a path of the command is wrong."""
+    """A parameter, an argument, an option or a path is wrong."""
 
     exit_code = 2
 

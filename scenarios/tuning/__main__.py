@@ -44,7 +44,7 @@ from scenarios.tuning.data import (
     parse_parameters,
 )
 from scenarios.tuning.figures import correlation_figure, level_figure, parameter_figure, record_figure
-from scenarios.tuning.own_data import check_parameters, own_measurements
+from scenarios.tuning.own_data import own_measurements
 from vehicle.car import Car, Run
 from vehicle.commands.command_line import ProgressLine
 from vehicle.commands.compare import drift_option, mapping_options
@@ -52,6 +52,7 @@ from vehicle.commands.input_options import record_options
 from vehicle.commands.parser import Parser
 from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range
+from vehicle.tuning.car_fit import require_fittable
 from vehicle.tuning.fit import Target, fit
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.full_steps import FullSteps, full_steps
@@ -165,7 +166,7 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
     """Fit parameters to FRFs and time histories of files."""
     tuning = Tuning(runs)
     parameters: Sequence[Range] = parse_parameters(options.fit, tuning.vehicle)
-    check_parameters(tuple(parameters), tuning.vehicle)
+    require_fittable(parameters, tuning.vehicle)
     measurements = own_measurements(options, runs.car())
     notices = [f"- {text}" for one in measurements for text in one.notices]
     for text in notices:

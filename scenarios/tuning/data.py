@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -15,17 +14,19 @@ from vehicle.analysis.frf import FrequencyResponse
 from vehicle.car import Run
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.input_files import find_input
-from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
 from vehicle.names import channel_units
 from vehicle.output.folder import write_whole
 from vehicle.output.run_files import FRAME
-from vehicle.parameters.paths import overrides_of, value_of
+from vehicle.parameters.paths import overrides_of
 from vehicle.parameters.ranges import Range
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.records.frf import read_frf, write_frf
 from vehicle.records.table import Record
+from vehicle.tuning.car_fit import ranges_of
 from vehicle.tuning.frf_target import FrfTarget
+from vehicle.tuning.measured_targets import BAND, SPACING
+from vehicle.tuning.measured_targets import MeasuredTarget as Measurement
 from vehicle.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z", "suspension_mount_fr_acc_z", "seat_rail_acc_z")
@@ -41,23 +42,8 @@ SEED = 2006
 """Of all noise, with the place of the input in `INPUTS`: a level has the same noise whatever is fitted beside it."""
 
 INPUTS = ("low", "mid", "high", "bump_1p5mm", "bump_7p5mm")
-BAND = (3.0, 45.0)
-"""Fitted frequencies [Hz]: the shaker signals drive the car well from 3 Hz on, and the body model ends at 43 Hz."""
-
-SPACING = 0.3
-"""Distance of the fitted frequencies [Hz]: the 17 lines of 1/60 Hz at least that an estimate from 60 s is made of."""
-
 BUMP_WINDOW = (4.9, 6.5)
 """Part of the bump records that counts [s]: the bump begins at 5 s and has rung down by the end."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Measurement:
-    """A target of the fit, the signal it was measured with, and what is odd about the file."""
-
-    target: FrfTarget | RecordTarget
-    signal: Signal
-    notices: tuple[str, ...] = ()
 
 
 def make_measurements(
@@ -180,7 +166,7 @@ def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...
     Raises:
         ConfigurationError: a text, a path or a bound is wrong.
     """
-    found = []
+    found: list[Range] = []
     for text in texts:
         path, separator, numbers = text.partition("=")
         try:
@@ -189,7 +175,5 @@ def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...
             values = []
         if not separator or len(values) not in (2, 3):
             raise ConfigurationError(f"--fit {text}: needed is {TEXT}, as in damper.viscous=500:5000:1500")
-        overrides_of(vehicle, {path: values[0]})  # refuses what is no number of the car
-        start = values[2] if len(values) > 2 else value_of(vehicle, path)
-        found.append(Range(path=path, low=values[0], high=values[1], start=start))
+        found += ranges_of(vehicle, {path: (values[0], values[1], *values[2:])})
     return tuple(found)

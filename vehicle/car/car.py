@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
@@ -10,8 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.car.road import Road
 from vehicle.car.run import Run
 from vehicle.errors import ConfigurationError
+from vehicle.excitation.evaluation_start import evaluation_start
 from vehicle.excitation.input_files import find_input
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
@@ -46,7 +49,7 @@ Overrides = Iterable[str] | Mapping[str, Any]
 
 
 class Car:
-    """A car on the shaker rig.
+    """Car on a shaker or a road: its parameters, model, matrices, modes and runs.
 
     Args:
         vehicle: parameters; those of the Ford-Focus-like car of source 1 by default.
@@ -216,34 +219,52 @@ class Car:
 
     def run(
         self,
-        signal: Signal | Path | str,
+        source: Signal | Road | Path | str,
         progress: Progress | None = None,
         *,
         engine: str = "mujoco",
         channels: Sequence[str] | None = None,
+        skip: float | None = None,
     ) -> Run:
-        """Simulate the car on a signal.
+        """Simulate the car on a signal or a road.
 
         Args:
-            signal: displacement of the plates; or the file of it, as of `find_input`, as "low.csv".
+            source: displacement of the plates; a file of it or the name of a shipped one, as "low.csv"; or a road, as
+                Road("C", speed=80), on which the tyres roll.
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
             engine: "mujoco"; "reduced", hundreds of times faster, linear but for the dampers; "auto", which takes the
                 reduced one and falls back to MuJoCo where the motion leaves its validity or numba is missing.
             channels: names of the recorded channels, those on request (`vehicle.requested_channels`) among
                 them; by default all but those.
+            skip: time at the beginning that comfort and slip shares leave out [s]; by default 0, on a road until the
+                last wheel has risen with it, at least 2.
 
         Returns:
             The run; `run.recording.statistics.engine` says which engine made it, `run.engine_reason` why.
 
         Raises:
-            ConfigurationError: the engine or a channel does not exist, a motion of the car grows by itself, or the
-                time step of MuJoCo does not answer it.
+            ConfigurationError: the engine or a channel does not exist, a value of the road or `skip` is out of range, a
+                motion of the car grows by itself, or the time step of MuJoCo does not answer it.
+            DataError: a file cannot be read or holds bad data.
             MissingPartError: the reduced engine was asked for and numba is not installed.
             SimulationError: the run could not be carried through.
         """
+        if isinstance(source, Road):
+            drive = source.under(self.vehicle, self.overrides)
+            signal = drive.signal()
+            start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
+            car = self.varied(drive.overrides) if drive.overrides else self
+            run = car.run(replace(signal, source=drive.name), progress, engine=engine, channels=channels)
+            return replace(run, skip=start, road=drive.summary(signal))
+        signal = source if isinstance(source, Signal) else read_signal(find_input(source))
+        start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
+        run = self._simulated(signal, progress, engine, channels)
+        return replace(run, skip=start) if start else run
+
+    def _simulated(self, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None) -> Run:
+        """Return the run on a signal; arguments and errors as of `run`."""
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        signal = signal if isinstance(signal, Signal) else read_signal(find_input(signal))
         known = self.vehicle.channels
         self.vehicle.require_channels(channels or (), (*known, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,7 +35,7 @@ that is `damper.slip_velocity`."""
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Run:
-    """A finished simulation and what can be asked of it.
+    """Finished simulation: time histories, FRFs, comfort, slip, pictures.
 
     Attributes:
         car: what was simulated; with the step that answers it, where its file gives none.
@@ -43,6 +43,7 @@ class Run:
         recording: channels over time, and how the engine fared.
         engine_reason: why that engine.
         skip: time [s] at the beginning that `comfort` and `slip_share` leave out.
+        road: class or profile, speed and seed of the road, as in `summary.json`; None for plate signals.
     """
 
     car: Car
@@ -50,6 +51,7 @@ class Run:
     recording: Recording
     engine_reason: str = "asked for"
     skip: float = 0.0
+    road: Mapping[str, object] | None = None
 
     def __repr__(self) -> str:
         """One line."""

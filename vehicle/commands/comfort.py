@@ -6,7 +6,6 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +14,11 @@ from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, message_options
 from vehicle.commands.parser import Parser
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
-from vehicle.errors import ConfigurationError, DataError
+from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.records.table import Record
+    from vehicle.records.choice import Choice
+    from vehicle.records.record_comfort import RecordComfort
 
 
 def parser() -> Parser:
@@ -82,106 +82,53 @@ def parser() -> Parser:
     return found
 
 
-def _read(options: argparse.Namespace, picks: Sequence[str], judged: str = "xyz") -> Record:
-    """Acceleration of one point; mean and drift of the axes that are judged are refused where they matter.
+def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | None, Choice | None]:
+    """Return the point of a run, or the choice of channels, that the texts of an option name.
 
     Raises:
-        ConfigurationError: both a place and channels of axes.
-        DataError: as of `read_acceleration`, or an offset.
+        ConfigurationError: both a point and channels of axes.
     """
-    import numpy as np
-
-    from vehicle.analysis.evaluation import LARGEST_MEAN, OFFSET_EFFECT, offset_effect, offset_line
-    from vehicle.records.acceleration import read_acceleration
-
     places = [text for text in picks if "=" not in text]
     if len(places) > 1 or (places and len(picks) > 1):
         raise ConfigurationError("--channel: give one PLACE, or x=NAME, y=NAME and z=NAME")
     own = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
-    record = read_acceleration(options.input, places[0] if places else None, record_choice(own, ""))
-    if options.offset == "refuse":
-        xyz = np.array(list(record.channels.values()))
-        line = offset_line(xyz)
-        ends = zip(
-            record.channels,
-            offset_effect(record.step, xyz, place=options.place, axes=list(record.channels)),
-            xyz.mean(axis=1),
-            line[:, -1] - line[:, 0],
-            strict=True,
-        )
-        for axis, effect, offset, change in ends:
-            if axis in judged and (effect > OFFSET_EFFECT or abs(offset) > LARGEST_MEAN):
-                raise DataError(
-                    f"{options.input}: the mean of column {axis!r} is {offset:.4g} m/s2, its drift {change:.2g} m/s2; "
-                    f"they change its weighted RMS or VDV by {100 * effect:.3g} %, allowed are "
-                    f"{100 * OFFSET_EFFECT:g} % and a mean of {LARGEST_MEAN:g} m/s2; give --offset remove if it is a "
-                    "sensor's offset or gravity, --offset keep if the record starts at rest and the mean is real"
-                )
-    return record
+    return (places[0] if places else None), record_choice(own, "")
 
 
-def _evaluate(options: argparse.Namespace) -> dict[str, Any]:
-    """Read, treat the offset as asked, and evaluate."""
-    import numpy as np
-
-    from vehicle.analysis.evaluation import application, evaluate, offset_line, without_offset
-    from vehicle.records.channel_faults import copies
-
-    application(options.place)
-    if options.rail is not None and options.place not in ("seat", "seat_bs6841"):
-        raise ConfigurationError(f"--place {options.place}: --rail asks for the value of a seat; leave one of them out")
-    record = _read(options, options.picks)
-    axes, xyz = list(record.channels), np.array(list(record.channels.values()))
-    twice = [
-        f"{one} and {other} hold the same samples, which the vector sum counts twice: was a channel copied, or chosen "
-        f"twice? Choose another: --channel {other}=NAME"
-        for one, other in copies(record.channels)
-    ]
-    removed = options.offset == "remove"
-    result = evaluate(
-        record.step,
-        without_offset(xyz) if removed else xyz,
-        place=options.place,
-        average=options.mtvv,
-        skip=options.skip,
-        from_rest=options.offset == "keep",
-        axes=axes,
-        highest=record.usable,
-    )
-    line = offset_line(xyz)
-    offset = {
-        "treatment": "removed" if removed else "kept",
-        "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
-        "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
-    }
-    found = {"input": options.input, "offset": offset, **result, "notices": [*record.notices, *twice]}
-    if options.rail is not None:
-        found["seat_value"] = _seat_value(options, record)
-    if options.rail is not None or "seat" in options.picks:
-        found["notices"] += _about_the_seat(Path(options.input))
-    return found
-
-
-def _seat_value(options: argparse.Namespace, seat: Record) -> dict[str, Any]:
-    """What the seat does to the vibration below it.
+def _evaluate(options: argparse.Namespace) -> RecordComfort:
+    """Evaluate the file of the options.
 
     Raises:
         ConfigurationError: `--rail` names another axis than z.
     """
-    import numpy as np
+    from vehicle.analysis.evaluation import application
+    from vehicle.records.record_comfort import RecordComfort, evaluate_comfort
 
-    from vehicle.analysis.evaluation import without_offset
-    from vehicle.analysis.seat_value import seat_value
-
-    axis, equals, name = options.rail.partition("=")
-    if equals and axis != "z":
-        raise ConfigurationError(f"--rail {options.rail}: the value of a seat is that of z; give z=NAME, or a place")
-    rail = _read(options, [f"z={name}"] if equals else [options.rail], judged="z")
-    if "z" not in seat.channels or "z" not in rail.channels:
-        raise ConfigurationError("--rail: the value of a seat is that of z, which was not measured at both places")
-    both = np.array([seat.channels["z"], rail.channels["z"]])
-    both = without_offset(both) if options.offset == "remove" else both
-    return asdict(seat_value(seat.step, both[0], both[1], place=options.place, skip=options.skip))
+    application(options.place)
+    point, choice = _picked(options, options.picks)
+    rail: tuple[str | None, Choice | None] = (None, None)
+    if options.rail is not None:
+        axis, equals, name = options.rail.partition("=")
+        if equals and axis != "z":
+            raise ConfigurationError(
+                f"--rail {options.rail}: the value of a seat is that of z; give z=NAME, or a place"
+            )
+        rail = _picked(options, [f"z={name}"] if equals else [options.rail])
+    found = evaluate_comfort(
+        options.input,
+        point,
+        choice=choice,
+        rail=rail[0],
+        rail_choice=rail[1],
+        place=options.place,
+        offset=options.offset,
+        average=options.mtvv,
+        skip=options.skip,
+    )
+    if options.rail is None and "seat" not in options.picks:
+        return found
+    more = _about_the_seat(Path(options.input))
+    return RecordComfort({**found.summary, "notices": [*found.summary["notices"], *more]})
 
 
 def _about_the_seat(file: Path) -> list[str]:
@@ -193,40 +140,6 @@ def _about_the_seat(file: Path) -> list[str]:
     except (OSError, ValueError):
         return []
     return [NO_SEAT] if isinstance(summary, dict) and NO_SEAT in summary.get("notices", ()) else []
-
-
-def _table(result: dict[str, Any]) -> str:
-    """Return the result as text for the screen."""
-    rows = (
-        ("weighting", "weighting", ""),
-        ("weighted RMS", "weighted_rms", "m/s2"),
-        ("MTVV", "mtvv", "m/s2"),
-        ("crest factor", "crest_factor", ""),
-        ("VDV", "vdv", "m/s^1.75"),
-        ("estimated VDV", "estimated_vdv", "m/s^1.75"),
-        ("MSDV (Wf)", "msdv", "m/s^1.5"),
-    )
-    axes = [axis for axis in ("x", "y", "z") if result[axis] is not None]
-    lines = [
-        f"{result['input']}: {result['duration_s']:g} s at {result['sampling_rate_hz']:g} Hz, {result['place']} "
-        f"({result['standard']})",
-        f"{'':16}" + "".join(f"{axis:>12}" for axis in axes),
-    ]
-    for title, key, unit in rows:
-        cells = [result[axis][key] for axis in axes]
-        shown = ["-" if v is None else v if isinstance(v, str) else f"{v:.4g}" for v in cells]
-        lines.append(f"{title:16}" + "".join(f"{cell:>12}" for cell in shown) + f"  {unit}".rstrip())
-    sums = result["vector_sum"]
-    if sums is not None:
-        lines.append(f"vector sum of RMS (comfort)  {sums['weighted_rms']:.4g} m/s2")
-        if sums["health_weighted_rms"] is not None:
-            lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
-        lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
-    if "seat_value" in result:
-        ratio = result["seat_value"]
-        lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")
-    lines.append("values of this record; no statistical error is given (repeat the ride to see the spread)")
-    return "\n".join(lines)
 
 
 def _overview(results: list[dict[str, Any]]) -> str:
@@ -253,7 +166,7 @@ def _job(options: argparse.Namespace) -> None:
     """Evaluate and print."""
 
     def one(name: str) -> dict[str, Any]:
-        return _evaluate(argparse.Namespace(**{**vars(options), "input": name}))
+        return dict(_evaluate(argparse.Namespace(**{**vars(options), "input": name})).summary)
 
     names, several = expanded(options.inputs)
     if several:
@@ -261,9 +174,9 @@ def _job(options: argparse.Namespace) -> None:
         print(json.dumps(results, indent=2, allow_nan=False) if options.json else _overview(results), flush=True)
         raise_worst(errors, len(results))
         return
-    result = one(names[0])
-    print(json.dumps(result, indent=2, allow_nan=False) if options.json else _table(result), flush=True)
-    for remark in (*result["notices"], *result["reasons"]):
+    found = _evaluate(argparse.Namespace(**{**vars(options), "input": names[0]}))
+    print(json.dumps(found.summary, indent=2, allow_nan=False) if options.json else found.text(), flush=True)
+    for remark in found.notices:
         print(f"notice: {remark}", file=sys.stderr)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +17,7 @@ from vehicle.commands.several_files import each_file, expanded, raise_worst, tab
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.car import Car
+    from vehicle.car import Car, Run
     from vehicle.comparison.simulated import Simulated
     from vehicle.records.channel import Measurement
     from vehicle.records.choice import Choice
@@ -103,15 +102,12 @@ def clock_of(options: argparse.Namespace) -> tuple[float, float]:
     Raises:
         ConfigurationError: a number that is not finite, or a drift of more than a tenth.
     """
+    from vehicle.comparison.compared_run import require_clock
     from vehicle.records.counterpart import PARTS
 
-    if not math.isfinite(options.delay):
-        raise ConfigurationError(f"--delay {options.delay:g}: must be a finite number of seconds")
-    if not abs(options.drift) <= 0.1 * PARTS:
-        raise ConfigurationError(
-            f"--drift {options.drift:g}: must be -100000 to 100000 parts per million; for another rate give --rate HZ"
-        )
-    return options.delay, options.drift / PARTS
+    drift = options.drift / PARTS
+    require_clock(options.delay, drift)
+    return options.delay, drift
 
 
 def measured_options(parser: Parser, *, required: bool = False, several: bool = False) -> None:
@@ -241,10 +237,9 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         options: of the command, with `measured` the file.
         output: folder of the results.
     """
-    from vehicle.comparison.comparison import comparison_of
+    from vehicle.comparison.compared_run import compare_run
     from vehicle.comparison.frf_comparison import edges_of
-    from vehicle.output.comparison_files import write_comparison
-    from vehicle.output.folder import output_folder
+    from vehicle.output.comparison_files import save_comparison
     from vehicle.records.reader import read_record
 
     edges = edges_of(options.bands)
@@ -259,15 +254,14 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         if options.run is None:
             raise ConfigurationError("needed is RUN_OR_INPUT: the folder of a run, or an input as low.csv")
         refuse_idle(options, SHAPES)
-        simulated, known = _simulated(options, measurement, choice)
+        run, known = _run(options, measurement, choice)
         measured = _measured(options, known, choice, measurement)
         if measured.frf is None:
             refuse_idle(options, RESPONSES)
         if measured.record is None:
             refuse_idle(options, RECORDS)
-        comparison = comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=options.window)
-        with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
-            write_comparison(folder, comparison)
+        comparison = compare_run(run, measured, delay=delay, drift=drift, window=options.window, bands=edges)
+        save_comparison(comparison, output, force=options.force, protect=(options.measured,))
         summary, said = comparison.summary(), comparison.text()
     return summary, said
 
@@ -294,18 +288,18 @@ def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: 
     return _measured(options, known, measured_choice(options, taken))
 
 
-def _simulated(
+def _run(
     options: argparse.Namespace, measurement: Measurement, choice: Choice
-) -> tuple[Simulated, tuple[str, ...]]:
-    """The run, made where an input is given, and the names of its channels."""
-    from vehicle.comparison.simulated import of_folder, of_run
+) -> tuple[Run | Simulated, tuple[str, ...]]:
+    """Return the run, simulated where an input is given, and the names of its channels."""
+    from vehicle.comparison.simulated import of_folder
 
     folder = Path(options.run)
     if folder.is_dir():
         for group in (CAR, RUN):
             refuse_idle(options, group)
-        found = of_folder(folder)
-        return found, tuple(found.record.channels)
+        simulated = of_folder(folder)
+        return simulated, tuple(simulated.record.channels)
     from vehicle.car import Car
     from vehicle.excitation.input_files import find_input
     from vehicle.excitation.signal_file import read_signal
@@ -321,7 +315,7 @@ def _simulated(
         engine=options.engine,
         channels=(*car.vehicle.channels, *sorted(loads)) if loads else None,
     )
-    return of_run(run), known
+    return run, known
 
 
 def _modes(

@@ -13,13 +13,12 @@ from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
-from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
     from vehicle.records.choice import Choice
     from vehicle.replication.iteration import Step
-    from vehicle.replication.target import Target
 
 
 def parser() -> Parser:
@@ -73,37 +72,28 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.car import Car
-    from vehicle.output.drive_files import write_drive
-    from vehicle.output.folder import output_folder
-    from vehicle.replication.driven_car import DrivenCar
-    from vehicle.replication.iteration import replicate
-    from vehicle.replication.target import read_target
+    from vehicle.output.drive_files import save_drive
+    from vehicle.replication.found_drive import replicate_drive, require_iteration
 
     inputs = tuple(path for path in (options.target, options.vehicle) if path is not None)
-    band = _checked_numbers(options)
+    band, target_error = _band(options.band), 0.01 * options.target_error
+    require_iteration(band, options.iterations, options.gain, target_error)
     output = output_folder_of(options, Path("runs") / f"drive_{options.target.stem}", protect=inputs)
     names, choice = _channels(options)
-    car = Car.load(options.vehicle, options.overrides)
-    car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
-    target = read_target(options.target, names, choice, band, car.vehicle.solver.record_rate)
-    plant = DrivenCar(car, _wheels(options, target), target, options.engine)
-    with output_folder(output, force=options.force, protect=inputs) as folder:
-        found = replicate(
-            plant,
-            target.values,
-            target.lines,
-            iterations=options.iterations,
-            gain=options.gain,
-            tolerance=0.01 * options.target_error,
-            possible=plant.possible,
-            settled=plant.settled,
-            said=lambda step: None if options.quiet else _say(step, options.iterations),
-        )
-        if not any(step.kept for step in found.steps):
-            raise SimulationError(
-                f"{options.target}: no drive found that answers better than plates at rest; {found.outcome}"
-            )
-        summary = write_drive(folder, found, plant)
+    found = replicate_drive(
+        Car.load(options.vehicle, options.overrides),
+        options.target,
+        names,
+        choice=choice,
+        wheels=[CORNERS[word] for word in options.wheels] if options.wheels else None,
+        band=band,
+        iterations=options.iterations,
+        gain=options.gain,
+        target_error=target_error,
+        engine=options.engine,
+        progress=lambda step: None if options.quiet else _say(step, options.iterations),
+    )
+    summary = save_drive(found, output, force=options.force, protect=inputs)
     if not options.quiet:
         print(report(summary, output))
 
@@ -118,28 +108,30 @@ def _say(step: Step, iterations: int) -> None:
     )
 
 
-def _checked_numbers(options: argparse.Namespace) -> tuple[float, float]:
-    """Edges of the band [Hz]; refuses numbers that nobody can mean."""
-    found = re.fullmatch(r"([\d.]+):([\d.]+)", options.band)
+def _band(text: str) -> tuple[float, float]:
+    """Return the edges of the band of an option [Hz]; their order is checked with the other settings.
+
+    Raises:
+        ConfigurationError: the text is not A:B.
+    """
+    found = re.fullmatch(r"([\d.]+):([\d.]+)", text)
     try:
-        low, high = (float(text) for text in found.groups()) if found else (0.0, 0.0)
+        low, high = (float(part) for part in found.groups()) if found else (0.0, 0.0)
     except ValueError:
         low = high = 0.0
     if not 0.0 < low < high:
-        raise ConfigurationError(f"--band {options.band}: needed are two frequencies [Hz], the lower one first: 1:50")
-    if not 1 <= options.iterations <= 1000:
-        raise ConfigurationError(f"--iterations {options.iterations}: must be 1 to 1000")
-    if not 0.0 < options.gain <= 1.0:
-        raise ConfigurationError(f"--gain {options.gain:g}: must be above 0 and up to 1")
-    if not 0.0 < options.target_error < 100.0:
-        raise ConfigurationError(f"--target-error {options.target_error:g} %: must be above 0 and below 100")
+        raise ConfigurationError(f"--band {text}: needed are two frequencies [Hz], the lower one first: 1:50")
     return low, high
 
 
 def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
-    """Channel of the car to what names it in the file, and what else is asked of the file."""
+    """Return channel of the car to channel of the file, and what else is asked of the file.
+
+    Raises:
+        ConfigurationError: no channel, or a role twice.
+    """
     from vehicle.records.choice import Choice
-    from vehicle.records.reader import read_record
+    from vehicle.replication.found_drive import named_channels
 
     alone = [text.strip() for text in options.picks if "=" not in text]
     options.picks = [f"{text}={text}" if "=" not in text else text for text in options.picks]
@@ -147,28 +139,7 @@ def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
     names = {role: name for role, name in choice.channels.items() if role != "time"}
     if not names:
         raise ConfigurationError("needed is --channel: the acceleration of the car that was measured")
-    if len(names) == 1 and alone:
-        held = read_record(options.target, choice.databases).channels
-        if len(held) == 1:
-            names = {alone[0]: "1"}
-    return names, choice
-
-
-def _wheels(options: argparse.Namespace, target: Target) -> tuple[str, ...]:
-    """Wheels whose plates are driven."""
-    from vehicle.names import in_order
-
-    if options.wheels:
-        found = in_order({CORNERS[word] for word in options.wheels})
-    else:
-        named = {part for name in target.channels for part in name.split("_") if part in CORNERS.values()}
-        found = in_order(named or {"fr"})
-    if len(found) > len(target.channels):
-        raise ConfigurationError(
-            f"{len(found)} plates ({', '.join(found)}) and {len(target.channels)} channel: give at least as many "
-            "channels as plates"
-        )
-    return found
+    return (named_channels(options.target, alone, choice) if alone == list(names) else names), choice
 
 
 def report(summary: dict[str, Any], output: Path) -> str:

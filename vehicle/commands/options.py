@@ -109,7 +109,7 @@ def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
 
 
 def skip_option(parser: argparse.ArgumentParser, of_a_file: float) -> None:
-    """Add --skip: start of the evaluation, see `vehicle.commands.inputs.chosen_skip`.
+    """Add --skip: start of the evaluation, see `vehicle.excitation.evaluation_start`.
 
     Args:
         parser: of the command.

@@ -32,17 +32,16 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.output.folder import write_text
-    from vehicle.report.finished_run import read_run
-    from vehicle.report.page import report_page
+    from vehicle.report.report_file import write_report
 
     missing = next((run for run in options.runs if not run.is_dir()), None)
     if missing is not None:
         raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
     default = options.runs[0] / NAME if len(options.runs) == 1 else Path(NAME)
     path = output_file_of(options, default, ending=".html")
-    progress = ProgressLine("report    ", enabled=not options.quiet)
-    write_text(path, report_page([read_run(run) for run in options.runs], progress))
+    write_report(
+        options.runs, path, force=options.force, progress=ProgressLine("report    ", enabled=not options.quiet)
+    )
     if not options.quiet:
         print(f"report      {path}, {path.stat().st_size / 1e6:.1f} MB")
 

@@ -21,7 +21,6 @@ from vehicle.commands.input_options import (
     signal_options,
     unit_option,
 )
-from vehicle.commands.inputs import chosen_skip
 from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
     command_parser,
@@ -111,6 +110,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.excitation.evaluation_start import evaluation_start
     from vehicle.excitation.input_files import find_input
     from vehicle.excitation.signal_file import read_signal
     from vehicle.output.folder import output_folder
@@ -163,7 +163,7 @@ def _job(options: argparse.Namespace) -> None:
     else:
         signal = drive.signal()
     _check_signal(options, signal)
-    skip = chosen_skip(options, {stem: signal if drive is None else drive}, 0.0)
+    skip = evaluation_start({stem: signal.duration}, options.skip, 0.0 if drive is None else drive.skip)
     channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)
     measured = measured_beside(options, channels or car.vehicle.channels, choice.units if choice else ())
     # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
@@ -175,7 +175,7 @@ def _job(options: argparse.Namespace) -> None:
     with output_folder(output, force=options.force, protect=inputs) as folder:
         try:
             progress = ProgressLine("simulation", enabled=not options.quiet)
-            run = replace(car.run(signal, progress, engine=engine, channels=channels), skip=skip)
+            run = replace(car.run(signal, progress, engine=engine, channels=channels), skip=skip, road=road)
         except SimulationError as error:
             raise save_last_state(error, output) from None
 
@@ -210,7 +210,6 @@ def _job(options: argparse.Namespace) -> None:
             time_format=options.time_format,
             formats=options.formats,
             engine_reason=reason,
-            road=road,
             video=None if video_name is None else (video_name, make_film),
             measured=measured,
             report=None if report_name is None else (report_name, make_report),

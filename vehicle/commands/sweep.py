@@ -11,7 +11,7 @@ from pathlib import Path
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs, chosen_skip
+from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -58,33 +58,26 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.car import Car
     from vehicle.errors import ConfigurationError, SimulationError
-    from vehicle.parameters.vehicle import load_vehicle
-    from vehicle.parameters.whole_body import body_rules
-    from vehicle.sweeps.case import table_cases
     from vehicle.sweeps.differences import DIFFERENCES
     from vehicle.sweeps.executors import executor_factory
-    from vehicle.sweeps.measure import ComfortMeasure
+    from vehicle.sweeps.plan import plan_sweep
     from vehicle.sweeps.store import ROWS
-    from vehicle.sweeps.sweep import sweep
     from vehicle.sweeps.table import read_variations
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
     paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
-    vehicle = load_vehicle(options.vehicle, options.overrides)
-    check_paths(options.vehicle, options.overrides, paths, rows[0])
-    inputs = chosen_inputs(options, vehicle)
-    skip = chosen_skip(options, {source.name: source for source in inputs}, 2.0)
-    cases = table_cases(paths, rows, inputs, engine=options.engine, vehicle=options.vehicle, fixed=options.overrides)
+    changes = [[f"{path}={value}" for path, value in zip(paths, row, strict=True)] for row in rows]
+    car = Car.load(options.vehicle, options.overrides)
+    plan = plan_sweep(car, changes, chosen_inputs(options), engine=options.engine, skip=options.skip)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=ROWS)
-    for text in () if options.quiet else body_rules(vehicle, paths):
+    for text in () if options.quiet else plan.notes:
         print(f"note        {text}")
     try:
-        table = sweep(
-            cases,
-            ComfortMeasure(skip=skip, seat=vehicle.seated),
+        table = plan.run(
             executor=make,
             folder=folder,
             retry_failed=options.retry_failed,
@@ -96,37 +89,17 @@ def _job(options: argparse.Namespace) -> None:
     if not options.quiet:
         differences = f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
         print(
-            f"{folder}: {len(cases)} runs, {len(table.failed)} failed, evaluated from {skip:g} s on; table.csv, "
-            f"{differences}sweep.json, rows.jsonl, timing.csv"
+            f"{folder}: {len(plan.cases)} runs, {len(table.failed)} failed, evaluated from {plan.skip:g} s on; "
+            f"table.csv, {differences}sweep.json, rows.jsonl, timing.csv"
         )
         print("comfort_*: unweighted RMS of the seat rail, 2 to 50 Hz; *_weighted_*: weighted RMS (ISO 2631-1)")
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:
         raise SimulationError(
-            f"{len(table.failed)} of {len(cases)} runs failed; the table is written, with the reason in their rows; "
-            "--allow-failed takes that as success"
+            f"{len(table.failed)} of {len(plan.cases)} runs failed; the table is written, with the reason in their "
+            "rows; --allow-failed takes that as success"
         )
-
-
-def check_paths(vehicle: Path | None, overrides: Sequence[str], paths: Sequence[str], row: Sequence[str]) -> None:
-    """Refuse a misspelt parameter before anything is computed: it would fail in every row.
-
-    An impossible value is left to its row: another row may be possible.
-
-    Raises:
-        ConfigurationError: a path does not exist, or its value in the first row is none.
-    """
-    from vehicle.errors import ConfigurationError
-    from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
-    from vehicle.parameters.vehicle import overridden
-
-    file = FOCUS_FILE if vehicle is None else vehicle_file(vehicle)
-    overridden(file, overrides)
-    try:
-        overridden(file, [*overrides, *(f"{path}={value}" for path, value in zip(paths, row, strict=True))])
-    except ConfigurationError as error:
-        raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
 
 
 def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, ...]]]:

@@ -74,9 +74,22 @@ def edges_of(text: str) -> tuple[float, ...]:
         found = tuple(float(part) for part in text.split(","))
     except ValueError:
         found = ()
-    if len(found) < 2 or found[0] < 0.0 or not all(low < high for low, high in pairwise(found)):
-        raise ConfigurationError(f"--bands {text}: needed are rising edges in Hz, as 3,8,15,30")
-    return found
+    return checked_edges(found, f"--bands {text}")
+
+
+def checked_edges(edges: Sequence[float], where: str) -> tuple[float, ...]:
+    """Return edges of bands [Hz].
+
+    Args:
+        edges: frequencies [Hz].
+        where: name and value, for the message.
+
+    Raises:
+        ConfigurationError: fewer than two numbers, or they do not rise.
+    """
+    if len(edges) < 2 or not edges[0] >= 0.0 or not all(low < high for low, high in pairwise(edges)):
+        raise ConfigurationError(f"{where}: needed are rising edges in Hz, as 3,8,15,30")
+    return tuple(edges)
 
 
 def compare_responses(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from vehicle.linear.modes import Mode
 from vehicle.names import AXES
 from vehicle.records.channel import Measurement
 from vehicle.records.geometry import Geometry, ModeShape
+from vehicle.records.reader import read_record
 
 Complex = npt.NDArray[np.complex128]
 Matrix = npt.NDArray[np.float64]
@@ -150,21 +152,30 @@ def shapes_at(car: Car, modes: Sequence[Mode], places: Sequence[str]) -> Complex
 
 
 def compare_modes(
-    car: Car, measurement: Measurement, mapping: Mapping[str, str], damper: str = "stuck"
+    car: Car,
+    measurement: Measurement | Path | str,
+    mapping: Mapping[str, str] | None = None,
+    damper: str = "stuck",
 ) -> ModeComparison:
     """Compare the mode shapes of a file with those of a car at the points that both have.
 
     Args:
         car: the car.
-        measurement: with mode shapes.
+        measurement: file with mode shapes (UFF 55), or what `read_record` read of it.
         mapping: place of the car to node of the file; by default the nodes that lie at places of the car, within
             `NEAR`, in its axes (x to the rear, y to the driver's right, z up).
         damper: state of the dampers, stuck or sliding.
+
+    Returns:
+        MAC and AutoMAC, and pairs of measured and simulated modes with both frequencies and damping ratios.
 
     Raises:
         ConfigurationError: a place that the car does not have.
         DataError: a node that the file does not have, or less than three points.
     """
+    if not isinstance(measurement, Measurement):
+        measurement = read_record(Path(measurement))
+    mapping = mapping or {}
     geometry, known = points_of(car), measurement.geometry.points
     unknown = next((place for place in mapping if place not in geometry.points), None)
     if unknown is not None:

@@ -5,13 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vehicle.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.comparison.record_comparison import RecordComparison
+from vehicle.errors import ConfigurationError
 from vehicle.records.counterpart import PARTS
+
+if TYPE_CHECKING:
+    from vehicle.notebook.picture import Picture
 
 SHOWN = 12
 """Most rows of a table on the console."""
@@ -26,9 +30,9 @@ HEADS = (
 """Columns of `compare.csv`."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Comparison:
-    """A measurement beside a run.
+    """Measurement compared with a run: responses and time histories, worst first.
 
     Attributes:
         measured, simulated: names of both.
@@ -44,6 +48,28 @@ class Comparison:
     signatures: Signatures | None = None
     records: tuple[RecordComparison, ...] = ()
     notices: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return the tables of the console."""
+        return self.text()
+
+    def plot(self, name: str | None = None) -> Picture:
+        """Draw measured and simulated data of one output point as a figure that a notebook shows.
+
+        Args:
+            name: as "compare_frf_seat_rail", "compare_time_seat_rail" or "compare_signatures"; the first by default.
+
+        Raises:
+            ConfigurationError: there is no picture of this name; the message lists all.
+        """
+        from vehicle.comparison.drawings import drawings_of
+        from vehicle.notebook.picture import picture
+
+        drawings = drawings_of(self)
+        wanted = next(iter(drawings)) if name is None else name
+        if wanted not in drawings:
+            raise ConfigurationError(f"no picture {wanted!r}; there are {', '.join(drawings)}")
+        return picture(drawings[wanted])
 
     def rows(self) -> list[dict[str, Any]]:
         """Rows of the table: bands of responses by falling error, then time histories by rising rating."""

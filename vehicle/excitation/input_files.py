@@ -37,5 +37,5 @@ def find_input(name: str | Path) -> Path:
 
 
 def shipped_inputs() -> list[str]:
-    """Names of the shipped CSV files, sorted."""
+    """Return the names of the shipped input files, as `Car.run` takes them, sorted."""
     return sorted(path.name for path in INPUT_FOLDER.glob("*.csv"))

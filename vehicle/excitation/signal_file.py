@@ -63,6 +63,9 @@ def read_signal(
         choice: channels of a measurement file, and what is done to them; None, or a rate to resample to alone, for the
             columns above.
 
+    Returns:
+        The signal, with a notice for everything that was done to the data.
+
     Raises:
         ConfigurationError: no such file, unknown wheel, resampling rate out of range.
         DataError: bad data; the message names file, line, column, the value found, what is allowed and the remedy.

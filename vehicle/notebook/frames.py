@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from importlib import import_module
 from typing import Any
 
@@ -20,6 +21,15 @@ def _library(name: str, what: str) -> Any:
         raise MissingPartError(
             f"{what}: needs {name}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
         ) from None
+
+
+def table_frame(text: str) -> Any:
+    """Return a table of CSV text, header in the first line, as a pandas table.
+
+    Raises:
+        MissingPartError: pandas is not installed.
+    """
+    return _library("pandas", "to_dataframe").read_csv(io.StringIO(text))
 
 
 def recording_frame(recording: Recording) -> Any:

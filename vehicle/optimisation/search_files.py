@@ -14,7 +14,7 @@ import numpy as np
 
 from vehicle.car import Car
 from vehicle.errors import DataError
-from vehicle.optimisation.car_table import cells, columns
+from vehicle.optimisation.car_table import CARS, cells, columns
 from vehicle.optimisation.front import distance, hypervolume
 from vehicle.optimisation.outcome import BASE, Outcome
 from vehicle.optimisation.problem import Problem, Vector
@@ -127,7 +127,9 @@ def write_search(
     """
     write_text(folder / FRONT, front_text(found, nominal))
     write_whole(folder / "front.png", lambda path: plot_front(path, picture_of(found, beside), caption))
-    files = {"front": FRONT, "picture": "front.png", "cars": "cars.csv", "summary": "summary.json"}
+    files = {"front": FRONT, "picture": "front.png"}
+    files |= {"cars": CARS} if (folder / CARS).exists() else {}
+    files["summary"] = "summary.json"
     points = {}
     for name, row in found.named.items():
         file = re.sub(r"[^A-Za-z0-9_.-]+", "_", name) + ".toml"

@@ -2,19 +2,39 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from vehicle.car import Run
 from vehicle.comparison.comparison import comparison_of
-from vehicle.comparison.pictures import plot_histories, plot_responses, plot_signatures
+from vehicle.comparison.drawings import drawings_of
 from vehicle.comparison.simulated import of_run
 from vehicle.comparison.tables import Comparison
-from vehicle.output.folder import write_json, write_text, write_whole
+from vehicle.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.records.measured import Measured
+
+
+def save_comparison(
+    comparison: Comparison, folder: Path | str, *, force: bool = False, protect: tuple[Path, ...] = ()
+) -> Path:
+    """Write the tables of a comparison and a picture for each output point into a folder of their own.
+
+    Args:
+        comparison: result of `compare_run`.
+        folder: name of the folder.
+        force: replace what was written there before.
+        protect: input files; a folder that holds one of them is never replaced.
+
+    Returns:
+        The folder.
+
+    Raises:
+        ConfigurationError: the folder exists without `force`, or holds other files.
+        OutputError: a file cannot be written.
+    """
+    with output_folder(Path(folder), force=force, protect=protect) as work:
+        write_comparison(work, comparison)
+    return Path(folder)
 
 
 def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
@@ -30,19 +50,7 @@ def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
     write_text(folder / "compare.csv", comparison.csv())
     write_json(folder / "compare.json", comparison.summary())
     files = {"compare": "compare.json", "compare_table": "compare.csv"}
-    caption = f"measured: {comparison.measured}; simulated: {comparison.simulated}"
-    pictures: dict[str, Callable[[Path], None]] = {}
-    for place in dict.fromkeys(_place(one.channel) for one in comparison.responses):
-        own = [one for one in comparison.responses if _place(one.channel) == place]
-        pictures[f"compare_frf_{place}"] = partial(plot_responses, place=place, responses=own, caption=caption)
-    for place in dict.fromkeys(_place(one.channel) for one in comparison.records):
-        rows = [one for one in comparison.records if _place(one.channel) == place]
-        pictures[f"compare_time_{place}"] = partial(plot_histories, place=place, histories=rows, caption=caption)
-    together = comparison.signatures
-    if together is not None:
-        said = f"{together.channels} responses; {caption}"
-        pictures["compare_signatures"] = partial(plot_signatures, signatures=together, caption=said)
-    for name, draw in pictures.items():
+    for name, draw in drawings_of(comparison).items():
         write_whole(folder / f"{name}.png", draw)
         files[name] = f"{name}.png"
     return files
@@ -64,8 +72,3 @@ def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, st
     files |= write_comparison(folder, comparison)
     told = comparison.summary()
     return {"file": comparison.measured, "table": told["table"], "notices": told["notices"]}
-
-
-def _place(channel: str) -> str:
-    """Place of a channel: knuckle_fr of knuckle_fr_acc_z, damper_fr of damper_fr_velocity."""
-    return re.sub(r"_(acc_[xyz]|velocity|force(_[xyz])?|displacement|torque)$", "", channel)

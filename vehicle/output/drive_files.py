@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from vehicle.excitation.signal_file import write_signal
-from vehicle.output.folder import write_json, write_text, write_whole
+from vehicle.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.output.own_files import parameters_text, write_own_files
 from vehicle.records.formats import FORMATS
 from vehicle.records.table import Record
 from vehicle.rendering.drive_plot import plot_convergence, plot_replication
-from vehicle.replication.driven_car import DrivenCar
+from vehicle.replication.found_drive import FoundDrive
 from vehicle.replication.iteration import Replication
 
 FILES = {
@@ -27,22 +27,32 @@ FILES = {
 }
 
 
-def write_drive(folder: Path, found: Replication, plant: DrivenCar) -> dict[str, Any]:
-    """Write all files of a drive.
+def save_drive(
+    drive: FoundDrive, folder: Path | str, *, force: bool = False, protect: tuple[Path, ...] = ()
+) -> dict[str, Any]:
+    """Write the files of a drive: plate signals, response, iterations, pictures, parameters, summary.
 
     Args:
-        folder: as of `output_folder`.
-        found: what the iteration found.
-        plant: the car that it drove.
+        drive: result of `replicate_drive`.
+        folder: name of the folder.
+        force: replace what was written there before.
+        protect: input files; a folder that holds one of them is never replaced.
 
     Returns:
         The content of `summary.json`.
 
     Raises:
+        ConfigurationError: the folder exists without `force`, or holds other files.
         OutputError: a file cannot be written.
     """
-    target, run = plant.target, plant.last
-    assert run is not None
+    with output_folder(Path(folder), force=force, protect=protect) as work:
+        return write_drive(work, drive)
+
+
+def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
+    """Write all files of a drive; arguments and result as of `save_drive`, the folder as of `output_folder`."""
+    found, plant, run = drive.replication, drive.plant, drive.run
+    target = plant.target
     signal, low, high = plant.signal(found.drive), *target.band
     last = found.steps[-1]
     errors = dict(zip(target.channels, min(found.steps, key=lambda step: step.error).errors.tolist(), strict=True))

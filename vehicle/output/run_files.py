@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +69,6 @@ def write_run(
     time_format: str = "npz",
     formats: Sequence[str] = (),
     engine_reason: str = "",
-    road: Mapping[str, object] | None = None,
     video: tuple[Path, Callable[[Path], None]] | None = None,
     measured: Measured | None = None,
     report: tuple[Path, Callable[[Path], None]] | None = None,
@@ -83,7 +82,6 @@ def write_run(
         time_format: "npz" or "csv".
         formats: further ones of `vehicle.output.run_formats.WRITERS`.
         engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
-        road: what the summary says of the road; on one, FRFs that cannot be had are left out with a notice.
         video: name of the film, or a path of its own, and what writes it.
         measured: a measurement that is put beside the run.
         report: the same of the report, which is made of the other files.
@@ -96,12 +94,13 @@ def write_run(
         VehicleError: a file cannot be made or written.
     """
     channels = run.car.vehicle.acceleration_channels
-    responses, missing = _frfs(run, DependentInputsError if road is None else DataError)
+    # On a road, FRFs that cannot be had are left out with a notice.
+    responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
     files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     summary = summarise(run, responses, files)
     if responses:
         files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
-    if road is not None:
+    if run.road is not None:
         files["psd"] = "psd.csv"
         write_whole(folder / "psd.csv", lambda path: _write_psd(path, run))
     files["time_plot"] = "time.png"
@@ -139,7 +138,7 @@ def write_run(
         summary["notices"] += [f"{measured.file.path.name}: {text}" for text in summary["measured"]["notices"]]
     summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
     summary["tyre"] = run.car.vehicle.driving.words
-    summary["input"]["road"] = None if road is None else dict(road)
+    summary["input"]["road"] = None if run.road is None else dict(run.road)
     summary["notices"] += missing
     summary["command"] = command or None
     if report is not None:

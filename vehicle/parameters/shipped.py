@@ -15,6 +15,11 @@ CARS = tuple(sorted(folder.parent.name for folder in VEHICLES.glob("*/vehicle.to
 """Names of all cars."""
 
 
+def shipped_cars() -> tuple[str, ...]:
+    """Return the names of the cars of the package, as `Car.load` takes them."""
+    return CARS
+
+
 def vehicle_file(path: Path | str) -> Path:
     """The file of a car: the path as given, or that of the shipped car of this name.
 

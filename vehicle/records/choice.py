@@ -21,7 +21,7 @@ from vehicle.records.units import allowed_units, find_ratio, find_unit
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Choice:
-    """What a command was asked to do with a file.
+    """Choice of channels, units, rate and excerpt of a measurement file.
 
     Attributes:
         channels: role, such as a wheel, to number, exact name, or pattern with * and ? that hits one channel; the role

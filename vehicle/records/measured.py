@@ -48,7 +48,7 @@ class Measured:
 
 
 def read_measured(
-    path: Path,
+    path: Path | str,
     known: Sequence[str],
     choice: Choice | None = None,
     *,
@@ -69,6 +69,9 @@ def read_measured(
         turned: names whose sign is turned.
         window: length of Hann windows for an estimated response [s]; by default the local rational model.
         measurement: the file, where it was read before.
+
+    Returns:
+        Responses [m/s2 per m] and time histories in SI units, those that the file has.
 
     Raises:
         ConfigurationError: no such file, or a name that the model does not have.

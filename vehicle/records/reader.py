@@ -82,6 +82,9 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
         path: the file, of any format of `READERS`.
         databases: files of the form DBC, which decode the log of a CAN bus.
 
+    Returns:
+        Channels with names, units and times, mode shapes and geometry, in the units of the file.
+
     Raises:
         ConfigurationError: there is no such file, or databases are given for another kind of file.
         DataError: no format that is read, or a damaged file.

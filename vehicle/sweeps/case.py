@@ -110,6 +110,23 @@ def table_cases(
         fixed: overrides of every case, before those of its input and the varied ones.
     """
     changes = [tuple(f"{path}={value}" for path, value in zip(paths, row, strict=True)) for row in rows]
+    return varied_cases(changes, inputs, engine=engine, vehicle=vehicle, fixed=fixed)
+
+
+def varied_cases(
+    changes: Sequence[tuple[str, ...]],
+    inputs: Sequence[Input],
+    *,
+    engine: str = "auto",
+    vehicle: Path | None = None,
+    fixed: Sequence[str] = (),
+) -> list[Case]:
+    """Return a case for every variation on every input.
+
+    Args:
+        changes: texts "path=value" of each variation.
+        inputs, engine, vehicle, fixed: as in `table_cases`.
+    """
     found = []
     for one in inputs:
         shared = (*fixed, *overrides_of(one))

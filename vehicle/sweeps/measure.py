@@ -64,7 +64,7 @@ FRONT = tuple(CORNERS.values())[:2]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ComfortMeasure:
-    """Unweighted (comfort) and weighted RMS of the seat rail, slip shares, the first slip.
+    """Values of a run in a sweep: unweighted and weighted RMS of the seat rail, slip shares, first slip.
 
     Attributes:
         skip: seconds at the beginning that all but the first slip leave out: the car starts at rest.

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.notebook.frames import table_frame
 from vehicle.output.folder import write_json, write_text
 from vehicle.records.reader import recognise
 from vehicle.records.sheet_format import read_sheet_texts
@@ -25,9 +26,9 @@ INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Columns beside the parameters and the numbers, whose heads have units."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class SweepTable:
-    """Cases, their results, and how they were made.
+    """Table of a sweep: a row of values for each run, and what they depend on.
 
     Attributes:
         cases: in the order they were given.
@@ -69,6 +70,18 @@ class SweepTable:
                 [case.source.name, *(changed.get(path, "") for path in paths), *numbers, result.engine, result.reason]
             )
         return file.getvalue()
+
+    def __repr__(self) -> str:
+        """Return the number of runs and of failed ones in a line."""
+        return f"SweepTable({len(self.cases)} runs, {len(self.failed)} failed: {', '.join(self.units)})"
+
+    def to_dataframe(self) -> Any:
+        """Return the table in pandas: input, varied parameters, values with their units in the heads, engine, reason.
+
+        Raises:
+            MissingPartError: pandas is not installed.
+        """
+        return table_frame(self.text())
 
     def write(self, folder: Path, computed: str = "") -> None:
         """Write `table.csv`, `sweep.json` and `timing.csv`.

@@ -51,7 +51,7 @@ class RowStatistics:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TuningResult:
-    """Fitted values with their uncertainty.
+    """Fitted parameters with standard errors, correlation and residual statistics.
 
     Attributes:
         parameters: all that were given.
