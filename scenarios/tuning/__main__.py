@@ -31,15 +31,12 @@ from scenarios.tuning.claims import (
 )
 from scenarios.tuning.data import (
     AUTHORS,
-    BAND,
     CHANNELS,
     HIDDEN,
     NOISE,
     QUICK,
     SLIDING,
-    SPACING,
     TEXT,
-    Measurement,
     make_measurements,
     parse_parameters,
 )
@@ -56,6 +53,7 @@ from vehicle.tuning.car_fit import require_fittable
 from vehicle.tuning.fit import Target, fit
 from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.full_steps import FullSteps, full_steps
+from vehicle.tuning.measured_targets import BAND, SPACING, MeasuredTarget
 from vehicle.tuning.record_target import RecordTarget
 from vehicle.tuning.result import TuningResult
 
@@ -93,7 +91,7 @@ class Tuning:
         line(1.0)
         return result
 
-    def finish(self, result: TuningResult, measurements: Sequence[Measurement], engine: str | None) -> FullSteps:
+    def finish(self, result: TuningResult, measurements: Sequence[MeasuredTarget], engine: str | None) -> FullSteps:
         """The last steps with the full simulation."""
 
         def simulate(values: Mapping[str, float]) -> list[Run]:
@@ -190,7 +188,9 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
     )
 
 
-def _draw(folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequence[Measurement], source: str) -> None:
+def _draw(
+    folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequence[MeasuredTarget], source: str
+) -> None:
     """Data, start and fit of every target, and the correlations."""
     start = tuning.build({one.path: one.start for one in result.parameters})
     end = tuning.build(result.values)

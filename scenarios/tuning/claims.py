@@ -8,11 +8,12 @@ from dataclasses import asdict
 from typing import Any
 
 from scenarios.claims import OWN_CHECK, Claim, markdown
-from scenarios.tuning.data import NOISE, SLIDING, Measurement
+from scenarios.tuning.data import NOISE, SLIDING
 from vehicle.parameters.paths import unit_of
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.tuning.full_steps import SMALL, FullSteps
 from vehicle.tuning.identifiability import WIDEST
+from vehicle.tuning.measured_targets import MeasuredTarget
 from vehicle.tuning.result import TuningResult
 
 WITHIN = 3.0
@@ -92,7 +93,7 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
     return [*lines, words]
 
 
-def data_note(measurements: Sequence[Measurement], engine: str, quick: bool) -> str:
+def data_note(measurements: Sequence[MeasuredTarget], engine: str, quick: bool) -> str:
     """What the data are, and where errors of the models enter."""
     names = ", ".join(one.target.name for one in measurements)
     short = (

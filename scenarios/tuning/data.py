@@ -25,8 +25,7 @@ from vehicle.records.frf import read_frf, write_frf
 from vehicle.records.table import Record
 from vehicle.tuning.car_fit import ranges_of
 from vehicle.tuning.frf_target import FrfTarget
-from vehicle.tuning.measured_targets import BAND, SPACING
-from vehicle.tuning.measured_targets import MeasuredTarget as Measurement
+from vehicle.tuning.measured_targets import BAND, SPACING, MeasuredTarget
 from vehicle.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z", "suspension_mount_fr_acc_z", "seat_rail_acc_z")
@@ -56,7 +55,7 @@ def make_measurements(
     channels: Sequence[str] = CHANNELS,
     spacing: float = SPACING,
     engine: str | None = None,
-) -> list[Measurement]:
+) -> list[MeasuredTarget]:
     """Measurements of the hidden car.
 
     Args:
@@ -79,7 +78,7 @@ def make_measurements(
     for name, signal, run in zip((*levels, *bumps), signals, done, strict=True):
         noise = np.random.default_rng([SEED, INPUTS.index(name)])
         if name in bumps:
-            found.append(Measurement(target=_record(name, run, noise), signal=signal))
+            found.append(MeasuredTarget(target=_record(name, run, noise), signal=signal))
             continue
         response = _noisy(run.frf(channels), noise)
         file = folder / f"{name}_frf.csv"
@@ -90,7 +89,7 @@ def make_measurements(
             signal=None if name == "low" else signal,
             averages=float(np.nanmedian(response.averages)),
         )
-        found.append(Measurement(target=target, signal=signal))
+        found.append(MeasuredTarget(target=target, signal=signal))
     return found
 
 

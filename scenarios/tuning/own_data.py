@@ -5,17 +5,17 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from scenarios.tuning.data import CHANNELS, Measurement
+from scenarios.tuning.data import CHANNELS
 from vehicle.car import Car
 from vehicle.commands.compare import clock_of, measured_choice
 from vehicle.errors import ConfigurationError
-from vehicle.tuning.measured_targets import measured_histories, measured_responses
+from vehicle.tuning.measured_targets import MeasuredTarget, measured_histories, measured_responses
 
 STUCK = "low"
 """Level at which the dampers stay stuck, so that the car is linear."""
 
 
-def own_measurements(options: argparse.Namespace, car: Car) -> list[Measurement]:
+def own_measurements(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
     """Targets of the options --frf with --level, and --record with --signal.
 
     Args:
@@ -43,7 +43,9 @@ def own_measurements(options: argparse.Namespace, car: Car) -> list[Measurement]
     ]
 
 
-def _responses(options: argparse.Namespace, car: Car, file: Path, level: str, band: tuple[float, float]) -> Measurement:
+def _responses(
+    options: argparse.Namespace, car: Car, file: Path, level: str, band: tuple[float, float]
+) -> MeasuredTarget:
     """FRFs of one level; where the file tells no coherence, all lines count alike."""
     return measured_responses(
         car,
@@ -59,7 +61,7 @@ def _responses(options: argparse.Namespace, car: Car, file: Path, level: str, ba
     )
 
 
-def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Measurement:
+def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> MeasuredTarget:
     """Time histories of one signal at the times of a run; what counts is what both have."""
     delay, drift = clock_of(options)
     words = "FROM:TO in s, as in 4.9:6.5"

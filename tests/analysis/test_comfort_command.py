@@ -156,7 +156,7 @@ def test_an_interrupt_exits_130(ride, capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("vehicle.records.acceleration.read_acceleration", interrupted)
+    monkeypatch.setattr("vehicle.records.record_comfort.read_acceleration", interrupted)
     assert main(["--input", "any.csv"]) == 130
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from vehicle.car import Run
+from vehicle.errors import ConfigurationError
 from vehicle.output.folder import output_folder
 from vehicle.output.run_files import write_run
 
@@ -26,10 +27,16 @@ def save_run(
         The folder; `write_report` and `compare_run` take it.
 
     Raises:
-        ConfigurationError: the folder exists without `force`, or holds files that no run wrote.
+        ConfigurationError: the folder exists without `force`, or holds files that no run wrote; or the run has not all
+            default channels.
         DataError: the record is too short for an FRF, or a plate moves as another one with a delay.
         OutputError: a file cannot be written.
     """
+    missing = [name for name in run.car.vehicle.channels if name not in run.recording.channels]
+    if missing:
+        raise ConfigurationError(
+            f"{folder}: the run has no channel {missing[0]}, which its files need; run the car without channels=[...]"
+        )
     with output_folder(Path(folder), force=force) as work:
         write_run(work, run, time_format=time_format, formats=formats)
     return Path(folder)

@@ -44,9 +44,10 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
     for source in listed:
         if isinstance(source, Road):
             found.append(source.under(car.vehicle, car.overrides))
+        elif isinstance(source, str | Path):
+            found.append(SignalFile(path=find_input(source).resolve()))
         else:
-            path = find_input(source).resolve() if isinstance(source, str | Path) else None
-            found.append(source if path is None else SignalFile(path=path))
+            found.append(source)
     for one in found:
         if isinstance(one, SignalFile | Signal) and (highest := signal_of(one).highest) is not None:
             raise DataError(
