@@ -49,7 +49,7 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.analysis.load_spectrum import load_spectrum
     from vehicle.output.folder import write_text, write_whole
-    from vehicle.records.formats import read_columns
+    from vehicle.records.reader import read_columns
     from vehicle.rendering.load_plot import plot_loads
 
     source = _time_file(options.run)

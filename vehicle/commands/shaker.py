@@ -36,6 +36,7 @@ from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
+from vehicle.records.formats import TABLES, WRITTEN
 
 if TYPE_CHECKING:
     from vehicle.excitation.signal import Signal
@@ -63,7 +64,7 @@ def parser() -> Parser:
     )
     found.add_argument(
         "--time-format",
-        choices=("npz", "csv"),
+        choices=TABLES,
         default="npz",
         help="format of the time histories; %(default)s by default",
     )
@@ -80,7 +81,7 @@ def parser() -> Parser:
         dest="formats",
         action="append",
         default=[],
-        choices=("csv", "npz", "mat", "uff", "rpc", "h5"),
+        choices=WRITTEN,
         help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
         "uff with the places of the car; may be repeated",
     )

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from vehicle.car import Run
 from vehicle.errors import ConfigurationError
-from vehicle.records.formats import read_columns
 from vehicle.records.frf import FrfData, read_frf
 from vehicle.records.measured import estimated_frf
+from vehicle.records.reader import read_columns
 from vehicle.records.table import Record
 
 Responses = Callable[[Sequence[str], float | None], FrfData | None]

@@ -13,9 +13,9 @@ from vehicle.errors import DataError, VehicleError
 from vehicle.excitation.iso_road import Side
 from vehicle.records.channel import uniform_axis
 from vehicle.records.crg_format import read_surface, road_words
-from vehicle.records.formats import FORMATS, read_table
+from vehicle.records.formats import recognised_format
 from vehicle.records.named_columns import named_columns
-from vehicle.records.reader import read_record, recognise
+from vehicle.records.reader import read_record, read_table
 from vehicle.records.table import Header, Vector, Wanted, name_and_unit
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
@@ -110,8 +110,8 @@ def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
         ConfigurationError: there is no such file.
         DataError: bad data; the message names the place.
     """
-    name = recognise(path)
-    if name == "crg":
+    recognised = recognised_format(path)
+    if recognised.name == "crg":
         return _surface_road(path, track, patch)
     source = ""
     notices: tuple[str, ...] = ()
@@ -122,7 +122,7 @@ def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
         try:
             found, notices = _named_tracks(path)
         except VehicleError:
-            if name not in FORMATS:
+            if not recognised.table:
                 raise
             raise error from None
         source = str(path)

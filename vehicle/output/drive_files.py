@@ -10,7 +10,7 @@ import numpy as np
 from vehicle.excitation.signal_file import write_signal
 from vehicle.output.folder import write_json, write_text, write_whole
 from vehicle.output.own_files import parameters_text, write_own_files
-from vehicle.records.formats import FORMATS
+from vehicle.records.formats import write_record
 from vehicle.records.table import Record
 from vehicle.rendering.drive_plot import plot_convergence, plot_replication
 from vehicle.replication.driven_car import DrivenCar
@@ -56,7 +56,7 @@ def write_drive(folder: Path, found: Replication, plant: DrivenCar) -> dict[str,
     for name, wanted, answered in zip(target.channels, target.values, found.response, strict=True):
         channels |= {f"target_{name}": wanted, name: answered}
     record = Record(time=target.time, channels=channels, units=dict.fromkeys(channels, "m/s2"))
-    write_whole(folder / FILES["response"], lambda path: FORMATS["csv"].write(path, record, about))
+    write_whole(folder / FILES["response"], lambda path: write_record(path, "csv", record, about))
     write_text(folder / FILES["iterations"], _table(found, target.channels, about))
     write_whole(
         folder / FILES["response_plot"],

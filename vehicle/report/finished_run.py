@@ -16,8 +16,8 @@ from vehicle.analysis.motion_response import MotionResponse
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.parameters.vehicle import load_vehicle
-from vehicle.records.formats import read_columns
 from vehicle.records.frf import read_frf
+from vehicle.records.reader import read_columns
 from vehicle.simulation.recording import Recording, Statistics
 
 
