@@ -221,12 +221,12 @@ class Shot:
             speed += f" (faster than {highest:g} Hz averages out)"
         road, exaggerated = [], "motion"
         if self.road is not None:
-            road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long; tyres "]
-            road[0] += "roll" if run.car.model.vehicle.driving.rolling else "stand"
+            road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
             exaggerated = "motion and road"
         return [
             f"{Path(run.signal.source).name}: {level} under the {wheel_words(run.wheel, self.wheels)}",
-            f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
+            f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}; "
+            f"tyres {run.car.model.vehicle.driving.words}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
         ]
