@@ -172,6 +172,7 @@ class Findings:
         data: further numbers for `results.json`, under their own keys.
         values: lines for the console, as fitted values.
         own_data: whether they are about data of the user, of which nothing is published: the rows say what was found.
+        tyres: what the tyres of its cars do, see `tyre_words`.
     """
 
     title: str
@@ -181,6 +182,7 @@ class Findings:
     data: Mapping[str, Any] = field(default_factory=dict)
     values: Sequence[str] = ()
     own_data: bool = False
+    tyres: str = ""
 
     def write(self, folder: Path) -> str:
         """Write `results.md` and `results.json`, without the rows that are not judged; returns the line to print."""
@@ -191,15 +193,17 @@ class Findings:
             rows = [{"name": r["name"], "found": r["ours"], "within": r["within"], "why": r["why"]} for r in rows]
             counts, legend = f"{sum(row['within'] for row in rows)} of {len(rows)} checks hold", []
             table = markdown(OWN_COLUMNS, [[_cell(name, row[name]) for name in OWN_COLUMNS] for row in rows])
-        notes = [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
+        notes = [f"Tyres: {self.tyres}."] if self.tyres else []
+        notes += [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
         write_text(
             folder / "results.md",
             "\n\n".join([f"# {self.title}", f"{counts}.", *legend, table, *notes]) + "\n",
         )
         open_rows = {} if self.unjudged is None else {"not_judged": dict(left)}
-        content = {"title": self.title, "rows": rows, "notes": notes, **open_rows, **self.data}
+        content = {"title": self.title, "rows": rows, "notes": notes, "tyre": self.tyres, **open_rows, **self.data}
         write_text(folder / "results.json", json.dumps(_plain(content), indent=1, allow_nan=False) + "\n")
-        return f"{counts}{f', {len(left)} not judged' if left else ''}; see results.md"
+        tyres = f"; tyres {self.tyres}" if self.tyres else ""
+        return f"{counts}{f', {len(left)} not judged' if left else ''}{tyres}; see results.md"
 
 
 def _between(interval: Interval) -> str:

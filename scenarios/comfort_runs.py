@@ -166,6 +166,15 @@ class ComfortRuns:
         """Number of runs so far."""
         return len(self._done)
 
+    @property
+    def tyres(self) -> str:
+        """What the tyres of the car do."""
+        return self.runs.car().vehicle.driving.words
+
+    def text(self) -> str:
+        """Records, tyres and engine, for captions."""
+        return f"{self.records.text()}, tyres {self.tyres}, engine {self.engine}"
+
     def cars(self, variation: Variation, base: Changes = ()) -> dict[float, Changes]:
         """Cars of a variation by its values; `base` are changes that all have."""
         vehicle = self.runs.car().vehicle

@@ -46,6 +46,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Moment of inertia Ixx of the body (source 1, sections 3.2.1 and 3.4)",
         claims=[*mode_claims(cars), *seen],
+        tyres=runs.car().vehicle.driving.words,
         unjudged={claim.name: TOO_SHORT for claim in seen} if options.quick else {},
         notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, found[0], options.quick)],
         data={

@@ -45,6 +45,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Low, mid and high level (source 1, sections 3.2.1 and 3.3)",
         claims=claims,
+        tyres=runs.car().vehicle.driving.words,
         unjudged={one.name: TOO_SHORT for one in claims if one.name not in sure} if options.quick else {},
         notes=[slip_table(values, slip_velocity), sets_text(), *setting(runs, found[0], options.quick)],
         data={"levels": {level: asdict(value) for level, value in values.items()}, "slip_velocity": slip_velocity},

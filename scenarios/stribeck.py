@@ -69,6 +69,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Coulomb and Stribeck friction over the 7.5 mm bump (source 1, section 3.4)",
         claims=peak_claims(found, phases),
+        tyres=runs.car().vehicle.driving.words,
         notes=[peak_table(phases, record.start), *setting(runs, found["Coulomb"], options.quick)],
         data={"phases": {name: [asdict(phase) for phase in one] for name, one in phases.items()}},
     )

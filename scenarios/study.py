@@ -41,6 +41,9 @@ STUDIES = {
 }
 """Name of a study, `python -m scenarios.NAME`, and what it does."""
 
+VERTICAL_TYRES = "vertical springs, the same rolling and standing"
+"""What the tyres of models of few masses do."""
+
 QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
 
 Subject = TypeVar("Subject")
@@ -146,9 +149,10 @@ def _car_runs(options: argparse.Namespace) -> CarRuns:
 
 
 def computed_by(run: Run) -> str:
-    """Engine and step of a run, for captions and notes."""
+    """Tyres, engine and step of a run, for captions and notes."""
     statistics = run.recording.statistics
-    return f"engine {statistics.engine}, step {1e3 * statistics.timestep:g} ms"
+    tyres = f"tyres {run.car.vehicle.driving.words}"
+    return f"{tyres}, engine {statistics.engine}, step {1e3 * statistics.timestep:g} ms"
 
 
 def estimator_text(response: FrequencyResponse) -> str:

@@ -45,6 +45,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Comfort against all parameters of the suspension and the stiffness of the body (beyond source 1)",
         claims=tornado_claims(bars),
+        tyres=comfort.tyres,
         notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
         data={
             "bars": [asdict(bar) for bar in bars],
@@ -206,7 +207,7 @@ def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
     caption = (
         f"Change of the comfort value (RMS of the seat rail, x, y and z, unweighted, {COMFORT_BAND[0]:g} to "
         f"{COMFORT_BAND[1]:g} Hz) against the nominal car on the same records. Roads of {levels} under the right front "
-        f"wheel, {comfort.records.text()}, engine {comfort.engine}. Whiskers: two standard errors of the ratio over "
+        f"wheel, {comfort.text()}. Whiskers: two standard errors of the ratio over "
         "the records. Numbers: values of the parameter, -20 and +20 % of the nominal one but for mount damping (from "
         "its nominal 0) and body stiffness (frequencies with its square root). Order: largest swing on either road"
     )

@@ -71,6 +71,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title=f"Bumps of 1.5 and 7.5 mm, {options.reading} reading (source 1, section 3.2.2)",
         claims=[*rows, *ringing],
+        tyres=runs.car().vehicle.driving.words,
         unjudged={claim.name: too_short for claim in ringing} if options.quick else {},
         notes=[
             slip_table(bumps),

@@ -95,6 +95,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Comfort on a smooth and a rough road (source 1, chapter 4)",
         claims=claims,
+        tyres=comfort.tyres,
         unjudged={one.name: QUICK_WHY for one in claims if one.name != SURE} if options.quick else {},
         notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
         data=data,

@@ -69,7 +69,7 @@ def draw_variation(
     caption = (
         f"Roads of {_levels()}, under the right front wheel. Histories and {spectra}, engine {engine}. "
         f"Comfort: RMS of the seat rail, x, y and z, unweighted, {COMFORT_BAND[0]:g} to {COMFORT_BAND[1]:g} Hz, "
-        f"relative to the reference on the same records; mean of {comfort.records.text()}, engine {comfort.engine}; "
+        f"relative to the reference on the same records; mean of {comfort.text()}; "
         f"bars: two standard errors over the records"
     )
     with figure_file(path, (10.4, 10.4), heading, caption, placed=True) as figure:
@@ -109,7 +109,7 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
     slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
     caption = (
         f"Share of the time with the right damper above {1e3 * slip_velocity:g} mm/s (full) and above 1 mm/s (dotted), "
-        f"nominal car, {comfort.records.text()}, engine {comfort.engine}; bars: two standard errors over the records; "
+        f"nominal car, {comfort.text()}; bars: two standard errors over the records; "
         "dashed: published"
     )
     with figure_file(

@@ -43,7 +43,7 @@ from scenarios.damper_choice.runs import (
     road_holding,
     trade_off,
 )
-from scenarios.study import lumped_study
+from scenarios.study import VERTICAL_TYRES, lumped_study
 from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
 from vehicle.parameters.toml_file import as_table
 from vehicle.parameters.vehicle import load_vehicle
@@ -94,7 +94,14 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
     if options.refit:
         data["refit"] = _refit(parameters)
         notes.append(_refit_note(data["refit"]))
-    return Findings(title="Choice of dampers for road holding", claims=claims, unjudged=None, notes=notes, data=data)
+    return Findings(
+        title="Choice of dampers for road holding",
+        claims=claims,
+        tyres=VERTICAL_TYRES,
+        unjudged=None,
+        notes=notes,
+        data=data,
+    )
 
 
 def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:

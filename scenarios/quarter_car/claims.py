@@ -9,6 +9,7 @@ import numpy as np
 from scenarios.claims import DUPLICATE, INFERRED, PREDICTED, TABLE, Claim, Findings
 from scenarios.quarter_car.in_mujoco import in_mujoco_claims
 from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, NO_FRICTION, SEED, Array, Runs, peak, rms
+from scenarios.study import VERTICAL_TYRES
 from vehicle.linear.natural_modes import natural_modes
 from vehicle.linear.response import frequency_response
 from vehicle.lumped.history import History
@@ -34,7 +35,9 @@ def findings(runs: Runs) -> Findings:
         f"{FIRST[0]:g} to {FIRST[1]:g} Hz and {SECOND[0]:g} to {SECOND[1]:g} Hz.",
     ]
     title = "Quarter-car family (source 1, chapter 2 and appendices A to D)"
-    return Findings(title=title, claims=claims, unjudged=None, notes=notes, data={"quick": runs.quick})
+    return Findings(
+        title=title, claims=claims, tyres=VERTICAL_TYRES, unjudged=None, notes=notes, data={"quick": runs.quick}
+    )
 
 
 def _modes(runs: Runs) -> list[Claim]:

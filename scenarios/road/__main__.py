@@ -82,6 +82,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="A car on four wheels on the road: class, speed, friction, occupant (beyond source 1)",
         claims=claims,
+        tyres=rides.tyres(),
         unjudged={one.name: QUICK_WHY for one in claims} if quick else {},
         notes=[*notes, f"{rides.computed} runs in {seconds:.0f} s.", *([QUICK_NOTE] if quick else [])],
         data={

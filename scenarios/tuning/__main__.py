@@ -154,6 +154,7 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     return Findings(
         title="Parameters fitted to FRFs and bump records (source 1, section 3.2, automatic)",
         claims=demonstration_claims(final, alone, true),
+        tyres=tuning.vehicle.driving.words,
         unjudged={"bump records alone, and the authors' own order": "left out with --quick"} if quick else {},
         notes=notes,
         data=data,
@@ -182,6 +183,7 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
     return Findings(
         title=f"Parameters fitted to {', '.join(files)}",
         claims=own_claims(result, final),
+        tyres=tuning.vehicle.driving.words,
         notes=[*fit_notes("The fit", result, final), *(["The files:\n\n" + "\n".join(notices)] if notices else [])],
         data={"all": fit_numbers(result)},
         values=value_lines(result, tuning.vehicle),

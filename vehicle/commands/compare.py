@@ -332,11 +332,13 @@ def _modes(
     from vehicle.comparison.pictures import plot_mac
     from vehicle.output.folder import output_folder, write_json, write_whole
 
-    found = compare_modes(_car(options), measurement, dict(choice.channels), options.damper)
+    car = _car(options)
+    found, tyres = compare_modes(car, measurement, dict(choice.channels), options.damper), car.vehicle.driving.words
     name = measurement.path.name
     summary = found.summary(name)
     caption = (
-        f"{name} at {len(found.points)} points of the car, dampers {options.damper}; rows and columns by frequency"
+        f"{name} at {len(found.points)} points of the car, dampers {options.damper}, tyres {tyres}; rows and columns "
+        "by frequency"
     )
     rows, columns = ([one.frequency for one in those] for those in (found.measured, found.simulated))
     tables = (

@@ -139,6 +139,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.optimisation.search import pymoo
     from vehicle.optimisation.search_files import agreement, read_beside, write_search
     from vehicle.optimisation.trials import on_executor
+    from vehicle.sweeps.case import all_tyre_words, table_cases
     from vehicle.sweeps.executors import executor_factory
 
     for name, least in (("cars", 8), ("population", 8), ("search_seed", 0)):
@@ -171,11 +172,13 @@ def _job(options: argparse.Namespace) -> None:
         reached = new_cars(trials, found, options.search_seed) if trials.spread.quantile > 0.0 else None
         checked = compared(trials, found) if options.check else None
     notices = left_validity(trials, cars)
+    asked = table_cases([], [()], trials.inputs, vehicle=trials.vehicle, fixed=trials.fixed)
+    tyres = all_tyre_words(asked)
     write_search(
         folder,
         found,
         cars,
-        caption=_caption(options, trials, vehicle, len(found.tried.reasons)) + f"; evaluated from {skip:g} s on",
+        caption=f"{_caption(options, trials, vehicle, len(found.tried.reasons), tyres)}; evaluated from {skip:g} s on",
         nominal=nominal,
         beside=beside,
         summary={
@@ -183,6 +186,7 @@ def _job(options: argparse.Namespace) -> None:
             "vehicle": vehicle.name,
             "inputs": {source.name: source.identity() for source in trials.inputs},
             "engine": options.engine,
+            "tyre": tyres,
             "evaluated_from_s": skip,
             "notices": notices,
             "mujoco": checked,
@@ -193,6 +197,7 @@ def _job(options: argparse.Namespace) -> None:
     )
     if not options.quiet:
         _tell(folder, found, trials, vehicle, checked, reached)
+        print(f"tyres {tyres}; engine {options.engine}; evaluated from {skip:g} s on")
         if beside is not None:
             far = agreement(found, beside)
             print(
@@ -266,16 +271,13 @@ def _quantile_and_samples(options: argparse.Namespace) -> tuple[float, int]:
     return quantile, options.samples
 
 
-def _caption(options: argparse.Namespace, trials: Trials, vehicle: Vehicle, cars: int) -> str:
+def _caption(options: argparse.Namespace, trials: Trials, vehicle: Vehicle, cars: int, tyres: str) -> str:
     """What the picture says below it."""
-    from vehicle.sweeps.case import overrides_of
-
     limits = ", ".join(wish.words for wish in trials.problem.limits)
-    tyres = ", rolling tyres" if any(map(overrides_of, trials.inputs)) else ""
     count = len(trials.spread.bands)
     return (
-        f"{vehicle.name} on {', '.join(trials.problem.inputs)}{tyres}; engine {options.engine}, {cars} cars, seed "
-        f"{options.search_seed}"
+        f"{vehicle.name} on {', '.join(trials.problem.inputs)}; tyres {tyres}; engine {options.engine}, {cars} cars, "
+        f"seed {options.search_seed}"
         + (f"; limits {limits}" if limits else "")
         + (f"; {trials.spread.words} within the tolerances" if count > 1 else "")
     )

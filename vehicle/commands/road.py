@@ -136,7 +136,7 @@ def _driving(options: argparse.Namespace, vehicle: Vehicle) -> float | None:
     from vehicle.parameters.elements import Tyre
 
     asked, overrides = getattr(options, "tyre", None), getattr(options, "overrides", None) or ()
-    if any(text.partition("=")[0].strip().startswith("driving.speed") for text in overrides):
+    if any(text.partition("=")[0].strip() in ("driving.speed", "speed") for text in overrides):
         if asked is not None:
             raise ConfigurationError(f"--tyre {asked} beside --set driving.speed: give one of them")
         return None

@@ -61,7 +61,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.parameters.vehicle import load_vehicle
     from vehicle.parameters.whole_body import body_rules
-    from vehicle.sweeps.case import table_cases
+    from vehicle.sweeps.case import all_tyre_words, table_cases
     from vehicle.sweeps.differences import DIFFERENCES
     from vehicle.sweeps.executors import executor_factory
     from vehicle.sweeps.measure import ComfortMeasure
@@ -96,8 +96,8 @@ def _job(options: argparse.Namespace) -> None:
     if not options.quiet:
         differences = f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
         print(
-            f"{folder}: {len(cases)} runs, {len(table.failed)} failed, evaluated from {skip:g} s on; table.csv, "
-            f"{differences}sweep.json, rows.jsonl, timing.csv"
+            f"{folder}: {len(cases)} runs, {len(table.failed)} failed, tyres {all_tyre_words(cases)}, evaluated from "
+            f"{skip:g} s on; table.csv, {differences}sweep.json, rows.jsonl, timing.csv"
         )
         print("comfort_*: unweighted RMS of the seat rail, 2 to 50 Hz; *_weighted_*: weighted RMS (ISO 2631-1)")
         for case, reason in table.failed[:5]:

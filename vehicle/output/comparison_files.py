@@ -30,7 +30,7 @@ def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
     write_text(folder / "compare.csv", comparison.csv())
     write_json(folder / "compare.json", comparison.summary())
     files = {"compare": "compare.json", "compare_table": "compare.csv"}
-    caption = f"measured: {comparison.measured}; simulated: {comparison.simulated}"
+    caption = f"measured: {comparison.measured}; simulated: {comparison.run}"
     pictures: dict[str, Callable[[Path], None]] = {}
     for place in dict.fromkeys(_place(one.channel) for one in comparison.responses):
         own = [one for one in comparison.responses if _place(one.channel) == place]

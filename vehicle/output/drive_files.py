@@ -47,7 +47,8 @@ def write_drive(folder: Path, found: Replication, plant: DrivenCar) -> dict[str,
     last = found.steps[-1]
     errors = dict(zip(target.channels, min(found.steps, key=lambda step: step.error).errors.tolist(), strict=True))
     about = (
-        f"{target.source.name}, {low:g} to {high:g} Hz; {run.recording.statistics.engine} engine; error "
+        f"{target.source.name}, {low:g} to {high:g} Hz; tyres {run.car.vehicle.driving.words}; "
+        f"{run.recording.statistics.engine} engine; error "
         f"{100.0 * found.error:.3g} % after {last.number} runs"
     )
     said = [f"plate displacement found from {target.source.name}", f"{low:g} to {high:g} Hz"]

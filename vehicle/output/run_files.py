@@ -338,5 +338,6 @@ def _caption(run: Run, response: FrequencyResponse) -> str:
     levels = ", ".join(f"{1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}" for wheel in moving)
     return (
         f"{Path(run.signal.source).name}, RMS {levels}, {run.signal.duration:g} s; estimator: {response.estimator}, "
-        f"resolution {response.resolution_hz:.2g} Hz; engine: {run.recording.statistics.engine}"
+        f"resolution {response.resolution_hz:.2g} Hz; tyres {run.car.vehicle.driving.words}; engine: "
+        f"{run.recording.statistics.engine}"
     )

@@ -145,7 +145,8 @@ def plot_time(path: Path, run: RecordedRun) -> None:
     inside = (time >= start) & (time <= end)
     caption = (
         f"{Path(run.signal.source).name}, {level_words(recording, wheel, run.signal.rms(wheel))} at wheel {wheel}; "
-        f"dashed: slip velocity ±{1e3 * slip:g} mm/s, red: {side} damper in slip"
+        f"tyres {run.car.model.vehicle.driving.words}; dashed: slip velocity ±{1e3 * slip:g} mm/s, "
+        f"red: {side} damper in slip"
     )
     with saved_figure(path, (15.0, 9.2), "Main time histories", caption, placed=True) as figure:
         rows = len(panels) * (1.0,)
