@@ -61,7 +61,9 @@ def main() -> None:
             ]
             rows = []
             for channel in few[0]:
-                parts = [0.5 * (run[0][channel] + sign * run[1][channel]) for sign in (-1.0, 1.0) for run in (few, whole)]
+                parts = [
+                    0.5 * (run[0][channel] + sign * run[1][channel]) for sign in (-1.0, 1.0) for run in (few, whole)
+                ]
                 pairs = [
                     (static[channel], own[channel]),
                     (few[0][channel], own[channel]),
@@ -70,7 +72,8 @@ def main() -> None:
                 ]
                 size = float(np.std(whole[0][channel]))
                 values = [
-                    (float(np.std(one - other)) / size, float(np.std(one) / np.std(other)) - 1.0) for one, other in pairs
+                    (float(np.std(one - other)) / size, float(np.std(one) / np.std(other)) - 1.0)
+                    for one, other in pairs
                 ]
                 rows.append((abs(values[0][1]), channel, values, float(np.std(parts[2] - parts[3])) / size))
             print(f"\n{name} on {road}, step {own_step(car):g} s: difference % (RMS %)")

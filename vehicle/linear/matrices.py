@@ -69,8 +69,8 @@ class CarMatrices:
         one_sided: wheels whose tyres do not pull.
         spinning: bodies that turn with a rolling wheel: their angle is of no importance, and not known.
         carried_by: body that each body is fixed to, itself where it can move on its parent.
-        slope: forces of the velocities of the plates that a rolling tyre's static load makes on the slope of the road, a
-            part of the inputs of `system`; (n, w), (n, 0) for tyres that stand.
+        slope: forces on the coordinates per velocity of a plate, by the static load of a rolling tyre on the slope of
+            the road, a part of the inputs of `system`; (n, w), (n, 0) for tyres that stand.
         modal: velocity coordinates of the flexible modes.
     """
 

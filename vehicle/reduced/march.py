@@ -146,8 +146,8 @@ def march(
     Args:
         count: e.
         pair_factors: real and imaginary rows for the pairs: decay, damper velocities (e), inputs in the order two
-            forces, first plate, further forces, further plates, tyres on slopes; (2 (1 + e + e + m + r), p). One table, so
-            that the compiler sees that no row overlaps the state.
+            forces, first plate, further forces, further plates, tyres on slopes; (2 (1 + e + e + m + r), p). One table,
+            so that the compiler sees that no row overlaps the state.
         real_factors: the same rows for the real poles, real parts; (1 + e + e + m + r, q).
         slip_plate: what the plates add to the damper velocities, (e, m).
         gain: G of the damper forces of a step, (e, e).

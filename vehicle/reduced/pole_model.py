@@ -57,8 +57,8 @@ class PoleModel:
         slip: rows of the damper velocities, real part taken; (w, p).
         modal: displacements u = Re(modal xi) of the velocity coordinates of MuJoCo; (n, p).
         branch: forces f_b = Re(branch xi) of the Maxwell branches; (b, p).
-        slope: effect of the velocity of each plate by the static load on the slope, which b_c contains; (p, w), (p, 0) for
-            tyres that stand.
+        slope: effect of the velocity of each plate by the static load on the slope, which b_c contains; (p, w), (p, 0)
+            for tyres that stand.
         matrices: what the model was made from.
     """
 

@@ -1,7 +1,7 @@
 """Present wheel loads on the slope of a road: a force of each rolling tyre, known when a step begins.
 
-A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.simulation.rolling`). The poles contain the share of
-the static load F_0, as a force b z' of the velocity of the plate. What the present load adds is
+A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.simulation.rolling`). The poles contain the share
+of the static load F_0, as a force b z' of the velocity of the plate. The present load adds
 
     b (max(0, F_z) / F_0 - 1) z',
 
@@ -60,7 +60,7 @@ def slope_of(
     readout = Readout(tyre_outputs(model), factors, model.pairs, columns)
     idle = ((0, len(chosen) % 2), (0, 0))
     rows = [np.pad(one[chosen] / static, idle) for one in (readout.rows, readout.by_plate, readout.by_step)]
-    return Slope(*rows, past=np.zeros(len(rows[0]))), np.pad(factors.slope[:, chosen], idle[::-1])
+    return Slope(rows[0], rows[1], rows[2], np.zeros(len(rows[0]))), np.pad(factors.slope[:, chosen], idle[::-1])
 
 
 @jitable
