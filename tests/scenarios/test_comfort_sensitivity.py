@@ -186,11 +186,11 @@ def test_levels_are_windows_of_every_record_and_the_rough_road_is_that_of_figure
     assert np.median(levels["smooth"].seat_rail) < np.median(levels["rough"].seat_rail)
     assert [claim.status for claim in level_claims(levels)] == ["fitted", "fitted", "predicted"]
     published = {
-        road: RoadLevels(seat_rail=np.linspace(0.3, 5.0, 50), swing=np.linspace(2.4, 7.0, 50) * rms)
-        for road, rms in ROAD_RMS.items()
+        road: RoadLevels(seat_rail=np.linspace(*ends, 50), swing=np.linspace(2.4, 7.0, 50) * ROAD_RMS[road])
+        for road, ends in {"smooth": (0.4, 1.2), "rough": (2.0, 5.0)}.items()
     }
     assert all(claim.within for claim in level_claims(published))
-    louder = {road: RoadLevels(seat_rail=2.0 + one.seat_rail, swing=0.1 * one.swing) for road, one in published.items()}
+    louder = {road: RoadLevels(seat_rail=4.0 + one.seat_rail, swing=0.1 * one.swing) for road, one in published.items()}
     assert not any(claim.within for claim in level_claims(louder)[::2])
 
 

@@ -16,7 +16,8 @@ from scenarios.published import definition_lines
 def row(name, within=True, **changes):
     return {
         "name": name, "published": 1.0, "ours": 1.02, "deviation": 0.02, "within": within, "why": "5 %",
-        "status": "predicted", "source": "text", "interval": None, **changes,
+        "status": "predicted", "source": "text", "interval": None,
+        "place": "figure 3.3", "picture": "", "probability": None, **changes,
     }  # fmt: skip
 
 
@@ -79,10 +80,10 @@ def test_every_row_of_every_scenario_is_in_the_table(scenarios, tmp_path, capsys
     ]
     assert all(set(row) == KEYS for row in rows)
     text = (tmp_path / "table" / "results.md").read_text(encoding="utf-8")
-    counts = "1 of 2 predicted rows agree; beside them 0 fitted (0 agree), 0 chosen (0 agree), 1 own check (1 agree),"
+    counts = "1 of 2 predicted rows agree; in addition 1 own check (1 agree)"
     assert counts in text and counts in capsys.readouterr().out
-    assert "| vertical wheel mode, low [Hz] | 1 | 1.02 | +2.0 % | NO | predicted | text |  | 5 % |" in text
-    assert "| stick modes [Hz] | 4.8 \\| 25 | 4.8, 25.1 |  | yes | own check | text |  | 5 % |" in text
+    assert "| vertical wheel mode, low [Hz] | figure 3.3 | 1 | 1.02 | +2.0 % | NO | predicted | text | 5 % |" in text
+    assert "| stick modes [Hz] | figure 3.3 | 4.8 \\| 25 | 4.8, 25.1 |  | yes | own check | text | 5 % |" in text
     assert "made by quarter_car" in text and "Made with `--quick`" in text
 
 
