@@ -78,7 +78,7 @@ def _index(rows: Sequence[Row]) -> Iterator[str]:
         links = []
         for _, place, found in _places(source, rows):
             wrong = sum(row["within"] is False for row in found)
-            links.append(f"[{place.text}](#{_anchor(source, place)})" + (f" ({wrong} NO)" if wrong else ""))
+            links.append(f"[{_heading(place)}](#{_anchor(source, place)})" + (f" ({wrong} NO)" if wrong else ""))
         if links:
             yield f"**{_upper(source.short)}:** {', '.join(links)}.\n"
 
@@ -93,7 +93,7 @@ def _disagreements(rows: Sequence[Row]) -> Iterator[str]:
     table = []
     for row in wrong:
         source, place = source_of(study_of(row)), place_of(row["place"])
-        link = f"[{_upper(source.short)}: {_lower(place.text) or 'own'}](#{_anchor(source, place)})"
+        link = f"[{_upper(source.short)}: {_lower(_heading(place))}](#{_anchor(source, place)})"
         table.append((link, *_cells(row, ("name", "published", "ours", "status", "why"))))
     yield markdown(("where", "statement", "published", "ours", "status", "why"), table) + "\n"
 
@@ -109,10 +109,10 @@ def _source(source: Source, rows: Sequence[Row], figures: str, pictures: frozens
             yield f"### {section.number} {section.title}\n"
         before = section
         yield f'<a id="{_anchor(source, place)}"></a>\n'
-        yield f"#### {place.text or 'Elsewhere'}\n"
+        yield f"#### {_heading(place)}\n"
         yield f"{', '.join(f'`{name}`' for name in dict.fromkeys(study_of(row) for row in found))}\n"
         for picture in dict.fromkeys(row["picture"] for row in found if row["picture"] in pictures):
-            yield f"![{place.text}]({figures}/{picture})\n"
+            yield f"![{_heading(place)}]({figures}/{picture})\n"
         yield markdown(
             ROW_COLUMNS, [_cells(row, ("name", "published", "ours", "within", "status", "why")) for row in found]
         )
@@ -140,8 +140,13 @@ def _cells(row: Row, names: Sequence[str]) -> list[str]:
     return [" ".join(text.split()).replace("|", "\\|") for text in texts]
 
 
+def _heading(place: Place) -> str:
+    """What no figure, table or section holds is mostly a check of our own."""
+    return place.text or "Elsewhere"
+
+
 def _anchor(source: Source, place: Place) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", f"{source.key} {place.text or 'elsewhere'}".lower()).strip("-")
+    return re.sub(r"[^a-z0-9]+", "-", f"{source.key} {_heading(place)}".lower()).strip("-")
 
 
 def _upper(text: str) -> str:
