@@ -13,6 +13,7 @@ from scenarios.bump.runs import SHOWN_S, SIZES, Record, damper_velocity, relativ
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import changes
 from vehicle.car import SATURATED_VELOCITY, Car
+from vehicle.excitation.band import SHAKER_EDGE_HZ
 from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, Reading, bump
 from vehicle.excitation.signal import Signal
 from vehicle.names import AXES
@@ -32,7 +33,10 @@ EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "tyre z -20 %": ("bushings.tyre.stiffness.z=200000.0",),
     "D +33 %": ("damper.viscous=3000",),
 }
-"""What is changed to find the reason of a row that disagrees; beside it the other reading, and no noise."""
+"""What is changed to find the reason of a row that disagrees; beside it the other reading, no noise, another band."""
+
+LOW_EDGE_HZ = 1.5
+"""Lower edge of the noise where it is another one: the level is printed, the band is not."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -87,7 +91,7 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
     cars = {limit: runs.car(changes(nominal.vehicle, "damper.coulomb_friction", limit)) for limit in frictions}
     for seed in range(count):
         for size in SIZES:
-            signal = _signal(size, reading, seed)
+            signal = _signal(nominal, size, reading, seed)
             found = motions(nominal, signal, engine)
             fastest[size].append(float(np.max(np.abs(found["velocity"]))))
             for point, values in found.items():
@@ -114,17 +118,18 @@ def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeed
         seeds: names the points, and the engine.
     """
     changed = {label: runs.car(changes) for label, changes in EXPERIMENTS.items()}
-    trials: dict[str, tuple[Car, Reading, float]] = {
-        f"{other} reading": (runs.car(), other, NOISE_RMS),
-        "no noise": (runs.car(), reading, 0.0),
-        **{label: (car, reading, NOISE_RMS) for label, car in changed.items()},
+    trials: dict[str, tuple[Car, Reading, float, float]] = {
+        f"{other} reading": (runs.car(), other, NOISE_RMS, SHAKER_EDGE_HZ),
+        "no noise": (runs.car(), reading, 0.0, SHAKER_EDGE_HZ),
+        f"noise from {LOW_EDGE_HZ:g} Hz on": (runs.car(), reading, NOISE_RMS, LOW_EDGE_HZ),
+        **{label: (car, reading, NOISE_RMS, SHAKER_EDGE_HZ) for label, car in changed.items()},
     }
     found: dict[str, Mapping[str, float]] = {}
-    for label, (car, kind, noise) in trials.items():
+    for label, (car, kind, noise, edge) in trials.items():
         values: dict[str, list[float]] = {}
         for size in SIZES:
             for seed in range(seeds.count if noise else 1):
-                for point, motion in motions(car, _signal(size, kind, seed, noise), seeds.engine).items():
+                for point, motion in motions(car, _signal(car, size, kind, seed, noise, edge), seeds.engine).items():
                     values.setdefault(row_key(size, point, "lowest"), []).append(float(np.min(motion)))
                     values.setdefault(row_key(size, point, "highest"), []).append(float(np.max(motion)))
         found[label] = {key: float(np.mean(one)) for key, one in values.items()}
@@ -167,5 +172,16 @@ def motions(car: Car, signal: Signal, engine: str) -> dict[str, Vector]:
     return {**found, "relative": relative_acceleration(run)[shown], "velocity": damper_velocity(run)[shown]}
 
 
-def _signal(size: float, reading: Reading, seed: int, noise: float = NOISE_RMS) -> Signal:
-    return bump(amplitude=size, reading=reading, duration=RECORD.noisy, start=RECORD.start, noise_rms=noise, seed=seed)
+def _signal(
+    car: Car, size: float, reading: Reading, seed: int, noise: float = NOISE_RMS, edge: float = SHAKER_EDGE_HZ
+) -> Signal:
+    return bump(
+        amplitude=size,
+        reading=reading,
+        duration=RECORD.noisy,
+        start=RECORD.start,
+        noise_rms=noise,
+        noise_edge=edge,
+        seed=seed,
+        wheel=car.vehicle.shaker_wheel,
+    )

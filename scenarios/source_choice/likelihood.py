@@ -89,7 +89,16 @@ def _readers() -> Iterator[tuple[str, Reader]]:
         lambda r, c, _: r.fastest[c.noise, :, _bump("1p5", c)] / SLIP_VELOCITIES[c.velocity],
     )
     for size in ("7p5", "1p5"):
-        for point in ("seat_rail_x", "seat_rail_y", "seat_rail_z", "seat_z", "knuckle_z", "relative", "engine_z", "roof_z"):
+        for point in (
+            "seat_rail_x",
+            "seat_rail_y",
+            "seat_rail_z",
+            "seat_z",
+            "knuckle_z",
+            "relative",
+            "engine_z",
+            "roof_z",
+        ):
             for end, word in enumerate(("lowest", "highest")):
                 yield (
                     f"bump_{size}_{point}_{word}",
