@@ -29,6 +29,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     car = instances(table, (folder, folder / "templates"))
     own, given = (
         [
+            "shaker_wheel",
             "solver.timestep",
             *(f"driving.{key}" for key in _keys(Driving, everything=False)),
             *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),

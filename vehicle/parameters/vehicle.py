@@ -56,9 +56,19 @@ class Head:
     gravity: float = quantity(
         "m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0 leaves the weight out"
     )
+    shaker_wheel: str = quantity(
+        "-",
+        "wheel whose plate a column of displacements without a wheel in its name drives",
+        choices=tuple(CORNERS.values()),
+        default="fr",
+    )
 
     def __post_init__(self) -> None:
         validate(self)
+
+
+HEAD = tuple(Head.__dataclass_fields__)
+"""Keys of a vehicle file that stand above all tables."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,6 +78,7 @@ class Vehicle:
     Attributes:
         table: the vehicle file as used, nested tables; two cars with the same one are equal.
         name, gravity: as there; [m/s2].
+        shaker_wheel: wheel that a shaker drives where nothing else is said, as "fr".
         body: trimmed body.
         solver: numerics.
         driving: whether its wheels roll.
@@ -77,6 +88,7 @@ class Vehicle:
     table: Mapping[str, Any]
     name: str = field(compare=False)
     gravity: float = field(compare=False)
+    shaker_wheel: str = field(compare=False)
     body: TrimmedBody = field(compare=False)
     solver: Solver = field(compare=False)
     driving: Driving = field(compare=False)
@@ -219,7 +231,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
         if key not in table:
             raise ConfigurationError(f"{key}: missing; every vehicle file has it")
     table = with_curve_files(table, folder or Path())
-    head = build(Head, {key: table[key] for key in ("name", "gravity")})
+    head = build(Head, {key: table[key] for key in HEAD if key in table})
     require_inertia_table(convert(dict, table["body"], "body"))
     body = build(TrimmedBody, table["body"], "body")
     solver = build(Solver, convert(dict, table["solver"], "solver"), "solver")
@@ -228,11 +240,14 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
         table=table,
         name=head.name,
         gravity=head.gravity,
+        shaker_wheel=head.shaker_wheel,
         body=body,
         solver=solver,
         driving=driving_of(table),
         composition=compose(table, folders),
     )
+    if "shaker_wheel" in table:
+        vehicle.require_wheels((head.shaker_wheel,))
     require_plausible(vehicle)
     require_rolling(vehicle)
     return vehicle
