@@ -64,8 +64,7 @@ QUOTES: dict[str, Callable[[], list[str]]] = {
     rf"body roll, Ixx 1200[^|]*\| [^|]*\| {N} Hz, {N} % lower": lambda: [
         f"{value:g}" for value in ours("inertia: roll peak*, Ixx 1200 against 1000")
     ],
-    rf"first slip[^|]*\| 5.035 s \| {N} s": lambda: first("bump: *first slip with Fd 125 N*", 3),
-    rf"stick ends \(1 mm/s\) at {N} s": lambda: first("bump: *end of stick with Fd 125 N*", 3),
+    rf"first slip \(end of sticking[^|]*\| 5.035 s \| {N} s": lambda: first("bump: *end of stick* with Fd 125 N*", 3),
 }
 """What README.md says, and the numbers of the table that belong there."""
 
