@@ -34,6 +34,9 @@ PAGE = Path("docs/published-results.md")
 
 QUICK_HOME = Path("runs/published/quick_table")
 
+CHOICE = "source_choice"
+"""Study whose notes are the last section of the page."""
+
 STUDIES = tuple(study for source in SOURCES for study in source.studies)
 
 
@@ -68,11 +71,12 @@ def _job(options: argparse.Namespace) -> None:
         results[name] = study_results(name, options)
         seconds[name] = clock.perf_counter() - began
     rows = collect(results)
-    write_text(folder / "results.json", json.dumps(rows, indent=1, allow_nan=False) + "\n")
+    notes = results.get(CHOICE, {}).get("notes", [])
+    write_text(folder / "results.json", json.dumps({"rows": rows, "choice": notes}, indent=1, allow_nan=False) + "\n")
     copied = copy_pictures(results, options.runs, folder / "figures")
     left_open = [f"{name}: {row}" for name, content in results.items() for row in content.get("not_judged", {})]
     file, link = (PAGE, f"../{HOME}/figures") if folder == HOME else (folder / PAGE.name, "figures")
-    write_text(file, page(rows, link, copied, quick=options.quick, left_open=left_open))
+    write_text(file, page(rows, notes, link, copied, quick=options.quick, left_open=left_open))
     times = ", ".join(f"{name} {value:.0f}" for name, value in seconds.items())
     print(f"{folder}: {headline(rows)}; see {file}; {clock.perf_counter() - started:.0f} s ({times})")
 

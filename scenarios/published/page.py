@@ -46,12 +46,19 @@ ROW_COLUMNS = ("statement", "published", "ours", "agrees", "status", "why")
 
 
 def page(
-    rows: Sequence[Row], figures: str, existing: Iterable[str], *, quick: bool = False, left_open: Sequence[str] = ()
+    rows: Sequence[Row],
+    notes: Sequence[str],
+    figures: str,
+    existing: Iterable[str],
+    *,
+    quick: bool = False,
+    left_open: Sequence[str] = (),
 ) -> str:
     """Return the page as Markdown.
 
     Args:
         rows: of all studies; see `scenarios.published.table`.
+        notes: of the study that chose what the thesis leaves open; may be empty.
         figures: link to the folder of the pictures.
         existing: names of the pictures in that folder; a row without one has no picture.
         quick: True if the rows come from short signals.
@@ -59,6 +66,8 @@ def page(
     """
     pictures = frozenset(existing)
     lines = [TITLE, "", WRITTEN_BY, "", f"**{headline(rows)}.**", "", INTRODUCTION]
+    if notes:
+        lines += ["The candidates of the choice and their likelihoods are in the [last section](#choice).", ""]
     if quick:
         lines += [f"Made with `--quick`: short signals, other numbers, {len(left_open)} rows left open.", ""]
     lines += [markdown(COLUMNS, counts(rows)), ""]
@@ -68,6 +77,8 @@ def page(
     lines += [*_index(rows), *_disagreements(rows)]
     for source in SOURCES:
         lines += _source(source, [row for row in rows if source_of(study_of(row)) is source], figures, pictures)
+    if notes:
+        lines += ['<a id="choice"></a>\n', "## What was chosen, and on what\n", *(f"{note}\n" for note in notes)]
     return "\n".join(lines).rstrip("\n") + "\n"
 
 

@@ -87,7 +87,7 @@ def written(tmp_path):
 def test_every_row_of_every_study_is_in_the_table_and_on_the_page(studies, tmp_path, capsys):
     assert command(tmp_path, "--quick", "--jobs", "2") == 0
     assert studies["levels"] == [["--output", str(tmp_path / "runs" / "levels"), "--force", "--jobs", "2", "--quick"]]
-    rows = json.loads((tmp_path / "table" / "results.json").read_text(encoding="utf-8"))
+    rows = json.loads((tmp_path / "table" / "results.json").read_text(encoding="utf-8"))["rows"]
     assert [row["name"] for row in rows] == [f"{study}: {row['name']}" for study in CONTENT for row in CONTENT[study]]
     assert all(set(row) == KEYS for row in rows)
     text, messages = written(tmp_path), capsys.readouterr()
@@ -183,6 +183,12 @@ def test_finished_studies_are_read_and_missing_ones_run(studies, tmp_path):
     (tmp_path / "runs" / "levels" / "results.json").unlink()
     assert command(tmp_path, "--reuse", "--force") == 0
     assert {name: len(calls) for name, calls in studies.items()} == {"levels": 2, "quarter_car": 1, "half_car_rider": 1}
+
+
+def test_the_notes_of_the_choice_are_the_last_section(studies, tmp_path, monkeypatch):
+    monkeypatch.setattr(published, "CHOICE", "quarter_car")
+    assert command(tmp_path) == 0
+    assert written(tmp_path).endswith("\n## What was chosen, and on what\n\nmade by quarter_car\n")
 
 
 def test_a_picture_that_no_row_names_any_more_is_removed(studies, tmp_path, monkeypatch):
