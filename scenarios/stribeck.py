@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.bump.runs import FULL, QUICK, SIZES, relative_acceleration
+from scenarios.bump.runs import FULL, QUICK, SIZES, damper_velocity, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
@@ -56,7 +56,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     phases = {
         name: slip_phases(
             run.time,
-            run["damper_fr_velocity"],
+            damper_velocity(run),
             relative_acceleration(run),
             saturated=SATURATED_VELOCITY,
             begin=record.start,
@@ -89,7 +89,7 @@ def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64
 
 def force_error(run: Run) -> float:
     """Largest |simulated force - law| over the largest force, where the right damper is faster than 1 mm/s [-]."""
-    velocity, force = run["damper_fr_velocity"], run["damper_fr_force"]
+    velocity, force = damper_velocity(run), run[f"damper_{run.wheel}_force"]
     fast = np.abs(velocity) > SATURATED_VELOCITY
     if not fast.any():
         return 0.0
@@ -208,7 +208,12 @@ def force_figure(path: Path, runs: Mapping[str, Run]) -> None:
         for axis, (name, run), colour in zip(axes, runs.items(), COLOURS, strict=False):
             axis.plot(speeds, law_force(run.car.vehicle.damper, speeds), color="#222222", label="law")
             axis.plot(
-                run["damper_fr_velocity"], run["damper_fr_force"], ".", markersize=3, color=colour, label="simulated"
+                damper_velocity(run),
+                run[f"damper_{run.wheel}_force"],
+                ".",
+                markersize=3,
+                color=colour,
+                label="simulated",
             )
             axis.set(title=name, xlabel="damper velocity [m/s]", xlim=(-0.1, 0.1))
             axis.legend(loc="upper left")

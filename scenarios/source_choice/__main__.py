@@ -154,7 +154,8 @@ def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
         claims=claims,
         unjudged={claim.name: "short records of two seeds cannot choose" for claim in claims} if options.quick else {},
         notes=[
-            f"{'Most likely here' if options.quick else 'Winner'}: {winner.rig.sides()}; {winner.rig.body()}; {_words(winner, plan)}. {len(USED)} rows chose, "
+            f"{'Most likely here' if options.quick else 'Winner'}: {winner.rig.sides()}; {winner.rig.body()}; "
+            f"{_words(winner, plan)}. {len(USED)} rows chose, "
             f"{len(HELD)} are held out, drawn with seed {HALF_SEED}. Log-likelihood: sum over rows of weight times "
             f"ln(m + (1 - m) P), m = {MISREADING:g} for a row that we misread, P the probability of the printed "
             f"interval over {plan.seeds} seeds of each input; a row agrees above {100 * AGREES_ABOVE:g} %. "
