@@ -1,8 +1,8 @@
 """What counts as slip, and how far down the inputs go: one set of numbers that the source does not give.
 
 Source 1 prints neither the velocity that counts as slip nor the lower edge of a band. Slip shares fix pairs (slip
-velocity, shaker edge) and (slip velocity, road edge), each along a line. They are chosen together with sides and body on
-half of what the source says (`scenarios.source_choice`): slip shares, bumps, comfort, levels and modes.
+velocity, shaker edge) and (slip velocity, road edge), each along a line. They are chosen together with sides and body
+on half of what the source says (`scenarios.source_choice`): slip shares, bumps, comfort, levels and modes.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ OTHERS = (
 def sets_text() -> str:
     """The chosen set and the others, one paragraph."""
     return (
-        "Slip velocity, lower edge of the shaker inputs and of the roads are one set, not published and chosen together "
-        f"with sides and body on half of the statements of the source (in brackets its log-likelihood): {CHOSEN.text()}. "
+        "Slip velocity, lower edge of the shaker inputs and of the roads are one set, not published and chosen with "
+        f"sides and body on half of the statements of the source (in brackets its log-likelihood): {CHOSEN.text()}. "
         f"Others: {'; '.join(other.text() for other in OTHERS)}."
     )
