@@ -33,7 +33,7 @@ CHANGES = (("body.inertia.ixx=1000",), ("body.inertia.ixx=1200",))
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the low level with both inertias, draw the FRFs into the folder, and compare."""
-    signal = level_signal("low", quick=options.quick)
+    signal = level_signal("low", runs.wheel, quick=options.quick)
     found = runs([runs.case(signal, change) for change in CHANGES])
     cars = [runs.car(change) for change in CHANGES]
     responses = [run.frf(CHANNELS) for run in found]
@@ -223,7 +223,7 @@ def inertia_figure(
     marks = [(f"roll mode {roll:.2f} Hz", roll, colour) for roll, colour in zip(rolls, colours, strict=True)]
     run, response = next(iter(runs.values())), responses[0]
     caption = (
-        "FRFs of the seat rail to the plate under the right front wheel, low level "
+        f"FRFs of the seat rail to the plate under the {run.car.vehicle.wheel_text(run.wheel)}, low level "
         f"({1e3 * run.signal.rms(run.wheel):.3g} mm RMS), {run.signal.duration:g} s; {estimator_text(response)}; "
         f"{computed_by(run)}. Dashed: roll mode from the matrices, dampers stuck"
     )

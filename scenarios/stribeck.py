@@ -49,7 +49,7 @@ AFTER = BUMP_DURATION_S + 0.2
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the bump with both laws, draw the figures into the folder, and compare."""
     record = QUICK if options.quick else FULL
-    signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start)
+    signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start, wheel=runs.wheel)
     step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.step)!r}"
     cases = [runs.case(signal, (*law, step)) for law in LAWS.values()]
     found = dict(zip(LAWS, runs(cases), strict=True))

@@ -61,10 +61,19 @@ class Record:
         """End of the bump [s]."""
         return self.start + BUMP_DURATION_S
 
-    def signal(self, size: float, reading: Reading, *, noise: bool = True) -> Signal:
-        """Bump of an amplitude A [m], with or without the random noise of the source."""
+    def signal(self, size: float, reading: Reading, wheel: str, *, noise: bool = True) -> Signal:
+        """Bump of an amplitude A [m], with or without the random noise of the source.
+
+        Args:
+            size: A [m].
+            reading: of the printed formula.
+            wheel: that it drives.
+            noise: whether there is noise.
+        """
         duration, level = (self.noisy, NOISE_RMS) if noise else (self.quiet, 0.0)
-        signal = bump(amplitude=size, reading=reading, duration=duration, start=self.start, noise_rms=level)
+        signal = bump(
+            amplitude=size, reading=reading, duration=duration, start=self.start, noise_rms=level, wheel=wheel
+        )
         # The film writes the source over its picture, where the text of the generator has no room.
         return replace(signal, source=f"bump {1e3 * size:g} mm")
 
@@ -127,7 +136,7 @@ def run_bumps(runs: CarRuns, record: Record, reading: Reading, frictions: Sequen
     """All runs of the study, independent ones at once."""
     other = OTHER[reading]
     cases = [
-        runs.case(record.signal(size, kind, noise=noise))
+        runs.case(record.signal(size, kind, runs.wheel, noise=noise))
         for kind, noise in ((reading, True), (reading, False), (other, True))
         for size in SIZES
     ]

@@ -29,13 +29,10 @@ BRACKETS = {"as designed": 1.0, "half as stiff": 0.5, "twice as stiff": 2.0}
 SLIP_VELOCITIES = tuple(1e-3 * v for v in (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13.5, 15))
 """Velocity that counts as slip [m/s]."""
 
-SHAKER_EDGES = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.5, 9.0)
-"""Lower edge of the shaker inputs [Hz], half power."""
+SHAKER_EDGES = (2.0, 2.5, 3.0, 4.0, 6.0)
+"""Lower edge of the shaker inputs, and of the noise before and after the bump [Hz], half power."""
 
-NOISE_EDGES = (1.5, 2.5, 4.0, 6.0, 9.0)
-"""Lower edge of the noise before and after the bump [Hz]."""
-
-ROAD_EDGES = (0.0128, 0.015, 0.017, 0.019, 0.021, 0.024, 0.0265, 0.029)
+ROAD_EDGES = (0.015, 0.017, 0.019, 0.022, 0.029)
 """Lower edge of the roads [Hz]."""
 
 NOISE_LEVELS = {"0.05 mm with both bumps": 1.0, "in proportion to the bump": 0.2}

@@ -18,8 +18,8 @@ from vehicle.excitation.exact_road import ROAD_RMS
 Vector = npt.NDArray[np.float64]
 
 MISREADING = 0.01
-"""Chance that a row is not what we read: labels come from a damaged scan, and an axis can be set by hand. It bounds what
-one row can say against a candidate, ln(100)."""
+"""Chance that a row is not what we read: labels come from a damaged scan, and an axis can be set by hand. It bounds
+what one row can say against a candidate, ln(100)."""
 
 LEVEL_NAMES = ("low", "mid", "high")
 
@@ -48,7 +48,7 @@ class Candidate:
         return (
             f"{1e3 * SLIP_VELOCITIES[self.velocity]:g}",
             f"{plan.shaker_edges[self.shaker]:g}",
-            f"{plan.noise_edges[self.noise]:g}",
+            f"{plan.shaker_edges[self.noise]:g}",
             f"{plan.road_edges[self.road]:g}",
             tuple(NOISE_LEVELS)[self.level],
         )
@@ -162,7 +162,7 @@ def table(found: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED) ->
             (
                 len(SLIP_VELOCITIES),
                 len(plan.shaker_edges),
-                len(plan.noise_edges),
+                len(plan.shaker_edges),
                 len(NOISE_LEVELS),
                 len(plan.road_edges),
             ),
@@ -186,11 +186,17 @@ def table(found: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED) ->
     return total
 
 
-def best(tables: Mapping[Rig, Vector]) -> list[tuple[float, Candidate]]:
-    """The best candidate of each rig, the most likely first."""
+def best(tables: Mapping[Rig, Vector], *, own_noise: bool = False) -> list[tuple[float, Candidate]]:
+    """The best candidate of each rig, the most likely first.
+
+    Args:
+        tables: rig to log-likelihoods, axes as `NUMBERS`.
+        own_noise: whether the noise of the bump may have another edge than the random inputs of the same shaker.
+    """
     found = []
     for rig, one in tables.items():
-        at = np.unravel_index(int(np.argmax(one)), one.shape)
+        free = np.ones(one.shape, dtype=bool) if own_noise else np.eye(one.shape[1], dtype=bool)[None, :, :, None, None]
+        at = np.unravel_index(int(np.argmax(np.where(free, one, -np.inf))), one.shape)
         numbers = dict(zip(NUMBERS, (int(place) for place in at), strict=True))
         found.append((float(one[at]), Candidate(rig=rig, **numbers)))
     return sorted(found, key=lambda pair: -pair[0])
@@ -205,3 +211,22 @@ def probabilities(found: Readings, one: Candidate, plan: Plan) -> dict[str, floa
 def agreement(given: Mapping[str, float], keys: Sequence[str]) -> float:
     """Share of rows that agree [-]."""
     return float(np.mean([given[key] >= AGREES_ABOVE for key in keys]))
+
+
+def jackknife(found: Sequence[tuple[Readings, Candidate]], plan: Plan) -> float:
+    """Standard error of the difference of the log-likelihoods of two candidates over the seeds of the inputs.
+
+    Both meet the same seeds; each is left out once: e^2 = (n - 1) / n sum over i of (d_i - mean of d)^2.
+
+    Args:
+        found: both candidates with their readings.
+        plan: the inputs.
+    """
+    differences = []
+    for seed in range(plan.seeds):
+        sums = []
+        for readings, one in found:
+            values = values_of(readings.without(seed), one, plan)
+            sums.append(sum(log_likelihood(row, values[row.key]) for row in EVIDENCE if row.key in USED))
+        differences.append(sums[0] - sums[1])
+    return float(np.sqrt((plan.seeds - 1) * np.var(differences)))

@@ -15,7 +15,6 @@ from scenarios.inertia import led_by, roll_mode
 from scenarios.inputs.make_inputs import LEVELS as SHAKER_RMS
 from scenarios.levels import WHEEL_BAND
 from scenarios.source_choice.candidates import (
-    NOISE_EDGES,
     NOISE_LEVELS,
     PLATES,
     ROAD_EDGES,
@@ -59,13 +58,12 @@ class Plan:
 
     Attributes:
         seeds: records of each input.
-        shaker_edges, noise_edges, road_edges: of `candidates`, or some of them [Hz].
+        shaker_edges, road_edges: of `candidates`, or some of them [Hz].
         shaker_s, road_s: length of the records [s].
     """
 
     seeds: int = 8
     shaker_edges: tuple[float, ...] = SHAKER_EDGES
-    noise_edges: tuple[float, ...] = NOISE_EDGES
     road_edges: tuple[float, ...] = ROAD_EDGES
     shaker_s: float = 60.0
     road_s: float = 60.0
@@ -119,6 +117,21 @@ class Readings:
     road: Vector
     levels: Vector
     modes: Vector
+
+    def without(self, seed: int) -> Readings:
+        """The numbers without those of one seed."""
+        seeds = self.stick_end.shape[1]
+        windows = self.levels.reshape(*self.levels.shape[:2], seeds, -1)
+        return Readings(
+            shaker=np.delete(self.shaker, seed, 2),
+            extremes=np.delete(self.extremes, seed, 1),
+            stick_end=np.delete(self.stick_end, seed, 1),
+            fastest=np.delete(self.fastest, seed, 1),
+            comfort=np.delete(self.comfort, seed, 2),
+            road=np.delete(self.road, seed, 2),
+            levels=np.delete(windows, seed, 2).reshape(*self.levels.shape[:2], -1),
+            modes=self.modes,
+        )
 
 
 def readings(rigs: Sequence[Rig], plan: Plan, folder: Path) -> list[Readings]:
@@ -240,7 +253,7 @@ def _bump_signals(plan: Plan) -> list[list[list[Signal]]]:
             ]
             for seed in range(plan.seeds)
         ]
-        for edge in plan.noise_edges
+        for edge in plan.shaker_edges
     ]
 
 

@@ -251,7 +251,9 @@ class Car:
         """
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        signal = signal if isinstance(signal, Signal) else read_signal(find_input(signal), wheel=self.vehicle.shaker_wheel)
+        signal = (
+            signal if isinstance(signal, Signal) else read_signal(find_input(signal), wheel=self.vehicle.shaker_wheel)
+        )
         known = self.vehicle.channels
         self.vehicle.require_channels(channels or (), (*known, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES, CORNERS, acceleration_channels, wheel_channels
+from vehicle.names import AXES, CORNERS, SIDE_SIGN, acceleration_channels, wheel_channels, wheel_words
 from vehicle.parameters.additions import new_loads
 from vehicle.parameters.base_car import vehicle_table
 from vehicle.parameters.body import TrimmedBody, require_inertia_table
@@ -62,6 +62,12 @@ class Head:
         choices=tuple(CORNERS.values()),
         default="fr",
     )
+    shaker_wheel_in_source: str = quantity(
+        "-",
+        "side on which the source of the car says that wheel is",
+        choices=("right", "left", "unsaid"),
+        default="unsaid",
+    )
 
     def __post_init__(self) -> None:
         validate(self)
@@ -79,6 +85,7 @@ class Vehicle:
         table: the vehicle file as used, nested tables; two cars with the same one are equal.
         name, gravity: as there; [m/s2].
         shaker_wheel: wheel that a shaker drives where nothing else is said, as "fr".
+        shaker_wheel_in_source: its side in the words of the source: "right", "left" or "unsaid".
         body: trimmed body.
         solver: numerics.
         driving: whether its wheels roll.
@@ -89,6 +96,7 @@ class Vehicle:
     name: str = field(compare=False)
     gravity: float = field(compare=False)
     shaker_wheel: str = field(compare=False)
+    shaker_wheel_in_source: str = field(compare=False)
     body: TrimmedBody = field(compare=False)
     solver: Solver = field(compare=False)
     driving: Driving = field(compare=False)
@@ -114,6 +122,14 @@ class Vehicle:
         """Names of all channels of a recording, in the order of the files."""
         dampers = [damper.name for damper in self.composition.dampers]
         return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
+
+    def wheel_text(self, wheel: str) -> str:
+        """A wheel for captions, by side, by channel, as its source calls it: "driver's left front wheel (fl)"."""
+        words = wheel_words(wheel, self.wheels)
+        said = self.shaker_wheel_in_source if wheel == self.shaker_wheel else "unsaid"
+        source = "" if said == "unsaid" else f"'{said} wheel' in the words of the source"
+        side = "driver's " if words.split()[0] in SIDE_SIGN else ""
+        return f"{side}{words} ({'; '.join(filter(None, (wheel, source)))})"
 
     def require_wheels(self, wheels: Iterable[str]) -> None:
         """Refuse wheels that the car does not have.
@@ -241,6 +257,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
         name=head.name,
         gravity=head.gravity,
         shaker_wheel=head.shaker_wheel,
+        shaker_wheel_in_source=head.shaker_wheel_in_source,
         body=body,
         solver=solver,
         driving=driving_of(table),
