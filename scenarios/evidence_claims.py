@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.claims import Claim, Source, between, interval_claim
+from scenarios.claims import Claim, Interval, Source, interval_claim
 from scenarios.evidence import Evidence, evidence_of, status_of
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 
@@ -41,14 +43,35 @@ def evidence_claim(
     elif not evidence.error:
         return row
     probability = interval_probability(values, evidence.interval, error=evidence.error)
-    rule = f"probability of {_words(evidence)} {100.0 * probability:.3g} %, must be above {100.0 * AGREES_ABOVE:g} %"
+    rule = f"{100.0 * probability:.3g} % is the probability of {_words(evidence)}, needed {100.0 * AGREES_ABOVE:g} %"
     return replace(row, within=probability > AGREES_ABOVE, probability=probability, why=f"{rule}; {why}")
+
+
+def reason(interval: Interval, trials: Mapping[str, float]) -> str:
+    """What experiments say about a row that disagrees: ours with each change, those that reach the interval first.
+
+    Args:
+        interval: the published one.
+        trials: label of a change of the model to ours with it.
+    """
+    low, high = interval
+    texts = {label: f"{label} {value:.3g}" for label, value in trials.items()}
+    inside = [texts[label] for label, value in trials.items() if low <= value <= high]
+    outside = [text for text in texts.values() if text not in inside]
+    if not inside:
+        return f"experiments: reached with none of the changes tried ({', '.join(outside)})"
+    rest = f"; not with {', '.join(outside)}" if outside else ""
+    return f"experiments: reached with {', '.join(inside)}{rest}"
 
 
 def _words(evidence: Evidence) -> str:
     error = f" with a model error of {evidence.error:.3g} {evidence.unit}" if evidence.error else ""
     unit = "" if evidence.unit == "-" else f" {evidence.unit}"
-    return f"{between(evidence.interval)}{unit}{error}"
+    low, high = evidence.interval
+    words = (
+        f"at most {high:g}" if math.isinf(low) else f"at least {low:g}" if math.isinf(high) else f"{low:g} to {high:g}"
+    )
+    return f"{words}{unit}{error}"
 
 
 def _source(evidence: Evidence, printed: float | None) -> Source:

@@ -18,7 +18,7 @@ from scenarios.bump.runs import (
 from scenarios.bump.seeds import BumpSeeds, row_key
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim
 from scenarios.evidence import HIGH_PANELS, LOW_PANELS, evidence_of
-from scenarios.evidence_claims import evidence_claim
+from scenarios.evidence_claims import evidence_claim, reason
 from vehicle.car import SATURATED_VELOCITY, Run
 
 RATIO = 2.0
@@ -83,25 +83,13 @@ def extreme_claims(seeds: BumpSeeds, trials: Mapping[str, Mapping[str, float]]) 
                 row = f"bump {1e3 * size:g} mm, {word} {name} [m/s2]"
                 claim = evidence_claim(key, row, ours, AXIS, picture=picture_of(point))
                 if not claim.within and trials:
-                    claim = evidence_claim(key, row, ours, f"{AXIS}; {reason(key, trials)}", picture=picture_of(point))
+                    why = reason(evidence_of(key).interval, {label: one[key] for label, one in trials.items()})
+                    claim = evidence_claim(key, row, ours, f"{AXIS}; {why}", picture=picture_of(point))
                 claims.append(claim)
     return claims
 
 
 AXIS = "3 s from the bump; the axis holds model and measurement, either of which may be the wider"
-
-
-def reason(key: str, trials: Mapping[str, Mapping[str, float]]) -> str:
-    """What experiments say about a row: its mean with each change, those that reach the interval first."""
-    low, high = evidence_of(key).interval
-    inside = [f"{label} {found[key]:.2f}" for label, found in trials.items() if low <= found[key] <= high]
-    outside = [f"{label} {found[key]:.2f}" for label, found in trials.items() if not low <= found[key] <= high]
-    reached = f"reached with {', '.join(inside)}" if inside else "reached with none of the changes tried"
-    return (
-        f"experiments: {reached}"
-        + (f"; not with {', '.join(outside)}" if outside and inside else "")
-        + (f" ({', '.join(outside)})" if not inside else "")
-    )
 
 
 def picture_of(point: str) -> str:

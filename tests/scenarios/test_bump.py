@@ -130,8 +130,8 @@ def test_every_readable_end_of_an_axis_is_a_row():
     outside = extreme_claims(seeds_at(1.5), trials)
     assert not any(claim.within for claim in outside)
     why = {claim.name: claim.why for claim in outside}
-    assert "reached with stiffer -1.20" in why["bump 7.5 mm, lowest engine, vertical [m/s2]"]
-    assert "none of the changes tried (stiffer 0.00)" in why["bump 7.5 mm, highest engine, vertical [m/s2]"]
+    assert "reached with stiffer -1.2" in why["bump 7.5 mm, lowest engine, vertical [m/s2]"]
+    assert "none of the changes tried (stiffer 0)" in why["bump 7.5 mm, highest engine, vertical [m/s2]"]
 
 
 def _all_rows():
