@@ -46,6 +46,11 @@ class CarRuns:
             shared=len(self.overrides),
         )
 
+    @property
+    def wheel(self) -> str:
+        """Wheel on the shaker."""
+        return self.car().vehicle.shaker_wheel
+
     def car(self, overrides: Sequence[str] = ()) -> Car:
         """The car with some parameters changed; built once."""
         return self.car_of((*self.overrides, *overrides))

@@ -198,6 +198,7 @@ class ComfortRuns:
                     duration=self.records.duration,
                     lead=self.records.lead,
                     lower_band_edge=edge,
+                    wheel=self.runs.wheel,
                 ),
                 car,
                 engine=engine or self.engine,
@@ -216,7 +217,7 @@ class ComfortRuns:
             self.folder.mkdir(exist_ok=True)
             # One job needs no process of its own, which takes seconds to start.
             inside = partial(ThreadPoolExecutor, 1) if self.runs.jobs == 1 else None
-            measure = RoadMeasure(lead=self.records.lead)
+            measure = RoadMeasure(lead=self.records.lead, wheel=self.runs.wheel)
             table = sweep(missing, measure, executor=inside, jobs=self.runs.jobs, folder=self.folder)
             for case, reason in table.failed[:1]:
                 raise SimulationError(f"{case.label}: {reason}; {len(table.failed)} of {len(missing)} runs failed")

@@ -122,6 +122,7 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"--runs {runs}: needed are at least {len(RANGES) + 2} for {len(RANGES)} parameters")
     make = executor_factory(options.executor, options.jobs)
     points = points_of(options.method, runs, options.seed)
+    wheel = load_vehicle(options.vehicle).shaker_wheel
     road = RoadInput(
         name=f"{options.road} road",
         rms=ROAD_RMS[options.road],
@@ -129,6 +130,7 @@ def _job(options: argparse.Namespace) -> None:
         duration=duration,
         lead=lead,
         lower_band_edge=ROAD_EDGE_HZ,
+        wheel=wheel,
     )
     engine = chosen_engine(options.engine)
     cases = table_cases([one.path for one in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle)
@@ -136,7 +138,7 @@ def _job(options: argparse.Namespace) -> None:
     started = clock.perf_counter()
     table = sweep(
         cases,
-        RoadMeasure(lead=lead),
+        RoadMeasure(lead=lead, wheel=wheel),
         executor=make,
         folder=folder,
         retry_failed=options.retry_failed,

@@ -33,7 +33,7 @@ CHANGES = (("body.inertia.ixx=1000",), ("body.inertia.ixx=1200",))
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the low level with both inertias, draw the FRFs into the folder, and compare."""
-    signal = level_signal("low", quick=options.quick)
+    signal = level_signal("low", runs.wheel, quick=options.quick)
     found = runs([runs.case(signal, change) for change in CHANGES])
     cars = [runs.car(change) for change in CHANGES]
     responses = [run.frf(CHANNELS) for run in found]
@@ -109,6 +109,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             published,
             ROUND * ROLL,
             "dampers stuck; 5 %. The source shows roll as a peak of its FRFs: that row is below",
+            place="section 3.2.1.1",
         ),
         PREDICTED.statement(
             "six rigid body modes",
@@ -116,6 +117,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             f"{len(rigid)}: {_list(rigid)} Hz",
             len(rigid) == 6 and max(rigid) < 10.0,
             "modes with the largest share of energy in the body, dampers stuck, Ixx 1000",
+            place="table 3.1",
         ),
         FITTED.statement(
             "engine modes",
@@ -124,6 +126,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             len(engine) == 6 and min(engine) >= (1 - ROUND) * 10.0 and max(engine) <= (1 + ROUND) * 20.0,
             "modes with the largest share of energy in the engine, dampers stuck; 5 % beyond the round limits. The "
             "engine brackets were fitted to it",
+            place="section 3.2.1.3",
         ),
         FITTED.statement(
             "flexible modes of the trimmed body",
@@ -131,6 +134,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             f"{len(flexible)}, from {flexible[0]:.1f} to {flexible[-1]:.1f} Hz",
             len(flexible) == 9 and bool(np.allclose(flexible[[0, -1]], (19.0, 43.0), atol=0.5)),
             "the free body; its frame was fitted to these frequencies, so this says that the fit was carried through",
+            place="section 3.1.2",
         ),
     ]
 
@@ -164,6 +168,8 @@ def roll_claims(peaks: Sequence[float], modes: Sequence[float]) -> list[Claim]:
             published,
             ROUND * ROLL,
             f"simulated; the matrices have it at {modes[0]:.2f} Hz; printed with two digits: 5 %",
+            place="section 3.2.1.1",
+            picture="seat_rail.png",
         ),
         PREDICTED.statement(
             "roll peak of the seat rail FRF, Ixx 1200 against 1000",
@@ -173,6 +179,8 @@ def roll_claims(peaks: Sequence[float], modes: Sequence[float]) -> list[Claim]:
             f"the matrices have it at {matrices} Hz. 20 % more about the origin double the smallest principal moment "
             "about the centre of gravity (155 to 347 kg m2, before the repair of the first), so it falls by more and "
             "mixes with pitch near 5 Hz",
+            place="figure 3.37",
+            picture="seat_rail.png",
         ),
         INFERRED.statement(
             "roll peak of the seat rail FRF, Ixx 1200 against the measured 5.8 Hz",
@@ -181,6 +189,8 @@ def roll_claims(peaks: Sequence[float], modes: Sequence[float]) -> list[Claim]:
             off[1] < off[0],
             "the source only says that the fit will improve, and that the decrease is larger than the 10 % it wanted; "
             "here it overshoots 5.8 Hz by more than Ixx 1000 misses it",
+            place="figure 3.37",
+            picture="seat_rail.png",
         ),
     ]
 
@@ -223,7 +233,7 @@ def inertia_figure(
     marks = [(f"roll mode {roll:.2f} Hz", roll, colour) for roll, colour in zip(rolls, colours, strict=True)]
     run, response = next(iter(runs.values())), responses[0]
     caption = (
-        "FRFs of the seat rail to the plate under the right front wheel, low level "
+        f"FRFs of the seat rail to the plate under the {run.car.vehicle.wheel_text(run.wheel)}, low level "
         f"({1e3 * run.signal.rms(run.wheel):.3g} mm RMS), {run.signal.duration:g} s; {estimator_text(response)}; "
         f"{computed_by(run)}. Dashed: roll mode from the matrices, dampers stuck"
     )

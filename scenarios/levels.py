@@ -1,4 +1,4 @@
-"""Low, mid and high random input under the right front wheel: FRFs of chapter 3 of source 1, slip shares, wheel mode.
+"""Low, mid and high random input under the wheel on the shaker: FRFs of chapter 3 of source 1, slip shares, wheel mode.
 
 python -m scenarios.levels [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
@@ -24,6 +24,7 @@ from vehicle.analysis.frf import FrequencyResponse
 from vehicle.analysis.peaks import phase_resonance
 from vehicle.car import Run
 from vehicle.excitation.slip_set import sets_text
+from vehicle.names import across
 
 QUICK_OUTPUTS = ("seat_rail_acc_z",)
 """Outputs drawn with --quick."""
@@ -33,9 +34,9 @@ TOO_SHORT = f"{QUICK_DURATION:g} s of signal tell it too coarsely"
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the three levels, draw the figures into the folder, and compare."""
-    found = runs([runs.case(level_signal(level, quick=options.quick)) for level in LEVELS])
+    found = runs([runs.case(level_signal(level, runs.wheel, quick=options.quick)) for level in LEVELS])
     by_level = dict(zip(LEVELS, found, strict=True))
-    responses = {level: run.frf(CHANNELS) for level, run in by_level.items()}
+    responses = {level: run.frf(channels_of(runs.wheel)) for level, run in by_level.items()}
     level_figures(folder, by_level, responses, QUICK_OUTPUTS if options.quick else tuple(OUTPUTS))
     values = {level: numbers(run, responses[level]) for level, run in by_level.items()}
     slip_velocity = runs.car().vehicle.damper.slip_velocity
@@ -100,15 +101,15 @@ class LevelNumbers:
 
 def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:
     """Read the numbers off one run and its FRFs (rows as `CHANNELS`)."""
-    complex_knuckle = response.response[CHANNELS.index("knuckle_fr_acc_z")]
-    knuckle, top = np.abs(complex_knuckle), np.abs(response.response[CHANNELS.index("damper_top_fr_acc_z")])
+    complex_knuckle, complex_top = (response.response[CHANNELS.index(name)] for name in DAMPER)
+    knuckle, top = np.abs(complex_knuckle), np.abs(complex_top)
     frequency = response.frequency
     wheel, body, damper = (
         (frequency >= band[0]) & (frequency <= band[1]) for band in (WHEEL_BAND, BODY_BAND, DAMPER_BAND)
     )
     return LevelNumbers(
-        slip=(run.slip_share("fr"), run.slip_share("fl")),
-        saturated=(run.slip_share("fr", 1e-3), run.slip_share("fl", 1e-3)),
+        slip=(run.slip_share(run.wheel), run.slip_share(across(run.wheel))),
+        saturated=(run.slip_share(run.wheel, 1e-3), run.slip_share(across(run.wheel), 1e-3)),
         wheel_hz=phase_resonance(frequency[wheel], complex_knuckle[wheel]),
         wheel_peak_hz=float(frequency[wheel][np.nanargmax(knuckle[wheel])]),
         wheel_peak=float(np.nanmax(knuckle[wheel])),
@@ -238,7 +239,7 @@ def _both(published: float, ours: float, loose: float) -> tuple[str, str]:
 OUTPUTS = {
     "seat_rail_acc_z": ("seat_rail_z", "Seat rail, vertical (figures 3.3, 3.21, 3.22)"),
     "seat_acc_z": ("seat_z", "Seat, vertical (figures 3.4, 3.23, 3.24)"),
-    "knuckle_fr_acc_z": ("knuckle_z", "Right knuckle, vertical (figures 3.5, 3.25, 3.26, 3.29, 3.30)"),
+    "knuckle_{wheel}_acc_z": ("knuckle_z", "Right knuckle, vertical (figures 3.5, 3.25, 3.26, 3.29, 3.30)"),
     "engine_acc_z": ("engine_z", "Engine, vertical (figures 3.7, 3.31, 3.32)"),
     "roof_left_rear_acc_z": ("roof_left_rear_z", "Roof left rear, vertical (figures 3.8, 3.33, 3.34)"),
     "body_front_acc_z": ("body_front_z", "Body front, vertical (figure 3.9)"),
@@ -247,10 +248,15 @@ OUTPUTS = {
 }
 """Channel to the name of its file and its title, with the figures of source 1 that show it."""
 
-DAMPER = ("knuckle_fr_acc_z", "damper_top_fr_acc_z")
+DAMPER = ("knuckle_{wheel}_acc_z", "damper_top_{wheel}_acc_z")
 
 CHANNELS = (*OUTPUTS, DAMPER[1])
-"""Channels whose FRFs are estimated."""
+"""Channels whose FRFs are estimated, of the wheel on the shaker."""
+
+
+def channels_of(wheel: str, names: Sequence[str] = CHANNELS) -> tuple[str, ...]:
+    """Names of channels with the wheel on the shaker in them."""
+    return tuple(name.format(wheel=wheel) for name in names)
 
 
 def level_figures(
@@ -267,11 +273,12 @@ def level_figures(
     run = next(iter(runs.values()))
     levels = ", ".join(f"{level} {1e3 * run.signal.rms(run.wheel):.3g} mm RMS" for level, run in runs.items())
     note = (
-        f"FRFs to the plate under the right front wheel. {levels}; {run.signal.duration:g} s each; "
+        f"FRFs to the plate under the {run.car.vehicle.wheel_text(run.wheel)}. {levels}; "
+        f"{run.signal.duration:g} s each; "
         f"{estimator_text(next(iter(responses.values())))}; {computed_by(run)}"
     )
     lines = np.geomspace(1.0, 50.0, 800)
-    for channel, row in zip(outputs, run.car.matrix_frf(outputs, lines), strict=True):
+    for channel, row in zip(outputs, run.car.matrix_frf(channels_of(run.wheel, outputs), lines), strict=True):
         name, title = OUTPUTS[channel]
         curves = [
             measured_curve(responses[level], CHANNELS.index(channel), level, colour)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.bump.runs import FULL, QUICK, SIZES, relative_acceleration
+from scenarios.bump.runs import FULL, QUICK, SIZES, damper_velocity, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
@@ -49,14 +49,14 @@ AFTER = BUMP_DURATION_S + 0.2
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the bump with both laws, draw the figures into the folder, and compare."""
     record = QUICK if options.quick else FULL
-    signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start)
+    signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start, wheel=runs.wheel)
     step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.step)!r}"
     cases = [runs.case(signal, (*law, step)) for law in LAWS.values()]
     found = dict(zip(LAWS, runs(cases), strict=True))
     phases = {
         name: slip_phases(
             run.time,
-            run["damper_fr_velocity"],
+            damper_velocity(run),
             relative_acceleration(run),
             saturated=SATURATED_VELOCITY,
             begin=record.start,
@@ -89,7 +89,7 @@ def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64
 
 def force_error(run: Run) -> float:
     """Largest |simulated force - law| over the largest force, where the right damper is faster than 1 mm/s [-]."""
-    velocity, force = run["damper_fr_velocity"], run["damper_fr_force"]
+    velocity, force = damper_velocity(run), run[f"damper_{run.wheel}_force"]
     fast = np.abs(velocity) > SATURATED_VELOCITY
     if not fast.any():
         return 0.0
@@ -114,6 +114,8 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
                 f"{count}; {text} ({1e3 * top.delay:.0f} ms after)" if top else f"{count}; {text}",
                 (count > 0) == (published == "present"),
                 f"{rule}; largest jump {max((phase.jump for phase in phases[name]), default=0.0):.2f} m/s2",
+                place="figure 3.38",
+                picture="relative_acceleration.png",
             )
         )
     errors = {name: force_error(run) for name, run in runs.items()}
@@ -124,6 +126,8 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
             ", ".join(f"{name}: {100 * error:.2f} % of the largest force" for name, error in errors.items()),
             max(errors.values()) <= FORCE_TOLERANCE,
             f"largest difference above 1 mm/s; {100 * FORCE_TOLERANCE:g} %: line for arctangent, limit one step behind",
+            place="figure 3.39",
+            picture="force_velocity.png",
         )
     )
     return claims
@@ -208,7 +212,12 @@ def force_figure(path: Path, runs: Mapping[str, Run]) -> None:
         for axis, (name, run), colour in zip(axes, runs.items(), COLOURS, strict=False):
             axis.plot(speeds, law_force(run.car.vehicle.damper, speeds), color="#222222", label="law")
             axis.plot(
-                run["damper_fr_velocity"], run["damper_fr_force"], ".", markersize=3, color=colour, label="simulated"
+                damper_velocity(run),
+                run[f"damper_{run.wheel}_force"],
+                ".",
+                markersize=3,
+                color=colour,
+                label="simulated",
             )
             axis.set(title=name, xlabel="damper velocity [m/s]", xlim=(-0.1, 0.1))
             axis.legend(loc="upper left")

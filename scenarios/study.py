@@ -37,6 +37,7 @@ STUDIES = {
     "damper_choice": "Choice of dampers for road holding.",
     "kinematics": "Axles of all cars over wheel travel and under load, and with one point moved.",
     "road": "Four wheels on the road: class, speed, damper friction, with and without an occupant.",
+    "source_choice": "Sides, slip velocity, band edges and body that source 1 does not print, chosen together.",
     "published": "Every published result of the complete car beside ours.",
 }
 """Name of a study, `python -m scenarios.NAME`, and what it does."""

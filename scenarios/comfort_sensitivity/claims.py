@@ -187,7 +187,7 @@ def road_levels(comfort: ComfortRuns) -> dict[str, RoadLevels]:
         for number in range(comfort.records.count):
             (rail,) = comfort.histories([()], road, record=number)
             extremes.append(window_extremes(1.0 / RATE_HZ, rail[record], WINDOW_S))
-            plate = signal_of(comfort.cases((), road)[number].source).displacement["fr"][record]
+            plate = signal_of(comfort.cases((), road)[number].source).displacement[comfort.runs.wheel][record]
             samples = min(round(SWING_S * RATE_HZ), plate.size)
             swings.append(np.ptp(plate[: plate.size // samples * samples].reshape(-1, samples), axis=1))
         found[road] = RoadLevels(seat_rail=np.concatenate(extremes), swing=np.concatenate(swings))

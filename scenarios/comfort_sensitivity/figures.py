@@ -67,7 +67,8 @@ def draw_variation(
     heading = title or f"Comfort against {variation.label} ({numbers})"
     spectra = f"spectra: Welch, Hann windows of {WINDOW_S:g} s, half overlapping, first record"
     caption = (
-        f"Roads of {_levels()}, under the right front wheel. Histories and {spectra}, engine {engine}. "
+        f"Roads of {_levels()}, under the {comfort.runs.car().vehicle.wheel_text(comfort.runs.wheel)}. Histories and "
+        f"{spectra}, engine {engine}. "
         f"Comfort: RMS of the seat rail, x, y and z, unweighted, {COMFORT_BAND[0]:g} to {COMFORT_BAND[1]:g} Hz, "
         f"relative to the reference on the same records; mean of {comfort.records.text()}, engine {comfort.engine}; "
         f"bars: two standard errors over the records"

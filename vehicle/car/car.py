@@ -205,9 +205,17 @@ class Car:
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
 
     def matrix_frf(
-        self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str = "fr"
+        self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str | None = None
     ) -> npt.NDArray[np.complex128]:
-        """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies)."""
+        """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies).
+
+        Args:
+            channels: accelerations.
+            frequency: lines [Hz].
+            damper: "stuck" or "sliding", all of them.
+            wheel: whose plate moves; that of the shaker by default.
+        """
+        wheel = wheel or self.vehicle.shaker_wheel
         self.vehicle.require_wheels((wheel,))
         self.vehicle.require_channels(channels, self.vehicle.acceleration_channels)
         form = first_order(self.matrices.system, stuck=_is_stuck(damper))
@@ -243,7 +251,9 @@ class Car:
         """
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        signal = signal if isinstance(signal, Signal) else read_signal(find_input(signal))
+        signal = (
+            signal if isinstance(signal, Signal) else read_signal(find_input(signal), wheel=self.vehicle.shaker_wheel)
+        )
         known = self.vehicle.channels
         self.vehicle.require_channels(channels or (), (*known, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)

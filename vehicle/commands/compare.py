@@ -312,7 +312,7 @@ def _simulated(
 
     car = Car.load(options.vehicle, options.overrides)
     known = (*car.vehicle.channels, *car.vehicle.load_channels)
-    signal = read_signal(find_input(options.run))
+    signal = read_signal(find_input(options.run), wheel=car.vehicle.shaker_wheel)
     asked = _measured(options, known, choice, measurement)  # refused before anything is simulated
     loads = {*(asked.record.channels if asked.record else ())} - set(car.vehicle.channels)
     run = car.run(

@@ -17,6 +17,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
+    from vehicle.parameters.vehicle import Vehicle
     from vehicle.records.choice import Choice
     from vehicle.replication.iteration import Step
     from vehicle.replication.target import Target
@@ -39,8 +40,8 @@ def parser() -> Parser:
         dest="wheels",
         action="append",
         choices=sorted(CORNERS),
-        help="wheel whose plate is driven; by default those that the names of the channels tell, else front_right; "
-        "may be repeated",
+        help="wheel whose plate is driven; by default those that the names of the channels tell, else that of the "
+        "vehicle file; may be repeated",
     )
     found.add_argument(
         "--band",
@@ -86,7 +87,7 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, options.overrides)
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
     target = read_target(options.target, names, choice, band, car.vehicle.solver.record_rate)
-    plant = DrivenCar(car, _wheels(options, target), target, options.engine)
+    plant = DrivenCar(car, _wheels(options, target, car.vehicle), target, options.engine)
     with output_folder(output, force=options.force, protect=inputs) as folder:
         found = replicate(
             plant,
@@ -154,7 +155,7 @@ def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
     return names, choice
 
 
-def _wheels(options: argparse.Namespace, target: Target) -> tuple[str, ...]:
+def _wheels(options: argparse.Namespace, target: Target, vehicle: Vehicle) -> tuple[str, ...]:
     """Wheels whose plates are driven."""
     from vehicle.names import in_order
 
@@ -162,7 +163,7 @@ def _wheels(options: argparse.Namespace, target: Target) -> tuple[str, ...]:
         found = in_order({CORNERS[word] for word in options.wheels})
     else:
         named = {part for name in target.channels for part in name.split("_") if part in CORNERS.values()}
-        found = in_order(named or {"fr"})
+        found = in_order(named or {vehicle.shaker_wheel})
     if len(found) > len(target.channels):
         raise ConfigurationError(
             f"{len(found)} plates ({', '.join(found)}) and {len(target.channels)} channel: give at least as many "

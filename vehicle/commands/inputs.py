@@ -33,7 +33,7 @@ def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
 
     if drives_on_road(options):
         return _roads(options, vehicle)
-    inputs = _files(options)
+    inputs = _files(options, vehicle)
     for source in inputs:
         if (highest := signal_of(source).highest) is not None:
             raise DataError(
@@ -99,10 +99,10 @@ def _roads(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
     return [replace(drive, tagged=len(seeds) > 1) if isinstance(drive, RoadDrive) else drive for drive in drives]
 
 
-def _files(options: argparse.Namespace) -> list[Input]:
+def _files(options: argparse.Namespace, vehicle: Vehicle) -> list[Input]:
     from vehicle.excitation.input_files import find_input
     from vehicle.sweeps.case import SignalFile
 
-    wheel = CORNERS[options.wheel or "front_right"]
+    wheel = CORNERS[options.wheel] if options.wheel else vehicle.shaker_wheel
     paths = [find_input(name).resolve() for name in options.input]
     return [SignalFile(path=path, wheel=wheel, accept_implausible=options.any_level) for path in paths]

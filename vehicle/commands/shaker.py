@@ -133,8 +133,6 @@ def _job(options: argparse.Namespace) -> None:
         from vehicle.records.reader import extra
 
         extra("h5py", "hdf5", "--format h5")
-    wheel = CORNERS[options.wheel or "front_right"]
-    choice = record_choice(options, wheel) if drive is None else None
     engine, reason = _engine(options)
     video_name = None
     if options.video is not None:
@@ -151,6 +149,8 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.output.run_files import require_plates, save_last_state, write_run
 
     car = Car.load(options.vehicle, overrides)
+    wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
+    choice = record_choice(options, wheel) if drive is None else None
     if drive is None:
         signal = read_signal(
             source,

@@ -1,4 +1,4 @@
-"""The smooth and the rough road of source 1 under the right front wheel.
+"""The smooth and the rough road of source 1 under one wheel.
 
 Both are one road at two levels: constant velocity PSD G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) from f1 to f2, so the lower
 edge f1 decides how much of the printed RMS is motion that the suspension feels.

@@ -248,6 +248,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "duration_s": run.signal.duration,
             "highest_hz": run.signal.highest,
             "wheel": run.wheel,
+            "wheel_text": run.car.vehicle.wheel_text(run.wheel),
         },
         "evaluated_s": [run.skip, run.signal.duration],
         "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.names import side_of, wheel_words
+from vehicle.names import side_of
 from vehicle.rendering.figure import (
     COLOURS,
     FADED,
@@ -83,7 +83,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
     with saved_figure(
         path,
         (13.0, 8.6),
-        title or f"FRFs to the plate under the {wheel_words(wheel, wheels)}",
+        title or f"FRFs to the plate under the {run.car.vehicle.wheel_text(wheel)}",
         f"{caption}; {FADED}",
         placed=True,
     ) as figure:

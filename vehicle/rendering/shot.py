@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import side_of, wheel_words
+from vehicle.names import side_of
 from vehicle.rendering.body_wireframe import Wireframe
 from vehicle.rendering.cameras import close_up, whole_car
 from vehicle.rendering.canvas import Canvas
@@ -225,7 +225,7 @@ class Shot:
             road[0] += "roll" if run.car.model.vehicle.driving.rolling else "stand"
             exaggerated = "motion and road"
         return [
-            f"{Path(run.signal.source).name}: {level} under the {wheel_words(run.wheel, self.wheels)}",
+            f"{Path(run.signal.source).name}: {level} under the {run.car.vehicle.wheel_text(run.wheel)}",
             f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
