@@ -109,7 +109,6 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             published,
             ROUND * ROLL,
             "dampers stuck; 5 %. The source shows roll as a peak of its FRFs: that row is below",
-            place="section 3.2.1.1",
         ),
         PREDICTED.statement(
             "six rigid body modes",
@@ -117,7 +116,6 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             f"{len(rigid)}: {_list(rigid)} Hz",
             len(rigid) == 6 and max(rigid) < 10.0,
             "modes with the largest share of energy in the body, dampers stuck, Ixx 1000",
-            place="table 3.1",
         ),
         FITTED.statement(
             "engine modes",
@@ -126,7 +124,6 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             len(engine) == 6 and min(engine) >= (1 - ROUND) * 10.0 and max(engine) <= (1 + ROUND) * 20.0,
             "modes with the largest share of energy in the engine, dampers stuck; 5 % beyond the round limits. The "
             "engine brackets were fitted to it",
-            place="section 3.2.1.3",
         ),
         FITTED.statement(
             "flexible modes of the trimmed body",
@@ -134,7 +131,6 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             f"{len(flexible)}, from {flexible[0]:.1f} to {flexible[-1]:.1f} Hz",
             len(flexible) == 9 and bool(np.allclose(flexible[[0, -1]], (19.0, 43.0), atol=0.5)),
             "the free body; its frame was fitted to these frequencies, so this says that the fit was carried through",
-            place="section 3.1.2",
         ),
     ]
 
@@ -168,8 +164,6 @@ def roll_claims(peaks: Sequence[float], modes: Sequence[float]) -> list[Claim]:
             published,
             ROUND * ROLL,
             f"simulated; the matrices have it at {modes[0]:.2f} Hz; printed with two digits: 5 %",
-            place="section 3.2.1.1",
-            picture="seat_rail.png",
         ),
         PREDICTED.statement(
             "roll peak of the seat rail FRF, Ixx 1200 against 1000",
@@ -179,8 +173,6 @@ def roll_claims(peaks: Sequence[float], modes: Sequence[float]) -> list[Claim]:
             f"the matrices have it at {matrices} Hz. 20 % more about the origin double the smallest principal moment "
             "about the centre of gravity (155 to 347 kg m2, before the repair of the first), so it falls by more and "
             "mixes with pitch near 5 Hz",
-            place="figure 3.37",
-            picture="seat_rail.png",
         ),
         INFERRED.statement(
             "roll peak of the seat rail FRF, Ixx 1200 against the measured 5.8 Hz",
@@ -189,8 +181,6 @@ def roll_claims(peaks: Sequence[float], modes: Sequence[float]) -> list[Claim]:
             off[1] < off[0],
             "the source only says that the fit will improve, and that the decrease is larger than the 10 % it wanted; "
             "here it overshoots 5.8 Hz by more than Ixx 1000 misses it",
-            place="figure 3.37",
-            picture="seat_rail.png",
         ),
     ]
 

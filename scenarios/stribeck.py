@@ -114,8 +114,6 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
                 f"{count}; {text} ({1e3 * top.delay:.0f} ms after)" if top else f"{count}; {text}",
                 (count > 0) == (published == "present"),
                 f"{rule}; largest jump {max((phase.jump for phase in phases[name]), default=0.0):.2f} m/s2",
-                place="figure 3.38",
-                picture="relative_acceleration.png",
             )
         )
     errors = {name: force_error(run) for name, run in runs.items()}
@@ -126,8 +124,6 @@ def peak_claims(runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]]) 
             ", ".join(f"{name}: {100 * error:.2f} % of the largest force" for name, error in errors.items()),
             max(errors.values()) <= FORCE_TOLERANCE,
             f"largest difference above 1 mm/s; {100 * FORCE_TOLERANCE:g} %: line for arctangent, limit one step behind",
-            place="figure 3.39",
-            picture="force_velocity.png",
         )
     )
     return claims
