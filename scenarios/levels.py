@@ -43,7 +43,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     values = {level: numbers(run, responses[level]) for level, run in by_level.items()}
     slip_velocity = runs.car().vehicle.damper.slip_velocity
     claims = [*slip_claims(values, slip_velocity), *frequency_claims(values), *order_claims(values)]
-    claims += axis_claims(responses, CHANNELS, None if options.quick else rigid_lines(runs))
+    claims += axis_claims(responses, channels_of(runs.wheel), None if options.quick else rigid_lines(runs))
     trial = None if options.quick else less_friction(runs)
     claims.append(coherence_claim(responses, CHANNELS.index(DAMPER[0]), trial))
     sure = {claim.name for claim in order_claims(values)}
