@@ -153,7 +153,7 @@ def half_response_claims(
             f"{HALF_DAMPING[0]:.0f} N s/m",
             masses[1] > masses[0] and hop[1] < hop[0],
             "the masses are fitted to the printed R, optima and axes",
-            place="section III",
+            place="figures 5 and 6",
             picture=PICTURES[5],
         )
     )

@@ -186,7 +186,7 @@ def curve_claims(found: Compared) -> list[Claim]:
             why,
         ),
     ]
-    return placed(rows, "section I", PICTURE)
+    return placed(rows, "introduction", PICTURE)
 
 
 def _change(value: float, base: float) -> str:

@@ -74,8 +74,8 @@ HALF_CAR_RIDER = {
 
 DAMPER_CHOICE = {
     "damping ratios": ("damper_choice: *damping ratio*",),
-    "quarter car, wheel FRF": ("damper_choice: figure 2*",),
-    "quarter car, body FRF": ("damper_choice: figure 3*",),
+    "quarter car, wheel FRF": ("damper_choice: quarter car wheel*",),
+    "quarter car, body FRF": ("damper_choice: *sprung peak*",),
     "quarter car, optimum": ("damper_choice: *quarter car optimum*",),
     "half car, wheel FRFs": ("damper_choice: *half car front wheel*", "damper_choice: *half car rear wheel*"),
     "half car, heave and pitch": ("damper_choice: *pitch peak*",),

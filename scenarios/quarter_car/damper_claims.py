@@ -53,7 +53,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
     _, constant = runs.spectrum(CONSTANT[0], HIGH, CONSTANT[1])
     above = frequency > 5.0
     ratio = float(np.sqrt(density[above].sum() / constant[above].sum()))
-    shown = {"place": "appendix C, figure C.3", "picture": "figure_c_3.png"}
+    shown = {"place": "figure C.3", "picture": "figure_c_3.png"}
     roads = f"{runs.roads} roads of {runs.duration:g} s"
     rows = [
         PREDICTED.statement(
@@ -136,7 +136,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             for i, change in enumerate(("half the knee velocity", "half the damping below the knee"))
         ),
     ]
-    return placed(rows, "appendix C, figure C.2", "figure_c_2.png")
+    return placed(rows, "figure C.2", "figure_c_2.png")
 
 
 def _influence(runs: Runs, level: float, variant: int) -> float:
@@ -148,7 +148,7 @@ def _influence(runs: Runs, level: float, variant: int) -> float:
 
 def strut_claims(runs: Runs) -> list[Claim]:
     """Strut at an angle, and the longitudinal damping of the wheel."""
-    angle, damping = ({"place": f"appendix D, figure D.{n}", "picture": f"figure_d_{n}.png"} for n in (4, 5))
+    angle, damping = ({"place": f"figure D.{n}", "picture": f"figure_d_{n}.png"} for n in (4, 5))
     claims = []
     for name, level in ROADS:
         frequency, upright = runs.spectrum(DEGRESSIVE[0], level, DEGRESSIVE[1])

@@ -30,7 +30,7 @@ def mode_claims(runs: Runs) -> list[Claim]:
             if damper == "slip":
                 why += f"; undamped frequency, the free decay has {modes.damped_frequency[index]:.2f} Hz"
             claims.append(PREDICTED.number(f"{damper} mode {index + 1} [Hz]", value, ours, 0.05 * value, why))
-    return placed(claims, "section 2.2.4, figure 2.5", "figure_2_5.png")
+    return placed(claims, "figure 2.5", "figure_2_5.png")
 
 
 def phase_claims(runs: Runs) -> list[Claim]:
@@ -114,7 +114,7 @@ def phase_claims(runs: Runs) -> list[Claim]:
         ),
         _sharper(runs),
     ]
-    return placed(rows, "section 2.2.4, figure 2.5", "figure_2_5.png")
+    return placed(rows, "figure 2.5", "figure_2_5.png")
 
 
 def _sharper(runs: Runs) -> Claim:
@@ -165,7 +165,7 @@ def element_claims(runs: Runs) -> list[Claim]:
         f"our largest angle, which the source does not print: {np.degrees(angle):.2f} deg at "
         f"{frequency / (2.0 * np.pi):.2f} Hz"
     )
-    mass, rubbers, picture = "section 2.3.3.1", "section 2.3.3.2, figure 2.20", "figure_2_20.png"
+    mass, rubbers, picture = "section 2.3.3.1", "figure 2.20", "figure_2_20.png"
     return [
         PREDICTED.number("engine alone [Hz]", 12.7, float(natural / (2 * np.pi)), 0.05, digits, place=mass),
         PREDICTED.number("engine alone, damping [%]", 15.0, ratio, 0.5, digits, place=mass),
@@ -214,4 +214,4 @@ def mass_on_damper_claims(runs: Runs) -> list[Claim]:
             "(2/pi) asin(Fd/F) = 30.0 % of the time without inertia",
         ),
     ]
-    return placed(rows, "section 2.3.2.3, figures 2.9 and 2.10", "figure_2_9.png")
+    return placed(rows, "figures 2.9 and 2.10", "figure_2_9.png")

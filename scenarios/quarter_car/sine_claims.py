@@ -34,7 +34,7 @@ def stuck_bound(car: QuarterCar) -> float:
 
 def sine_claims(runs: Runs) -> list[Claim]:
     """Sines with and without friction."""
-    return placed([*_low_claims(runs), *_high_claims(runs)], "section 2.3.2.4, figure 2.12", "figure_2_12.png")
+    return placed([*_low_claims(runs), *_high_claims(runs)], "figure 2.12", "figure_2_12.png")
 
 
 def _low_claims(runs: Runs) -> list[Claim]:
@@ -88,7 +88,7 @@ def _low_claims(runs: Runs) -> list[Claim]:
             f"slides {100 * fast:.0f} % of the time, largest velocity {np.abs(velocity).max():.1e} m/s",
             fast < 0.5,
             f"slides: above {SLIPS:g} m/s",
-            place="section 2.3.2.4, figure 2.13",
+            place="figure 2.13",
             picture="figure_2_13.png",
         ),
     ]
@@ -124,7 +124,7 @@ def _high_claims(runs: Runs) -> list[Claim]:
             f"slides {100 * fast:.0f} % of the time, largest velocity {np.abs(velocity).max():.2g} m/s",
             fast > 0.5,
             f"slides: above {SLIPS:g} m/s",
-            place="section 2.3.2.4, figure 2.13",
+            place="figure 2.13",
             picture="figure_2_13.png",
         ),
     ]
@@ -154,7 +154,7 @@ def engine_sine_claims(runs: Runs) -> list[Claim]:
             f"{angle:.0f} deg apart at {_hertz(line):.1f} Hz",
             angle > 90.0,
             "rule: more than 90 deg at the largest line of the wheel, so that the engine works against the wheel",
-            place="section 2.3.3.1, figure 2.18",
+            place="figure 2.18",
             picture="figure_2_18.png",
         ),
         PREDICTED.statement(
@@ -172,7 +172,7 @@ def engine_sine_claims(runs: Runs) -> list[Claim]:
             "all that is not the sine of 1 Hz: a linear car would have nothing there",
         ),
     ]
-    return placed(rows, "section 2.3.3.1, figure 2.17", "figure_2_17.png")
+    return placed(rows, "figure 2.17", "figure_2_17.png")
 
 
 _PLACES = ("body", "wheel")
