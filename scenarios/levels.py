@@ -276,7 +276,9 @@ def level_figures(
         f"{estimator_text(next(iter(responses.values())))}; {computed_by(run)}"
     )
     lines = np.geomspace(1.0, 50.0, 800)
-    for channel, row in zip(outputs, run.car.matrix_frf(channels_of(run.wheel, outputs), lines), strict=True):
+    for channel, row in zip(
+        outputs, run.car.matrix_frf(channels_of(run.wheel, outputs), lines, wheel=run.wheel), strict=True
+    ):
         name, title = OUTPUTS[channel]
         curves = [
             measured_curve(responses[level], CHANNELS.index(channel), level, colour)

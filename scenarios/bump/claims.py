@@ -103,7 +103,7 @@ SHOWN_POINTS = {
     "seat_rail": ("figure 3.13", "where it is not said"),
     "seat": ("figure 3.14", "where it is not said"),
     "engine": ("figure 3.17", "where the source says so"),
-    "roof_left_rear": ("figure 3.18", "where it is not said"),
+    "roof_right_rear": ("figure 3.18", "where it is not said"),
 }
 """Points whose vertical histories the source shows for both bumps, and the figure."""
 

@@ -40,7 +40,7 @@ VERTICAL = {
     "knuckle (3.15)": ("knuckle_{wheel}_acc_z", "knuckle_z"),
     "damper top": ("damper_top_{wheel}_acc_z", ""),
     "engine (3.17)": ("engine_acc_z", "engine_z"),
-    "roof left rear (3.18)": ("roof_left_rear_acc_z", "roof_z"),
+    "roof left rear (3.18)": ("roof_right_rear_acc_z", "roof_z"),
     "body front": ("body_front_acc_z", ""),
 }
 """Label to channel, and the key of the point where the source shows it."""
@@ -50,7 +50,7 @@ HORIZONTAL = {
     "seat rail y (3.20)": ("seat_rail_acc_y", "seat_rail_y"),
 }
 
-RINGING = {"seat rail": "seat_rail", "engine": "engine", "roof left rear": "roof_left_rear"}
+RINGING = {"seat rail": "seat_rail", "engine": "engine", "roof left rear": "roof_right_rear"}
 
 NOISY, QUIET = COLOURS[3], COLOURS[4]
 """Colours of the run with noise and of the same bump alone."""

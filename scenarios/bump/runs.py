@@ -185,7 +185,7 @@ SHOWN_S = 3.0
 RUNG_DOWN = 0.2
 """Rung down when the motion stays below this share of its largest value after the bump."""
 
-BODY = ("seat_rail", "seat", "roof_left_rear", "body_front")
+BODY = ("seat_rail", "seat", "roof_right_rear", "body_front")
 """Output points on the body; the RMS over them stands for its vertical motion."""
 
 POINTS = (*BODY, "suspension_mount_fr", "suspension_mount_fl", "engine")

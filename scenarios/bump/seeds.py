@@ -163,7 +163,7 @@ def motions(car: Car, signal: Signal, engine: str) -> dict[str, Vector]:
         "seat_z": "seat_acc_z",
         "knuckle_z": f"knuckle_{wheel}_acc_z",
         "engine_z": "engine_acc_z",
-        "roof_z": "roof_left_rear_acc_z",
+        "roof_z": "roof_right_rear_acc_z",
     }
     strut = [f"{place}_{wheel}_acc_{axis}" for place in ("damper_top", "knuckle") for axis in AXES]
     run = car.run(signal, engine=engine, channels=[*channels.values(), *strut, f"damper_{wheel}_velocity"])

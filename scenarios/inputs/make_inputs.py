@@ -71,7 +71,7 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
         inputs[name] = (
             signal,
             [
-                f"{name}: random displacement of the plate under the front right wheel, constant velocity PSD "
+                f"{name}: random displacement of the plate under the wheel on the shaker, constant velocity PSD "
                 "(displacement PSD ~ 1/f^2)",
                 f"RMS {rms:.2e} m (exact), band {band}, seed {SEED}, {signal.duration:g} s at 1000 Hz",
                 "begins and ends at rest (half cosine of 0.5 s at both ends); low, mid and high are one signal, scaled",

@@ -59,6 +59,7 @@ THESIS = Source(
         "tornado",
         "tuning",
         "quarter_car",
+        "source_choice",
     ),
     sections=(
         Section(number="2.1", title="Experimental study on different roads", first="2.1"),

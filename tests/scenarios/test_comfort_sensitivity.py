@@ -72,7 +72,7 @@ def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):
 
 
 def question(car=(), rms=0.0075, lead=3.0):
-    source = RoadInput(name="road", rms=rms, seed=0, duration=8.0, lead=lead, lower_band_edge=ROAD_EDGE_HZ)
+    source = RoadInput(name="road", rms=rms, seed=0, duration=8.0, lead=lead, lower_band_edge=ROAD_EDGE_HZ, wheel="fl")
     return Case(overrides=car, source=source, engine="reduced")
 
 
@@ -85,27 +85,32 @@ def observe(cases, folder):
 def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale(tmp_path):
     # All but friction is linear and gravity's part is a constant: x(2 Fd, 2 z) = 2 x(Fd, z), with the smooth law
     # reaching its limit at twice the velocity. So the curve over Fd and the one over the level of the road are one.
-    double = ("damper.coulomb_friction=250", "damper.smoothing=5e4", "damper.slip_velocity=0.024")
+    double = (
+        "damper.coulomb_friction=250",
+        "damper.smoothing=5e4",
+        f"damper.slip_velocity={2.0 * Car.load().vehicle.damper.slip_velocity!r}",
+    )
     one, two = observe([question(), question(double, rms=0.015)], tmp_path)
     # Rounding, and the 1e-9 N at which the friction forces of a step are called solved.
     assert two.comfort == pytest.approx(2.0 * one.comfort, rel=1e-6)
     assert two.slip == pytest.approx(one.slip, abs=1e-3)
-    static = Car.load().model.static.tyre_load["fr"]
+    static = Car.load().model.static.tyre_load["fl"]
     assert two.lowest_load - static == pytest.approx(2.0 * (one.lowest_load - static), rel=1e-6)
 
 
 @needs_reduced
 def test_the_lead_is_left_out():
-    run = Car.load().run(question().source.signal(), engine="reduced", channels=RoadMeasure(lead=3.0).channels)
-    late = RoadMeasure(lead=3.0)(run)
-    damper = np.abs(run["damper_fr_velocity"][3001:])
-    assert late["slip"] == pytest.approx(np.mean(damper > 0.012))
-    assert late["lowest_load"] == np.min(run["tyre_fr_force_z"][3001:])
+    measure = RoadMeasure(lead=3.0, wheel="fl")
+    run = Car.load().run(question().source.signal(), engine="reduced", channels=measure.channels)
+    late = measure(run)
+    damper = np.abs(run["damper_fl_velocity"][3001:])
+    assert late["slip"] == pytest.approx(np.mean(damper > run.car.vehicle.damper.slip_velocity))
+    assert late["lowest_load"] == np.min(run["tyre_fl_force_z"][3001:])
     assert late["pulling"] == 0.0
     # Parseval with an independent sum: lines of 1/8 Hz from 2 to 50 Hz, all three axes.
     power = sum(np.abs(np.fft.rfft(run[f"seat_rail_acc_{axis}"][3001:])[16:401]) ** 2 for axis in "xyz")
     assert late["comfort"] == pytest.approx(np.sqrt(2.0 * np.sum(power)) / 8000, rel=1e-9)
-    assert RoadMeasure(lead=0.0)(run)["slip"] != late["slip"]
+    assert RoadMeasure(lead=0.0, wheel="fl")(run)["slip"] != late["slip"]
 
 
 @needs_reduced

@@ -19,9 +19,8 @@ ROAD_RMS = {"smooth": 0.0075, "rough": 0.043}
 """RMS of the displacement [m] (source 1, chapter 4)."""
 
 ROAD_EDGE_HZ = CHOSEN.road_edge_hz
-"""Lower band edge f1 of both roads [Hz]. One number for two shares: 30.0 % and 81.4 % remain against 31.3 % and 79.4 %;
-0.031 Hz would meet the smooth road and 0.021 Hz the rough one. A record of 30 s, which the source shows with a swing of
-0.1 m, has its lowest line at 0.033 Hz."""
+"""Lower band edge f1 of both roads [Hz]. One number for two shares: 31.6 % and 81.5 % remain against 31.3 % and
+79.4 %. A record of 30 s, which the source shows with a swing of 0.1 to 0.2 m, has its lowest line at 0.033 Hz."""
 
 LEAD_S = 10.0
 """Time before the evaluated record [s]: several decay times of the slowest mode with both dampers stuck."""
