@@ -210,9 +210,9 @@ def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
         f"Change of the comfort value (RMS of the seat rail, x, y and z, unweighted, {COMFORT_BAND[0]:g} to "
         f"{COMFORT_BAND[1]:g} Hz) against the nominal car on the same records. Roads of {levels} under the "
         f"{comfort.runs.car().vehicle.wheel_text(comfort.runs.wheel)}, {comfort.text()}. Whiskers: two standard errors "
-        "of the ratio over the records. Numbers: values of the parameter, -20 and +20 % of the nominal one but for mount "
-        "damping (from its nominal 0) and body stiffness (frequencies with its square root). Order: largest swing on "
-        "either road"
+        "of the ratio over the records. Numbers: values of the parameter, -20 and +20 % of the nominal one but for "
+        "mount damping (from its nominal 0) and body stiffness (frequencies with its square root). Order: largest "
+        "swing on either road"
     )
     height = np.arange(len(bars))[::-1]
     with figure_file(
