@@ -34,6 +34,8 @@ def findings(runs: Runs) -> Findings:
         f"Resonances of nonlinear runs are the largest lines ({runs.resolution:.2g} Hz apart) of the body acceleration "
         "PSD over the road velocity PSD, looked for in "
         f"{FIRST[0]:g} to {FIRST[1]:g} Hz and {SECOND[0]:g} to {SECOND[1]:g} Hz.",
+        "Where the source has words and no number (much more, much higher, equal), the rule was set with our values in "
+        "view: such a row is weaker evidence than one of a printed number.",
     ]
     title = "Quarter-car family (thesis, Bommer 2006, chapter 2 and appendices A to D)"
     return Findings(

@@ -168,7 +168,11 @@ class Runs:
 
     @property
     def march_step(self) -> float:
-        """Step of the vectorised march [s]; with 0.5 ms it is within 5 % of the stiff solver at every instant."""
+        """Step of the vectorised integration [s].
+
+        With 0.5 ms it is within 5 % of the stiff solver at every instant on roads from 1.3 mm RMS on, within 6 % on
+        roads of 0.26 mm.
+        """
         return STEP if self.quick else 0.5 * STEP
 
     @property
