@@ -233,14 +233,16 @@ def words(points: Points) -> list[str]:
             + ", ".join(f"{law} {value:+.1f} %" for law, value in laws.items())
             + "."
         )
-    one, base = (points[Setting(law=law)] for law in ("groundhook", PASSIVE))
-    hop = 100.0 * (one["hop"] / base["hop"] - 1.0)
-    rest = 100.0 * (np.sqrt((one["tyre"] ** 2 - one["hop"] ** 2) / (base["tyre"] ** 2 - base["hop"] ** 2)) - 1.0)
+    hooked, passive = (points[Setting(law=law)] for law in ("groundhook", PASSIVE))
+    hop = 100.0 * (hooked["hop"] / passive["hop"] - 1.0)
+    rest = 100.0 * (
+        np.sqrt((hooked["tyre"] ** 2 - hooked["hop"] ** 2) / (passive["tyre"] ** 2 - passive["hop"] ** 2)) - 1.0
+    )
     found.append(
         f"Groundhook changes the tyre load of the wheel hop ({WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz) by {hop:+.1f} "
-        f"%, the rest by {rest:+.1f} %, the whole by {100.0 * (one['tyre'] / base['tyre'] - 1.0):+.1f} %. It damps the "
-        "wheel against ground at rest and leaves the body to swing: a quarter car with an ideal groundhook does the "
-        "same (docs/theory.md, semi-active dampers)."
+        f"%, the rest by {rest:+.1f} %, the whole by {100.0 * (hooked['tyre'] / passive['tyre'] - 1.0):+.1f} %. It "
+        "damps the wheel against ground at rest and leaves the body to swing: a quarter car with an ideal groundhook "
+        "does the same (docs/theory.md, semi-active dampers)."
     )
     return found
 
