@@ -104,7 +104,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
     car, wheel = parameters.quarter_car, parameters.quarter_car.wheel
     c = wheel.suspension_damping
     line = 1.0 / duration
-    frequency = line * np.arange(1, round(parameters.bands.highest / line) + 1)
+    frequency: Array = line * np.arange(1, round(parameters.bands.highest / line) + 1, dtype=np.float64)
     density = exponential_density(parameters.highway, frequency)
     response = quarter_car_model(car).response(frequency)
     speed = np.abs(2.0 * np.pi * frequency * (response[1] - response[0])) ** 2 * density * line

@@ -273,7 +273,7 @@ class Runs:
         """
 
         def solve() -> tuple[Array, Array]:
-            time = self.march_step * np.arange(round(5.0 / self.march_step) + 1)
+            time: Array = self.march_step * np.arange(round(5.0 / self.march_step) + 1, dtype=np.float64)
             phase, speed = (one.ravel() for one in np.meshgrid(np.pi * np.arange(8) / 4.0, np.linspace(0.0, 0.1, 8)))
             model = self.model({**STEEP, "body.mass": np.full(phase.size, self.car.body.mass)}, damper="friction")
             initial = np.zeros((phase.size, model.state.shape[-1]))
