@@ -53,7 +53,7 @@ class Variation:
         label: of its axis, with the unit.
         path: of the parameter; a component of a vector has its axis behind it.
         values: what it takes; in the unit of the parameter.
-        figures: of source 1; empty beyond the source.
+        figures: of Bommer 2006; empty beyond the source.
     """
 
     name: str

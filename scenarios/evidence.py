@@ -1,4 +1,4 @@
-"""What source 1 says that the choice of its unprinted numbers may use: a row for each statement, one half held out.
+"""What Bommer 2006 says that the choice of its unprinted numbers may use: a row for each statement, one half held out.
 
 Source 1 does not print which side is which, the velocity that counts as slip, band edges, modal damping and the body's
 mode shapes. They are chosen together (`scenarios.source_choice`) on half of these rows; the other half is a prediction.

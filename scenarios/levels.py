@@ -1,4 +1,4 @@
-"""Low, mid and high random input under the wheel on the shaker: FRFs of chapter 3 of source 1, slip shares, wheel mode.
+"""Low, mid and high random input under the wheel on the shaker: FRFs, slip shares, wheel mode (Bommer 2006, chapter 3).
 
 python -m scenarios.levels [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
@@ -43,12 +43,12 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     values = {level: numbers(run, responses[level]) for level, run in by_level.items()}
     slip_velocity = runs.car().vehicle.damper.slip_velocity
     claims = [*slip_claims(values, slip_velocity), *frequency_claims(values), *order_claims(values)]
-    claims += axis_claims(responses, CHANNELS, None if options.quick else rigid_lines(runs))
+    claims += axis_claims(responses, channels_of(runs.wheel), None if options.quick else rigid_lines(runs))
     trial = None if options.quick else less_friction(runs)
     claims.append(coherence_claim(responses, CHANNELS.index(DAMPER[0]), trial))
     sure = {claim.name for claim in order_claims(values)}
     return Findings(
-        title="Low, mid and high level (source 1, sections 3.2.1 and 3.3)",
+        title="Low, mid and high level (Bommer 2006, sections 3.2.1 and 3.3)",
         claims=claims,
         unjudged={one.name: TOO_SHORT for one in claims if one.name not in sure} if options.quick else {},
         notes=[slip_table(values, slip_velocity), sets_text(), *setting(runs, found[0], options.quick)],
@@ -244,7 +244,7 @@ OUTPUTS = {
     "seat_rail_acc_x": ("seat_rail_x", "Seat rail, longitudinal (figures 3.11, 3.35)"),
     "seat_rail_acc_y": ("seat_rail_y", "Seat rail, lateral (figures 3.10, 3.36)"),
 }
-"""Channel to the name of its file and its title, with the figures of source 1 that show it."""
+"""Channel to the name of its file and its title, with the figures of Bommer 2006 that show it."""
 
 DAMPER = ("knuckle_{wheel}_acc_z", "damper_top_{wheel}_acc_z")
 

@@ -37,7 +37,7 @@ STUDIES = {
     "damper_choice": "Choice of dampers for road holding.",
     "kinematics": "Axles of all cars over wheel travel and under load, and with one point moved.",
     "road": "Four wheels on the road: class, speed, damper friction, with and without an occupant.",
-    "source_choice": "Sides, slip velocity, band edges and body that source 1 does not print, chosen together.",
+    "source_choice": "Sides, slip velocity, band edges and body that Bommer 2006 does not print, chosen together.",
     "published": "Every published result of the complete car beside ours.",
 }
 """Name of a study, `python -m scenarios.NAME`, and what it does."""
@@ -162,7 +162,7 @@ def estimator_text(response: FrequencyResponse) -> str:
 
 def car_text(runs: CarRuns) -> str:
     """The car that all numbers were made with."""
-    file = "the car of source 1" if runs.vehicle is None else runs.vehicle.name
+    file = "the car of Bommer 2006" if runs.vehicle is None else runs.vehicle.name
     return file + (f", changed: {', '.join(runs.overrides)}" if runs.overrides else "")
 
 

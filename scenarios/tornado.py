@@ -172,7 +172,7 @@ def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
                 ", ".join(f"{road} {100.0 * low:.1f} to {100.0 * high:.1f} %" for road, (low, high) in pairs.items()),
                 all((high > low) == rising for low, high in pairs.values()),
                 f"relative comfort value from {bar.low:g} to {bar.high:g}",
-                place="section 4.4",
+                place="chapter 4",
                 picture="tornado.png",
             )
         )

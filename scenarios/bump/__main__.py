@@ -1,4 +1,4 @@
-"""Bumps of 1.5 and 7.5 mm under the right front wheel: first slip, extremes, ring-down (chapter 3 of source 1).
+"""Bumps of 1.5 and 7.5 mm under the right front wheel: first slip, extremes, ring-down (chapter 3 of Bommer 2006).
 
 python -m scenarios.bump [--output DIR] [--reading height|literal] [--video [FILE.mp4]] [--quick] [--jobs N] ...
 """
@@ -65,7 +65,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     low, high = bumps.other
     slip, end = (when(slip_after(high, record.start, limit)) for limit in (bumps.slip_velocity, SATURATED_VELOCITY))
     return Findings(
-        title=f"Bumps of 1.5 and 7.5 mm, {options.reading} reading (source 1, section 3.2.2)",
+        title=f"Bumps of 1.5 and 7.5 mm, {options.reading} reading (Bommer 2006, section 3.2.2)",
         claims=[*slip_claims(bumps, seeds), *ends, *ringing],
         unjudged={**too_few, **too_short} if options.quick else {},
         notes=[

@@ -1,4 +1,4 @@
-"""Comfort on a smooth and a rough road against friction, suspension mount and body stiffness (source 1, chapter 4).
+"""Comfort on a smooth and a rough road against friction, suspension mount and body stiffness (Bommer 2006, chapter 4).
 
 python -m scenarios.comfort_sensitivity [--output DIR] [--quick] [--jobs N] [--engine auto|reduced|mujoco]
     [--records N] [--source-only] [--vehicle FILE.toml] [--set PATH=VALUE]
@@ -77,7 +77,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     notes = [
         *setting(comfort),
         f"{comfort.computed} runs of {comfort.records.duration:g} s, {len(set(cases))} of them for the three "
-        f"parameters of source 1; computed in {seconds:.1f} s with --jobs {runs.jobs}.",
+        f"parameters of Bommer 2006; computed in {seconds:.1f} s with --jobs {runs.jobs}.",
     ]
     for variation in SOURCE:
         beside = {"with a rigid body": rigid[variation.name]} if rigid else {}
@@ -114,7 +114,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     claims += [*history_claims(levels), amplification_claim(comfort.nominal()), stiffness_claim(wheel_modes(comfort))]
     claims += wheel_claims(levels)
     return Findings(
-        title="Comfort on a smooth and a rough road (source 1, chapter 4)",
+        title="Comfort on a smooth and a rough road (Bommer 2006, chapter 4)",
         claims=claims,
         unjudged={one.name: QUICK_WHY for one in claims if one.name != SURE} if options.quick else {},
         notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
@@ -124,7 +124,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Options of this study alone."""
-    parser.add_argument("--source-only", action="store_true", help="only the three parameters of source 1")
+    parser.add_argument("--source-only", action="store_true", help="only the three parameters of Bommer 2006")
 
 
 main = car_study("comfort_sensitivity", study, comfort_options, add_options)
@@ -155,7 +155,7 @@ def beyond_findings(
     Args:
         comfort: what runs the cars.
         folder: where to.
-        linear: curves of source 1, with the linear damper.
+        linear: curves of Bommer 2006, with the linear damper.
     """
     against = {road: comfort.point(0.0, DEGRESSIVE, road, ()) for road in ROAD_RMS}
     damper = comfort.runs.car(DEGRESSIVE).vehicle.damper

@@ -156,7 +156,7 @@ BODY = Variation(
 )
 
 SOURCE = (FRICTION, MOUNT_DAMPING, MOUNT_STIFFNESS)
-"""Variations of source 1: 14 points on 2 roads, 28 runs, the nominal car counted once for each parameter."""
+"""Variations of Bommer 2006: 14 points on 2 roads, 28 runs, the nominal car counted once for each parameter."""
 
 DEGRESSIVE: Changes = ("damper.viscous_law=degressive",)
 """The damper that the source has for the quarter car only (appendix C.2)."""
@@ -165,4 +165,4 @@ RIGID_BODY: Changes = ("body.flexible=false",)
 """Leaves out the flexible modes of the body, whose shapes are assumed."""
 
 PUBLISHED_SLIP = {"smooth": 0.313, "rough": 0.794}
-"""Share of the time in slip of the right damper (source 1, chapter 4)."""
+"""Share of the time in slip of the right damper (Bommer 2006, chapter 4)."""

@@ -1,4 +1,4 @@
-"""Figures of the comfort study, histories, spectra, relative comfort (4.1 to 4.12 of source 1), and its tables."""
+"""Figures of the comfort study, histories, spectra, relative comfort (4.1 to 4.12 of Bommer 2006), and its tables."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from vehicle.rendering.figure import COLOURS
 from vehicle.rendering.placed_axes import Margins, placed_axes
 
 EXCERPT_S = (27.0, 27.5)
-"""Time shown by source 1 [s]."""
+"""Time shown by Bommer 2006 [s]."""
 
 WINDOW_S = 4.0
 """Length of the windows of the spectra [s]."""

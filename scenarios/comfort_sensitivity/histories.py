@@ -239,7 +239,7 @@ def amplification_claim(nominal: Mapping[str, Point]) -> Claim:
         ", ".join(f"{road} {value:.4f} m/s2 per mm" for road, value in found.items()),
         found["smooth"] > found["rough"],
         "comfort value of the nominal car over the RMS of the road; one road at two levels",
-        place="section 4",
+        place="chapter 4",
     )
 
 
@@ -295,7 +295,7 @@ def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
             ", ".join(f"{road} {value:.1f} m/s2" for road, value in sizes.items()),
             False,
             "the measured values are not printed",
-            place="section 4",
+            place="chapter 4",
             picture="wheel.png",
         )
     )

@@ -34,7 +34,7 @@ LEAD_S = 2.0
 class RideMeasure:
     """Turns a run on a road into numbers, all without the lead.
 
-    `rail` is the comfort value of source 1, sqrt(RMSx^2 + RMSy^2 + RMSz^2) unfiltered in 2 to 50 Hz; `rail_weighted`
+    `rail` is the comfort value of Bommer 2006, sqrt(RMSx^2 + RMSy^2 + RMSz^2) unfiltered in 2 to 50 Hz; `rail_weighted`
     and `seat_weighted` are vector sums after ISO 2631-1 (x and y by Wd, z by Wk), `seat_value` the SEAT value along z;
     the last two are NaN of a car without seat. `load_front` and `load_rear` are RMS of the dynamic tyre load over the
     static one, quadratic mean of the wheels of an axle; `lowest_load` that of any tyre over its static one; `pulling`

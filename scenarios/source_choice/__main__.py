@@ -1,4 +1,4 @@
-"""Joint choice of what source 1 does not print, on half of its statements; the other half is held out.
+"""Joint choice of what Bommer 2006 does not print, on half of its statements; the other half is held out.
 
 python -m scenarios.source_choice [--output DIR] [--quick] [--jobs N]
 """
@@ -150,7 +150,7 @@ def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
     side_figure(folder / "sides.png", found.used, found.held, winner)
     claims = [*half_claims(found, winner), *side_claims(winner, other)]
     return Findings(
-        title="Joint choice of what source 1 does not print",
+        title="Joint choice of what Bommer 2006 does not print",
         claims=claims,
         unjudged={claim.name: "short records of two seeds cannot choose" for claim in claims} if options.quick else {},
         notes=[

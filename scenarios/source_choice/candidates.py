@@ -1,4 +1,4 @@
-"""What source 1 leaves open, as candidates: sides, inertia, damping and brackets of the body; edges, noise, velocity.
+"""Candidates of what Bommer 2006 leaves open: sides, inertia, damping and brackets of the body; edges, noise, velocity.
 
 A mirror image of the whole rig gives the same numbers. So the seat keeps its side (y < 0), and the plate, the
 hydromount, the roof point and the sign of the products of inertia take either: 2^4 rigs, no two of them alike.

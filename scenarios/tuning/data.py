@@ -163,7 +163,7 @@ AUTHORS = (
     # Appendix F prints 1.2e6, the source says that it hardly matters: do the data tell?
     Range(path="bushings.torque_arm_body.stiffness.z", low=1.2e4, high=1.2e6, start=1.3e5),
 )
-"""Section "starting values before tuning" of source 1; the bounds are ours and far from start and result."""
+"""Section "starting values before tuning" of Bommer 2006; the bounds are ours and far from start and result."""
 
 SLIDING = ("damper.viscous", "damper.coulomb_friction")
 """What a damper that sticks does not show: the authors tuned them on bumps (section 3.2.2)."""

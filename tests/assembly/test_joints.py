@@ -1,4 +1,4 @@
-"""Joints, rows and constants of the compiled car against section 3.1.3 of source 1."""
+"""Joints, rows and constants of the compiled car against section 3.1.3 of Bommer 2006."""
 
 from __future__ import annotations
 

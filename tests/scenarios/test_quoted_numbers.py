@@ -13,6 +13,7 @@ import pytest
 
 from scenarios.published.__main__ import HOME, PAGE
 from scenarios.published.page import page
+from vehicle.excitation.slip_set import CHOSEN
 
 ROOT = Path(__file__).parents[2]
 
@@ -61,6 +62,9 @@ QUOTES: dict[str, Callable[[], list[str]]] = {
     rf"rows are fitted, {N} chosen": lambda: number_of("chosen"),
     rf"slip share[^|]*, right damper[^|]*\| {N} / {N} / {N} % \| {N} / {N} / {N} % \|": lambda: shares("right"),
     rf"slip share[^|]*, left damper[^|]*\| {N} / {N} / {N} % \| {N} / {N} / {N} % \|": lambda: shares("left"),
+    rf"above {N} mm/s; the share above 1 mm/s": lambda: [f"{1e3 * CHOSEN.slip_velocity:g}"],
+    rf"constant velocity PSD from {N} Hz": lambda: [f"{CHOSEN.shaker_edge_hz:g}"],
+    rf"to 50 Hz, roads from {N} Hz": lambda: [f"{CHOSEN.road_edge_hz:g}"],
     rf"vertical wheel mode[^|]*\| 28 Hz \| {N} Hz": lambda: first("levels: vertical wheel mode, low *", 1),
     rf"body roll, Ixx 1000[^|]*\| 6.5 Hz \| {N} Hz": lambda: first("inertia: roll peak*, Ixx 1000 [[]Hz]", 2),
     rf"body roll, Ixx 1200[^|]*\| [^|]*\| {N} Hz, {N} % lower": lambda: [
@@ -68,7 +72,7 @@ QUOTES: dict[str, Callable[[], list[str]]] = {
     ],
     rf"first slip \(end of sticking[^|]*\| 5.035 s \| {N} s": lambda: first("bump: *end of stick* with Fd 125 N*", 3),
 }
-"""What README.md says, and the numbers of the table that belong there."""
+"""What README.md says, and the numbers of the table, or of the chosen set, that belong there."""
 
 
 @pytest.mark.parametrize("sentence", QUOTES)

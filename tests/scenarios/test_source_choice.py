@@ -1,4 +1,4 @@
-"""The joint choice of what source 1 does not print: evidence, candidates, likelihoods, the rule of ties."""
+"""The joint choice of what Bommer 2006 does not print: evidence, candidates, likelihoods, the rule of ties."""
 
 from dataclasses import replace
 

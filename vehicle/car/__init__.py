@@ -4,7 +4,7 @@ car = Car.load()
 run = car.run(read_signal(find_input("low.csv")))
 run["seat_rail_acc_z"]                # time history
 run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
-run.comfort().overall                 # comfort value of source 1
+run.comfort().overall                 # comfort value of Bommer 2006
 """
 
 from vehicle.car.car import Car

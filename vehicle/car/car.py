@@ -49,7 +49,7 @@ class Car:
     """A car on the shaker rig.
 
     Args:
-        vehicle: parameters; those of the Ford-Focus-like car of source 1 by default.
+        vehicle: parameters; those of the Ford-Focus-like car of Bommer 2006 by default.
         folder: where the vehicle file lies, searched first for its superelement.
     """
 
@@ -68,7 +68,7 @@ class Car:
         """Read a car from a vehicle file.
 
         Args:
-            path: TOML file, or the name of a shipped car; that of source 1 by default.
+            path: TOML file, or the name of a shipped car; that of Bommer 2006 by default.
             overrides: path to value, as {"damper.coulomb_friction": 93.75}; or texts "damper.coulomb_friction=93.75".
 
         Returns:

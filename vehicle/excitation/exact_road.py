@@ -1,4 +1,4 @@
-"""The smooth and the rough road of source 1 under one wheel.
+"""The smooth and the rough road of Bommer 2006 under one wheel.
 
 Both are one road at two levels: constant velocity PSD G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) from f1 to f2, so the lower
 edge f1 decides how much of the printed RMS is motion that the suspension feels.
@@ -16,7 +16,7 @@ from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.excitation.slip_set import CHOSEN
 
 ROAD_RMS = {"smooth": 0.0075, "rough": 0.043}
-"""RMS of the displacement [m] (source 1, chapter 4)."""
+"""RMS of the displacement [m] (Bommer 2006, chapter 4)."""
 
 ROAD_EDGE_HZ = CHOSEN.road_edge_hz
 """Lower band edge f1 of both roads [Hz]. One number for two shares: 31.6 % and 81.5 % remain against 31.3 % and
@@ -58,7 +58,7 @@ def road(
     Raises:
         ConfigurationError: a parameter is out of range.
 
-    Source: source 1, sections 2.3.1 and 4; Shinozuka and Deodatis, Appl. Mech. Rev. 44 (1991).
+    Source: Bommer 2006, sections 2.3.1 and 4; Shinozuka and Deodatis, Appl. Mech. Rev. 44 (1991).
     """
     positive("RMS", rms, "m")
     positive("lower band edge", lower_band_edge, "Hz")

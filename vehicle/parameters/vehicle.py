@@ -312,7 +312,7 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
     """Read and validate a vehicle file.
 
     Args:
-        path: TOML file, or the name of a shipped car; the Ford-Focus-like car of source 1 by default.
+        path: TOML file, or the name of a shipped car; the Ford-Focus-like car of Bommer 2006 by default.
         overrides: texts "path.to.parameter=value".
 
     Returns:

@@ -74,7 +74,7 @@ class Case:
         source: the input; a `Signal` is one.
         overrides: texts "path=value" as `Car.load` takes them, applied in this order.
         engine: as of `Car.run`.
-        vehicle: vehicle file; the car of source 1 by default.
+        vehicle: vehicle file; the car of Bommer 2006 by default.
         shared: how many of the overrides, from the first, the whole study has: its cars are varied from the one with
             these, which is quick where only laws and masses vary. The numbers may move in the ninth digit.
     """
