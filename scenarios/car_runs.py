@@ -16,7 +16,7 @@ class CarRuns:
     """Cars and finished runs behind one or several scenarios.
 
     Args:
-        vehicle: TOML file; the car of source 1 by default.
+        vehicle: TOML file; the car of Bommer 2006 by default.
         overrides: of every car, before those of a case.
         engine: "mujoco", "reduced" or "auto".
         jobs: worker processes.
@@ -45,6 +45,11 @@ class CarRuns:
             vehicle=self.vehicle,
             shared=len(self.overrides),
         )
+
+    @property
+    def wheel(self) -> str:
+        """Wheel on the shaker."""
+        return self.car().vehicle.shaker_wheel
 
     def car(self, overrides: Sequence[str] = ()) -> Car:
         """The car with some parameters changed; built once."""

@@ -9,19 +9,21 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from vehicle.output.folder import write_text
 
-Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate"]
+Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate", "not testable"]
 """`predicted`: nothing was adjusted to it. `fitted`: what the source leaves open was fitted to it. `chosen`: one of
 several readings of the source, or of several bodies, was taken with the row in view. `own check`: not a published
-result. `duplicate`: the same statement again, at another place or by another definition."""
+result. `duplicate`: the same statement again, at another place or by another definition. `not testable`: the source
+leaves out what a test needs; listed with the reason, never counted."""
 
 Source = Literal["text", "table", "axis interval", "inferred"]
 """Where the source has it. `axis interval`: between two labels of an axis, which are all that is left of a figure.
@@ -35,9 +37,9 @@ LEGEND = (
     "Only `predicted` rows, numbers and trends to which nothing was adjusted, count in the headline. `fitted`: "
     "what the source leaves open was fitted to it; `chosen`: one of several readings of the source, or of several "
     "bodies, was taken with it in view; `own check`: not a published result; `duplicate`: the statement of "
-    "another row again. `source` `axis interval`: only the labels of the axes are left of the figure; the extreme "
-    "of the curve lies in `interval`. `deviation` is (ours - published) / published where both are numbers, and "
-    "from the nearer end of an interval, 0 inside."
+    "another row again; `not testable`: the source leaves out what a test needs. `source` `axis interval`: only the "
+    "labels of the axes are left of the figure; the extreme of the curve lies between them. `deviation` is (ours - "
+    "published) / published where both are numbers, and from the nearer end of an interval, 0 inside."
 )
 
 
@@ -50,13 +52,19 @@ class Claim:
     ours: float | str
     deviation: float | None
     """(ours - published) / published where both are numbers, that from the nearer end of an interval, else None."""
-    within: bool
-    """Whether ours agrees with the print, by the rule given in `why`."""
+    within: bool | None
+    """True if ours agrees with the print, by the rule given in `why`; None where no one can test it."""
     why: str
     status: Status
     source: Source
     interval: Interval | None = None
     """Lowest and highest published value, infinite where it is open; None where the print is no interval."""
+    place: str = ""
+    """Where in the source: "figure 3.13", "table 3.2", "section 3.3"."""
+    picture: str = ""
+    """File name of the figure of the study that shows the row, or nothing."""
+    probability: float | None = None
+    """Of the interval, where ours is a spread; see `interval_probability`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +74,18 @@ class Kind:
     status: Status
     source: Source
 
-    def number(self, name: str, published: float, ours: float, tolerance: float, why: str) -> Claim:
-        """Row of a printed number.
+    def number(
+        self,
+        name: str,
+        published: float,
+        ours: float,
+        tolerance: float,
+        why: str,
+        *,
+        place: str = "",
+        picture: str = "",
+    ) -> Claim:
+        """Return the row of a printed number.
 
         Args:
             name: what is compared, with its unit.
@@ -75,73 +93,131 @@ class Kind:
             ours: own value.
             tolerance: largest |ours - published|, in the unit of the value.
             why: reason of the tolerance, and of a disagreement.
+            place: figure, table or section of the source.
+            picture: file name of the figure of the study that shows the row.
         """
         deviation = float(ours - published) / published
-        within = bool(abs(ours - published) <= tolerance)
-        return Claim(name, published, float(ours), deviation, within, why, self.status, self.source)
+        within = _verdict(self.status, abs(ours - published) <= tolerance)
+        value = float(ours)
+        return Claim(
+            name, published, value, deviation, within, why, self.status, self.source, place=place, picture=picture
+        )
 
-    def statement(self, name: str, published: str, ours: str, holds: bool, why: str) -> Claim:
-        """Row of a printed statement in words."""
-        return Claim(name, published, ours, None, bool(holds), why, self.status, self.source)
+    def statement(
+        self, name: str, published: str, ours: str, holds: bool, why: str, *, place: str = "", picture: str = ""
+    ) -> Claim:
+        """Return the row of a printed statement in words; arguments as for `number`.
+
+        Args:
+            name: what is compared.
+            published: printed statement.
+            ours: own values.
+            holds: True if the statement is true of ours.
+            why: rule, and reason of a disagreement.
+            place: figure, table or section of the source.
+            picture: file name of the figure of the study that shows the row.
+        """
+        within = _verdict(self.status, holds)
+        return Claim(name, published, ours, None, within, why, self.status, self.source, place=place, picture=picture)
 
 
 PREDICTED, FITTED, CHOSEN = Kind("predicted", "text"), Kind("fitted", "text"), Kind("chosen", "text")
 OWN_CHECK, COMPARED = Kind("own check", "inferred"), Kind("own check", "text")
 TABLE, INFERRED, DUPLICATE = Kind("predicted", "table"), Kind("predicted", "inferred"), Kind("duplicate", "text")
+NOT_TESTABLE = Kind("not testable", "text")
 
 
-def interval_claim(name: str, interval: Interval, ours: float, why: str, *, status: Status = "predicted") -> Claim:
-    """Row of an extreme that is only known to lie between two labels of an axis; it agrees inside.
+def interval_claim(
+    name: str,
+    interval: Interval,
+    ours: float,
+    why: str,
+    *,
+    status: Status = "predicted",
+    place: str = "",
+    picture: str = "",
+) -> Claim:
+    """Return the row of an extreme that is only known to lie between two labels of an axis; it agrees inside.
 
     Args:
         name: what is compared, with its unit.
         interval: lowest and highest value; infinite where it is open.
         ours: own value.
         why: which axis, and the reason of a disagreement.
-        status: as of `Claim`.
+        status: see `Claim`.
+        place: figure, table or section of the source.
+        picture: file name of the figure of the study that shows the row.
     """
-    low, high = interval
-    nearest = min(max(ours, low), high)
-    inside = bool(low <= ours <= high)
-    deviation = 0.0 if inside else float(ours - nearest) / abs(nearest) if nearest else None
-    return Claim(name, _between(interval), float(ours), deviation, inside, why, status, "axis interval", interval)
+    value = float(ours)
+    inside = _verdict(status, interval[0] <= value <= interval[1])
+    deviation = _interval_deviation(interval, value)
+    row = Claim(name, between(interval), value, deviation, inside, why, status, "axis interval", interval)
+    return replace(row, place=place, picture=picture)
 
 
 def spread_claim(
-    name: str, interval: Interval, ours: npt.ArrayLike, why: str, *, status: Status = "predicted"
+    name: str,
+    interval: Interval,
+    ours: npt.ArrayLike,
+    why: str,
+    *,
+    status: Status = "predicted",
+    place: str = "",
+    picture: str = "",
 ) -> Claim:
-    """Row of an extreme of one stretch of a random signal, against ours over many stretches.
+    """Return the row of an extreme of a random signal that is only known to lie between two labels of an axis.
 
-    It agrees when the whole interval lies between the 5th and the 95th percentile of ours: wherever in it the published
-    extreme is, it is an ordinary one.
+    The row agrees when the probability of the interval, estimated from our values, is above 5 %. A single value is
+    compared as by `interval_claim`.
 
     Args:
         name: what is compared, with its unit.
         interval: lowest and highest value of the published extreme.
-        ours: own values, one for each stretch, (n,).
-        why: which axis and stretches, and the reason of a disagreement.
-        status: as of `Claim`.
+        ours: own values, one for each noise seed or window, (n,), best 8 or more.
+        why: which axis and values, and the reason of a disagreement.
+        status: see `Claim`.
+        place: figure, table or section of the source.
+        picture: file name of the figure of the study that shows the row.
     """
-    values = np.asarray(ours)
-    low, middle, high = (float(value) for value in np.percentile(values, (5.0, 50.0, 95.0)))
-    text = f"5th to 95th percentile {low:.3g} to {high:.3g}, median {middle:.3g}"
-    within = bool(low <= interval[0] and interval[1] <= high)
-    inside = np.mean((values >= interval[0]) & (values <= interval[1]))
-    why = f"the whole interval must lie between our percentiles; {100.0 * inside:.0f} % of ours are inside it; {why}"
-    return Claim(name, _between(interval), text, None, within, why, status, "axis interval", interval)
+    values = np.atleast_1d(np.asarray(ours, dtype=float))
+    middle = float(np.mean(values))
+    row = interval_claim(name, interval, middle, why, status=status, place=place, picture=picture)
+    if values.size == 1:
+        return row
+    probability = interval_probability(values, interval)
+    text = f"{middle:.3g} +- {np.std(values, ddof=1):.2g} ({values.size} values)"
+    rule = f"probability of the interval {100.0 * probability:.3g} %, must be above {100.0 * AGREES_ABOVE:g} %"
+    within = row.within if row.within is None else probability > AGREES_ABOVE
+    return replace(row, ours=text, within=within, why=f"{rule}; {why}", probability=probability)
+
+
+def _verdict(status: Status, holds: object) -> bool | None:
+    return None if status == "not testable" else bool(holds)
+
+
+def _interval_deviation(interval: Interval, ours: float) -> float | None:
+    """(ours - nearer end) / |nearer end|, 0 inside; None where that end is 0."""
+    low, high = interval
+    nearest = min(max(ours, low), high)
+    if low <= ours <= high:
+        return 0.0
+    return (ours - nearest) / abs(nearest) if nearest else None
 
 
 def headline(rows: Sequence[Mapping[str, Any]]) -> str:
-    """How many predicted rows agree, and how many rows are of another kind: "3 of 4 predicted rows agree; ..."."""
-    counts = {status: [bool(row["within"]) for row in rows if row["status"] == status] for status in STATUSES}
-    others = [
-        f"{len(found)} {status} ({sum(found)} agree)" for status, found in counts.items() if status != "predicted"
-    ]
-    predicted = counts["predicted"]
+    """Return how many predicted rows agree, and the other rows by status: "3 of 4 predicted rows agree; ..."."""
+    counts = {
+        status: f"{len(verdicts)} {status}"
+        + ("" if status == "not testable" else f" ({sum(map(bool, verdicts))} agree)")
+        for status in STATUSES
+        if (verdicts := [row["within"] for row in rows if row["status"] == status])
+    }
+    predicted = [bool(row["within"]) for row in rows if row["status"] == "predicted"]
+    others = ", ".join(text for status, text in counts.items() if status != "predicted")
     if not predicted:
-        kinds = [f"{len(found)} {status} ({sum(found)} agree)" for status, found in counts.items() if found]
-        return f"no row is a prediction of the model; {', '.join(kinds) or 'no other rows'}"
-    return f"{sum(predicted)} of {len(predicted)} predicted rows agree; beside them {', '.join(others)}"
+        return f"no row is a prediction of the model; {others or 'no other rows'}"
+    count = f"{sum(predicted)} of {len(predicted)} predicted rows agree"
+    return f"{count}; in addition {others}" if others else count
 
 
 def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -156,8 +232,8 @@ OWN_COLUMNS = ("name", "found", "within", "why")
 
 def claim_table(rows: Sequence[Mapping[str, Any]]) -> str:
     """The rows as a Markdown table."""
-    columns = ("name", "published", "ours", "deviation", "within", "status", "source", "interval", "why")
-    return markdown(columns, [[_cell(name, row[name]).replace("|", "\\|") for name in columns] for row in rows])
+    columns = ("name", "place", "published", "ours", "deviation", "within", "status", "source", "why")
+    return markdown(columns, [[cell(name, row[name]).replace("|", "\\|") for name in columns] for row in rows])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -172,6 +248,7 @@ class Findings:
         data: further numbers for `results.json`, under their own keys.
         values: lines for the console, as fitted values.
         own_data: whether they are about data of the user, of which nothing is published: the rows say what was found.
+        tyres: what the tyres of its cars do, see `tyre_words`.
     """
 
     title: str
@@ -181,6 +258,7 @@ class Findings:
     data: Mapping[str, Any] = field(default_factory=dict)
     values: Sequence[str] = ()
     own_data: bool = False
+    tyres: str = ""
 
     def write(self, folder: Path) -> str:
         """Write `results.md` and `results.json`, without the rows that are not judged; returns the line to print."""
@@ -190,35 +268,41 @@ class Findings:
         if self.own_data:
             rows = [{"name": r["name"], "found": r["ours"], "within": r["within"], "why": r["why"]} for r in rows]
             counts, legend = f"{sum(row['within'] for row in rows)} of {len(rows)} checks hold", []
-            table = markdown(OWN_COLUMNS, [[_cell(name, row[name]) for name in OWN_COLUMNS] for row in rows])
-        notes = [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
+            table = markdown(OWN_COLUMNS, [[cell(name, row[name]) for name in OWN_COLUMNS] for row in rows])
+        notes = [f"Tyres: {self.tyres}."] if self.tyres else []
+        notes += [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
         write_text(
             folder / "results.md",
             "\n\n".join([f"# {self.title}", f"{counts}.", *legend, table, *notes]) + "\n",
         )
         open_rows = {} if self.unjudged is None else {"not_judged": dict(left)}
-        content = {"title": self.title, "rows": rows, "notes": notes, **open_rows, **self.data}
+        content = {"title": self.title, "rows": rows, "notes": notes, "tyre": self.tyres, **open_rows, **self.data}
         write_text(folder / "results.json", json.dumps(_plain(content), indent=1, allow_nan=False) + "\n")
-        return f"{counts}{f', {len(left)} not judged' if left else ''}; see results.md"
+        tyres = f"; tyres {self.tyres}" if self.tyres else ""
+        return f"{counts}{f', {len(left)} not judged' if left else ''}{tyres}; see results.md"
 
 
-def _between(interval: Interval) -> str:
+def between(interval: Interval) -> str:
+    """Return an interval in words: "0.4 to 0.6", "0.5 or more"."""
     low, high = interval
     if math.isinf(high):
         return f"{low:g} or more"
     return f"{high:g} or less" if math.isinf(low) else f"{low:g} to {high:g}"
 
 
-def _cell(name: str, value: Any) -> str:
+def cell(name: str, value: Any) -> str:
+    """Return the text of a member of a row.
+
+    Args:
+        name: of the member; see `Claim`.
+        value: its value.
+    """
+    if name == "within":
+        return "not testable" if value is None else "yes" if value else "NO"
     if value is None:
         return ""
     if name == "deviation":
         return f"{100.0 * value:+.1f} %"
-    if name == "within":
-        return "yes" if value else "NO"
-    if name == "interval":
-        # An open end is None in the JSON file, infinite before.
-        return "[" + ", ".join("" if end is None or math.isinf(end) else f"{end:g}" for end in value) + "]"
     return value if isinstance(value, str) else f"{value:.4g}"
 
 

@@ -53,7 +53,7 @@ class Variation:
         label: of its axis, with the unit.
         path: of the parameter; a component of a vector has its axis behind it.
         values: what it takes; in the unit of the parameter.
-        figures: of source 1; empty beyond the source.
+        figures: of Bommer 2006; empty beyond the source.
     """
 
     name: str
@@ -166,6 +166,15 @@ class ComfortRuns:
         """Number of runs so far."""
         return len(self._done)
 
+    @property
+    def tyres(self) -> str:
+        """What the tyres of the car do."""
+        return self.runs.car().vehicle.driving.words
+
+    def text(self) -> str:
+        """Records, tyres and engine, for captions."""
+        return f"{self.records.text()}, tyres {self.tyres}, engine {self.engine}"
+
     def cars(self, variation: Variation, base: Changes = ()) -> dict[float, Changes]:
         """Cars of a variation by its values; `base` are changes that all have."""
         vehicle = self.runs.car().vehicle
@@ -198,6 +207,7 @@ class ComfortRuns:
                     duration=self.records.duration,
                     lead=self.records.lead,
                     lower_band_edge=edge,
+                    wheel=self.runs.wheel,
                 ),
                 car,
                 engine=engine or self.engine,
@@ -216,7 +226,7 @@ class ComfortRuns:
             self.folder.mkdir(exist_ok=True)
             # One job needs no process of its own, which takes seconds to start.
             inside = partial(ThreadPoolExecutor, 1) if self.runs.jobs == 1 else None
-            measure = RoadMeasure(lead=self.records.lead)
+            measure = RoadMeasure(lead=self.records.lead, wheel=self.runs.wheel)
             table = sweep(missing, measure, executor=inside, jobs=self.runs.jobs, folder=self.folder)
             for case, reason in table.failed[:1]:
                 raise SimulationError(f"{case.label}: {reason}; {len(table.failed)} of {len(missing)} runs failed")

@@ -30,7 +30,7 @@ from vehicle.parameters.ranges import Range
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import load_vehicle
 from vehicle.rendering.figure import COLOURS
-from vehicle.sweeps.case import table_cases
+from vehicle.sweeps.case import all_tyre_words, table_cases
 from vehicle.sweeps.executors import executor_factory
 from vehicle.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
 from vehicle.sweeps.road import RoadInput, RoadMeasure
@@ -122,6 +122,7 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"--runs {runs}: needed are at least {len(RANGES) + 2} for {len(RANGES)} parameters")
     make = executor_factory(options.executor, options.jobs)
     points = points_of(options.method, runs, options.seed)
+    wheel = load_vehicle(options.vehicle).shaker_wheel
     road = RoadInput(
         name=f"{options.road} road",
         rms=ROAD_RMS[options.road],
@@ -129,6 +130,7 @@ def _job(options: argparse.Namespace) -> None:
         duration=duration,
         lead=lead,
         lower_band_edge=ROAD_EDGE_HZ,
+        wheel=wheel,
     )
     engine = chosen_engine(options.engine)
     cases = table_cases([one.path for one in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle)
@@ -136,7 +138,7 @@ def _job(options: argparse.Namespace) -> None:
     started = clock.perf_counter()
     table = sweep(
         cases,
-        RoadMeasure(lead=lead),
+        RoadMeasure(lead=lead, wheel=wheel),
         executor=make,
         folder=folder,
         retry_failed=options.retry_failed,
@@ -145,8 +147,8 @@ def _job(options: argparse.Namespace) -> None:
     seconds = clock.perf_counter() - started
     caption = (
         f"comfort value (unweighted RMS of the seat rail, 2 to 50 Hz) on the {options.road} road, RMS "
-        f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, engine {engine}, "
-        f"seed {options.seed}"
+        f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, tyres "
+        f"{all_tyre_words(cases)}, engine {engine}, seed {options.seed}"
     )
     text = _evaluate(options.method, folder, table, points, caption, options.seed)
     ranges = markdown(
@@ -155,7 +157,8 @@ def _job(options: argparse.Namespace) -> None:
     )
     write_text(folder / "results.md", f"# Global sensitivity of comfort\n\n{caption}\n\n{text}\n\n{ranges}\n")
     print(
-        f"{folder}: {len(cases)} runs, {len(table.failed)} failed, {seconds:.0f} s; results.md, results.json, figures"
+        f"{folder}: {len(cases)} runs, {len(table.failed)} failed, tyres {all_tyre_words(cases)}, {seconds:.0f} s; "
+        "results.md, results.json, figures"
     )
 
 

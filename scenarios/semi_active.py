@@ -22,6 +22,7 @@ from scenarios.comfort_runs import chosen_engine
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.analysis.comfort import comfort_values
 from vehicle.analysis.seat_value import weighted_rms_of
+from vehicle.analysis.spectra import band_rms
 from vehicle.car import Run
 from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
@@ -30,7 +31,7 @@ from vehicle.parameters.semi_active import LAWS, PASSIVE
 from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.rendering.figure import COLOURS
-from vehicle.sweeps.case import Case, overrides_of
+from vehicle.sweeps.case import Case, all_tyre_words, overrides_of
 from vehicle.sweeps.measure import of_one
 from vehicle.sweeps.runs import Runs, Vector
 from vehicle.sweeps.sweep import sweep
@@ -42,6 +43,9 @@ LEAD_S = 3.0
 
 SHOWN = ("B", 80.0)
 """Road class and speed [km/h] of the passive settings and of the delays."""
+
+WHEEL_BAND = (7.0, 30.0)
+"""Hop of the wheels [Hz]: about 11 Hz where the dampers slide, up to 28 Hz where they stick."""
 
 FACTORS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0)
 """Passive settings, as shares of the passive damper: the range of the semi-active one."""
@@ -78,7 +82,8 @@ class RideMeasure:
     """Comfort at the seat rail and dynamic tyre load of a run.
 
     `weighted` is the RMS of the rail's z, weighted by Wk; `unfiltered` the comfort value of the rail, 2 to 50 Hz, all
-    axes; `tyre` the RMS of dynamic over static load, of all tyres; `lowest` the lowest load over the static one.
+    axes; `tyre` the RMS of dynamic over static load, of all tyres; `hop` that within `WHEEL_BAND`; `lowest` the lowest
+    load over the static one.
     """
 
     wheels: tuple[str, ...]
@@ -93,7 +98,7 @@ class RideMeasure:
     @property
     def units(self) -> Mapping[str, str]:
         """Name of each number to its unit."""
-        return {"weighted": "m/s2", "unfiltered": "m/s2", "tyre": "-", "lowest": "-"}
+        return {"weighted": "m/s2", "unfiltered": "m/s2", "tyre": "-", "hop": "-", "lowest": "-"}
 
     def __call__(self, run: Run) -> dict[str, float]:
         """The numbers of a run."""
@@ -109,6 +114,7 @@ class RideMeasure:
             "weighted": np.array([weighted_rms_of(step, one, skip=LEAD_S)[2] for one in xyz]),
             "unfiltered": comfort_values(step, xyz[:, :, kept]).overall,
             "tyre": np.sqrt(np.mean([np.mean((load - 1.0) ** 2, axis=1) for load in loads], axis=0)),
+            "hop": np.sqrt(np.mean([band_rms(step, load, WHEEL_BAND) ** 2 for load in loads], axis=0)),
             "lowest": np.min([np.min(load, axis=1) for load in loads], axis=0),
         }
 
@@ -129,35 +135,44 @@ def settings(quick: bool) -> list[Setting]:
 
 def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> dict[Setting, Numbers]:
     """What is measured of each setting."""
-    vehicle, cases, listed = runs.car().vehicle, [], list(chosen)
-    for one in listed:
-        options = argparse.Namespace(**dict.fromkeys(ROAD_NUMBERS) | {"speed": one.speed, "duration": duration})
-        source = road_drive(one.road, options, vehicle)
-        shared = (*runs.overrides, *overrides_of(source))
-        changes = (*shared, *one.changes(vehicle))
-        cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(shared)))
-    table = sweep(cases, RideMeasure(wheels=vehicle.wheels), jobs=runs.jobs)
+    listed = list(chosen)
+    table = sweep(
+        cases_of(runs, listed, duration, engine), RideMeasure(wheels=runs.car().vehicle.wheels), jobs=runs.jobs
+    )
     if table.failed:
         raise ConfigurationError(f"{table.failed[0][0].label}: {table.failed[0][1]}")
     columns = {name: table.column(name) for name in table.units}
     return {one: {name: float(columns[name][i]) for name in columns} for i, one in enumerate(listed)}
 
 
+def cases_of(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> list[Case]:
+    """The run of each setting."""
+    vehicle, cases = runs.car().vehicle, []
+    for one in chosen:
+        numbers = dict.fromkeys(ROAD_NUMBERS) | {"speed": one.speed, "duration": duration}
+        options = argparse.Namespace(**numbers, overrides=runs.overrides)
+        source = road_drive(one.road, options, vehicle)
+        shared = (*runs.overrides, *overrides_of(source))
+        changes = (*shared, *one.changes(vehicle))
+        cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(shared)))
+    return cases
+
+
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run all settings, draw the figures into the folder, and say what they show."""
     engine, duration = chosen_engine(options.engine), 20.0 if options.quick else 60.0
     points = computed(runs, settings(options.quick), duration, engine)
-    name, car = runs.car().vehicle.name, runs.car().vehicle.composition
-    tyres = "standing" if any(one.ground and one.carrier == "world" for one in car.connections) else "rolling"
-    about = f"{name}, {duration:g} s of road, {tyres} tyres, engine {engine}"
-    trade_off(folder / "trade_off.png", points, about)
-    delays(folder / "delay.png", points, about)
+    name, tyres = runs.car().vehicle.name, all_tyre_words(cases_of(runs, points, duration, engine))
+    shown = all_tyre_words(cases_of(runs, [Setting()], duration, engine))
+    trade_off(folder / "trade_off.png", points, f"{name}, {duration:g} s of road, tyres {tyres}, engine {engine}")
+    delays(folder / "delay.png", points, f"{name}, {duration:g} s of road, tyres {shown}, engine {engine}")
     checks = [] if options.quick or engine == "mujoco" else [engines(runs, points, duration)]
     changed = f", changed: {', '.join(runs.overrides)}" if runs.overrides else ""
     made = f"Made with {name}{changed}; engine {engine}, {duration:g} s of each road, {LEAD_S:g} s left out."
     return Findings(
         title="Semi-active dampers on the complete car: comfort against dynamic tyre load",
         claims=[*claims(points), *checks],
+        tyres=tyres,
         notes=[table_of(points), *words(points), made, *([QUICK_NOTE] if options.quick else [])],
         data={"points": [asdict(one) | dict(numbers) for one, numbers in points.items()]},
     )
@@ -176,11 +191,15 @@ def engines(runs: CarRuns, points: Points, duration: float) -> Claim:
 
 
 def claims(points: Points) -> list[Claim]:
-    """What the laws are made for, and what a delay does."""
+    """What the laws are made for, and what a delay does.
+
+    Groundhook is made for the hop of the wheel (Ahmadian 1997). It takes the damping of the body away, so that the
+    whole load need not fall: `words` says both.
+    """
     passive, found = points[Setting()], []
     for law, name, what in (
         ("skyhook", "weighted", "weighted acceleration of the rail"),
-        ("groundhook", "tyre", "dynamic tyre load"),
+        ("groundhook", "hop", f"dynamic tyre load of the wheel hop, {WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz"),
     ):
         ratio = points[Setting(law=law)][name] / passive[name]
         best = min(points[one][name] for one in points if one == Setting(factor=one.factor))
@@ -214,6 +233,17 @@ def words(points: Points) -> list[str]:
             + ", ".join(f"{law} {value:+.1f} %" for law, value in laws.items())
             + "."
         )
+    hooked, passive = (points[Setting(law=law)] for law in ("groundhook", PASSIVE))
+    hop = 100.0 * (hooked["hop"] / passive["hop"] - 1.0)
+    rest = 100.0 * (
+        np.sqrt((hooked["tyre"] ** 2 - hooked["hop"] ** 2) / (passive["tyre"] ** 2 - passive["hop"] ** 2)) - 1.0
+    )
+    found.append(
+        f"Groundhook changes the tyre load of the wheel hop ({WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz) by {hop:+.1f} "
+        f"%, the rest by {rest:+.1f} %, the whole by {100.0 * (hooked['tyre'] / passive['tyre'] - 1.0):+.1f} %. It "
+        "damps the wheel against ground at rest and leaves the body to swing: a quarter car with an ideal groundhook "
+        "does the same (docs/theory.md, semi-active dampers)."
+    )
     return found
 
 
@@ -224,7 +254,12 @@ def table_of(points: Points) -> str:
         for one, n in points.items()
     ]
     heads = ("road", "speed [km/h]", "law", "passive factor [-]", "delay [ms]", "weighted rail z [m/s2]")
-    more = ("unfiltered rail [m/s2]", "dynamic / static tyre load [-]", "lowest tyre load [-]")
+    more = (
+        "unfiltered rail [m/s2]",
+        "dynamic / static tyre load [-]",
+        "that of the wheel hop [-]",
+        "lowest tyre load [-]",
+    )
     return markdown((*heads, *more), rows)
 
 

@@ -37,9 +37,13 @@ STUDIES = {
     "damper_choice": "Choice of dampers for road holding.",
     "kinematics": "Axles of all cars over wheel travel and under load, and with one point moved.",
     "road": "Four wheels on the road: class, speed, damper friction, with and without an occupant.",
+    "source_choice": "Sides, slip velocity, band edges and body that Bommer 2006 does not print, chosen together.",
     "published": "Every published result of the complete car beside ours.",
 }
 """Name of a study, `python -m scenarios.NAME`, and what it does."""
+
+VERTICAL_TYRES = "vertical springs, the same rolling and standing"
+"""What the tyres of models of few masses do."""
 
 QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
 
@@ -146,9 +150,10 @@ def _car_runs(options: argparse.Namespace) -> CarRuns:
 
 
 def computed_by(run: Run) -> str:
-    """Engine and step of a run, for captions and notes."""
+    """Tyres, engine and step of a run, for captions and notes."""
     statistics = run.recording.statistics
-    return f"engine {statistics.engine}, step {1e3 * statistics.timestep:g} ms"
+    tyres = f"tyres {run.car.vehicle.driving.words}"
+    return f"{tyres}, engine {statistics.engine}, step {1e3 * statistics.timestep:g} ms"
 
 
 def estimator_text(response: FrequencyResponse) -> str:
@@ -161,7 +166,7 @@ def estimator_text(response: FrequencyResponse) -> str:
 
 def car_text(runs: CarRuns) -> str:
     """The car that all numbers were made with."""
-    file = "the car of source 1" if runs.vehicle is None else runs.vehicle.name
+    file = "the car of Bommer 2006" if runs.vehicle is None else runs.vehicle.name
     return file + (f", changed: {', '.join(runs.overrides)}" if runs.overrides else "")
 
 

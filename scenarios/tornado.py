@@ -45,6 +45,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     return Findings(
         title="Comfort against all parameters of the suspension and the stiffness of the body (beyond source 1)",
         claims=tornado_claims(bars),
+        tyres=comfort.tyres,
         notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
         data={
             "bars": [asdict(bar) for bar in bars],
@@ -172,6 +173,8 @@ def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
                 ", ".join(f"{road} {100.0 * low:.1f} to {100.0 * high:.1f} %" for road, (low, high) in pairs.items()),
                 all((high > low) == rising for low, high in pairs.values()),
                 f"relative comfort value from {bar.low:g} to {bar.high:g}",
+                place="chapter 4",
+                picture="tornado.png",
             )
         )
     return claims
@@ -205,10 +208,11 @@ def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
     levels = " and ".join(f"{1e3 * rms:g} mm RMS ({road})" for road, rms in ROAD_RMS.items())
     caption = (
         f"Change of the comfort value (RMS of the seat rail, x, y and z, unweighted, {COMFORT_BAND[0]:g} to "
-        f"{COMFORT_BAND[1]:g} Hz) against the nominal car on the same records. Roads of {levels} under the right front "
-        f"wheel, {comfort.records.text()}, engine {comfort.engine}. Whiskers: two standard errors of the ratio over "
-        "the records. Numbers: values of the parameter, -20 and +20 % of the nominal one but for mount damping (from "
-        "its nominal 0) and body stiffness (frequencies with its square root). Order: largest swing on either road"
+        f"{COMFORT_BAND[1]:g} Hz) against the nominal car on the same records. Roads of {levels} under the "
+        f"{comfort.runs.car().vehicle.wheel_text(comfort.runs.wheel)}, {comfort.text()}. Whiskers: two standard errors "
+        "of the ratio over the records. Numbers: values of the parameter, -20 and +20 % of the nominal one but for "
+        "mount damping (from its nominal 0) and body stiffness (frequencies with its square root). Order: largest "
+        "swing on either road"
     )
     height = np.arange(len(bars))[::-1]
     with figure_file(

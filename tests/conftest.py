@@ -12,7 +12,7 @@ from vehicle.excitation.signal_file import read_signal
 
 @pytest.fixture(scope="session")
 def car() -> Car:
-    """The car of source 1."""
+    """The car of Bommer 2006."""
     return Car.load()
 
 

@@ -58,6 +58,11 @@ def axle_and_side(wheel: str) -> tuple[str, str]:
     return {"f": "front", "r": "rear"}.get(axle, axle), {"r": "right", "l": "left"}[wheel[-1]]
 
 
+def across(wheel: str) -> str:
+    """The wheel on the other side of its axle, as "fl" of "fr"."""
+    return wheel[:-1] + ("l" if wheel.endswith("r") else "r")
+
+
 def is_wheel(name: str) -> bool:
     """Whether a wheel may have this name: a corner, or the side of a further axle, as middle_r."""
     return name in CORNERS.values() or re.fullmatch(r"[a-z]\w*_[rl]", name) is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +19,9 @@ from scenarios.bump.runs import (
     relative_acceleration,
     ring_down_time,
 )
+from scenarios.bump.seeds import BumpSeeds, row_key
 from scenarios.charts import figure_file, rows_of
+from scenarios.evidence import evidence_of
 from scenarios.study import computed_by
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_START_S
@@ -32,18 +35,22 @@ from vehicle.rendering.shot import Shot, Take
 Vector = npt.NDArray[np.float64]
 
 VERTICAL = {
-    "seat rail (3.13)": "seat_rail_acc_z",
-    "seat (3.14)": "seat_acc_z",
-    "knuckle (3.15)": "knuckle_fr_acc_z",
-    "damper top": "damper_top_fr_acc_z",
-    "engine (3.17)": "engine_acc_z",
-    "roof left rear (3.18)": "roof_left_rear_acc_z",
-    "body front": "body_front_acc_z",
+    "seat rail (3.13)": ("seat_rail_acc_z", "seat_rail_z"),
+    "seat (3.14)": ("seat_acc_z", "seat_z"),
+    "knuckle (3.15)": ("knuckle_{wheel}_acc_z", "knuckle_z"),
+    "damper top": ("damper_top_{wheel}_acc_z", ""),
+    "engine (3.17)": ("engine_acc_z", "engine_z"),
+    "roof left rear (3.18)": ("roof_right_rear_acc_z", "roof_z"),
+    "body front": ("body_front_acc_z", ""),
+}
+"""Label to channel, and the key of the point where the source shows it."""
+
+HORIZONTAL = {
+    "seat rail x (3.19)": ("seat_rail_acc_x", "seat_rail_x"),
+    "seat rail y (3.20)": ("seat_rail_acc_y", "seat_rail_y"),
 }
 
-HORIZONTAL = {"seat rail x (3.19)": "seat_rail_acc_x", "seat rail y (3.20)": "seat_rail_acc_y"}
-
-RINGING = {"seat rail": "seat_rail", "engine": "engine", "roof left rear": "roof_left_rear"}
+RINGING = {"seat rail": "seat_rail", "engine": "engine", "roof left rear": "roof_right_rear"}
 
 NOISY, QUIET = COLOURS[3], COLOURS[4]
 """Colours of the run with noise and of the same bump alone."""
@@ -65,21 +72,34 @@ def excerpt(run: Run, start: float, shown: tuple[float, float], values: Vector) 
     return run.time[keep] + BUMP_START_S - start, values[keep]
 
 
-def history_figures(folder: Path, bumps: Bumps) -> None:
-    """Write the time histories of all points into a folder, the low bump at the left and the high one at the right."""
+def history_figures(folder: Path, bumps: Bumps, seeds: BumpSeeds) -> None:
+    """Write the time histories of all points into a folder, the low bump at the left and the high one at the right.
+
+    Args:
+        folder: where to.
+        bumps: what is drawn.
+        seeds: extremes of further seeds, drawn as bars behind the histories, beside the published intervals.
+    """
     start = bumps.record.start
     for name, title, channels in (
         ("histories_vertical", "Vertical accelerations", VERTICAL),
         ("histories_horizontal", "Horizontal accelerations of the seat rail", HORIZONTAL),
     ):
-        note = _caption(bumps, "light: with the random noise of 0.05 mm RMS, dark: the bump alone")
+        note = _caption(
+            bumps,
+            "light: with the random noise of 0.05 mm RMS, dark: the bump alone; grey: the last interval of the "
+            f"published axis, in which the extreme lies; bar: mean and standard deviation of ours over {seeds.count} "
+            "seeds of the noise",
+        )
         with figure_file(folder / f"{name}.png", (13.0, 1.0 + 1.45 * len(channels)), title, note) as figure:
             axes = rows_of(figure, len(channels), 2)
             for column, size, *pair in zip(axes.T, SIZES, bumps.noisy, bumps.quiet, strict=True):
                 column[0].set_title(f"A = {1e3 * size:g} mm")
-                for axis, channel in zip(column, channels.values(), strict=True):
+                for axis, (name, point) in zip(column, channels.values(), strict=True):
                     for run, colour, width in zip(pair, (NOISY, QUIET), (0.7, 1.1), strict=True):
-                        axis.plot(*excerpt(run, start, SHOWN, run[channel]), color=colour, linewidth=width)
+                        values = run[name.format(wheel=run.wheel)]
+                        axis.plot(*excerpt(run, start, SHOWN, values), color=colour, linewidth=width)
+                    _published_ends(axis, size, point, seeds)
             for axis, label in zip(axes[:, 0], channels, strict=True):
                 axis.set_ylabel(f"{label}\n[m/s²]")
     note = _caption(bumps, "relative acceleration along the strut axis; zero while the damper sticks")
@@ -89,6 +109,23 @@ def history_figures(folder: Path, bumps: Bumps) -> None:
         for axis, run, size in zip(axes, bumps.noisy, SIZES, strict=True):
             axis.plot(*excerpt(run, start, (-0.05, 0.8), relative_acceleration(run)), color=COLOURS[0])
             axis.set(ylabel="relative acceleration\n[m/s²]", title=f"A = {1e3 * size:g} mm")
+
+
+def _published_ends(axis: Any, size: float, point: str, seeds: BumpSeeds) -> None:
+    """Draw the published intervals of the extremes of a panel and ours over the seeds; nothing where none is known."""
+    for column, word in enumerate(("lowest", "highest")):
+        try:
+            low, high = evidence_of(row_key(size, point, word)).interval
+        except KeyError:
+            continue
+        axis.axhspan(low, high, color="#d8d8d8", zorder=0)
+        ours = seeds.extremes[size, point][:, column]
+        look = {"fmt": "_", "color": COLOURS[1], "capsize": 3.0, "zorder": 4}
+        axis.errorbar([BUMP_START_S + BAR_AT], [np.mean(ours)], yerr=[np.std(ours, ddof=1)], **look)
+
+
+BAR_AT = -0.12
+"""Where the bar of the extremes stands, after the start of the bump [s]."""
 
 
 def friction_figure(path: Path, bumps: Bumps) -> None:

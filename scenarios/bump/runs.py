@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
-from scenarios.claims import Interval
+from scenarios.evidence import INSTANT_READING, SLIP_INSTANT
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
 from vehicle.excitation.signal import Signal
@@ -20,20 +19,13 @@ from vehicle.names import AXES
 Vector = npt.NDArray[np.float64]
 
 
-def relative_acceleration(run: Run, wheel: str = "fr") -> Vector:
-    """Acceleration of the damper top less that of the knuckle, along the strut axis.
+def relative_acceleration(run: Run) -> Vector:
+    """Acceleration of the damper top less that of the knuckle over the plate, along the strut axis [m/s2], (n,).
 
     a = n (a_top - a_knuckle), n from the damper bottom to the strut top in the design position. In the vertical alone
     the rotation of the strut would show while it sticks.
-
-    Args:
-        run: a finished run.
-        wheel: of the damper.
-
-    Returns:
-        [m/s2], shape (n,).
     """
-    points = run.car.vehicle.points
+    points, wheel = run.car.vehicle.points, run.wheel
     axis = np.array(points[f"strut_top_{wheel}"]) - np.array(points[f"damper_bottom_{wheel}"])
     direction = axis / np.linalg.norm(axis)
     top, knuckle = (
@@ -48,9 +40,8 @@ SIZES = (1.5e-3, 7.5e-3)
 FRICTIONS = (75.0, 100.0, 125.0, 150.0, 175.0)
 """Friction limits Fd of figure 3.12 [N]."""
 
-
-FIRST_SLIP, FIRST_SLIP_TOLERANCE = 5.035, 0.010
-"""First slip after the 7.5 mm bump with Fd 125 N [s], read off figure 3.12."""
+FIRST_SLIP, FIRST_SLIP_TOLERANCE = SLIP_INSTANT, INSTANT_READING
+"""End of sticking after the 7.5 mm bump with Fd 125 N [s], figure 3.12."""
 
 PUBLISHED_FRICTION = 125.0
 """Fd at which the model of the source slipped when the car did [N]."""
@@ -70,10 +61,19 @@ class Record:
         """End of the bump [s]."""
         return self.start + BUMP_DURATION_S
 
-    def signal(self, size: float, reading: Reading, *, noise: bool = True) -> Signal:
-        """Bump of an amplitude A [m], with or without the random noise of the source."""
+    def signal(self, size: float, reading: Reading, wheel: str, *, noise: bool = True) -> Signal:
+        """Bump of an amplitude A [m], with or without the random noise of the source.
+
+        Args:
+            size: A [m].
+            reading: of the printed formula.
+            wheel: that it drives.
+            noise: whether there is noise.
+        """
         duration, level = (self.noisy, NOISE_RMS) if noise else (self.quiet, 0.0)
-        signal = bump(amplitude=size, reading=reading, duration=duration, start=self.start, noise_rms=level)
+        signal = bump(
+            amplitude=size, reading=reading, duration=duration, start=self.start, noise_rms=level, wheel=wheel
+        )
         # The film writes the source over its picture, where the text of the generator has no room.
         return replace(signal, source=f"bump {1e3 * size:g} mm")
 
@@ -125,7 +125,6 @@ class Bumps:
             },
             "slip_velocity": self.slip_velocity,
             "low_bump": {"largest_velocity": low, "time_above_1_mm_s": saturated_time(self.noisy[0])},
-            "extremes": extremes(self.noisy[1], self.record.start),
             "ring_down_s": {
                 f"{1e3 * size:g} mm": ring_down_times(run, self.record.end)
                 for size, run in zip(SIZES, self.quiet, strict=True)
@@ -137,7 +136,7 @@ def run_bumps(runs: CarRuns, record: Record, reading: Reading, frictions: Sequen
     """All runs of the study, independent ones at once."""
     other = OTHER[reading]
     cases = [
-        runs.case(record.signal(size, kind, noise=noise))
+        runs.case(record.signal(size, kind, runs.wheel, noise=noise))
         for kind, noise in ((reading, True), (reading, False), (other, True))
         for size in SIZES
     ]
@@ -153,19 +152,24 @@ def run_bumps(runs: CarRuns, record: Record, reading: Reading, frictions: Sequen
     )
 
 
+def damper_velocity(run: Run) -> Vector:
+    """Velocity of the damper over the plate [m/s], (n,)."""
+    return np.asarray(run[f"damper_{run.wheel}_velocity"])
+
+
 def fastest(run: Run) -> float:
-    """Largest velocity of the right damper [m/s]."""
-    return float(np.max(np.abs(run["damper_fr_velocity"])))
+    """Largest velocity of the damper over the plate [m/s]."""
+    return float(np.max(np.abs(damper_velocity(run))))
 
 
 def saturated_time(run: Run) -> float:
-    """Time with the right damper above 1 mm/s, where the friction is saturated [s]."""
-    return run.slip_share("fr", SATURATED_VELOCITY) * run.signal.duration
+    """Time with the damper over the plate above 1 mm/s, where the friction is saturated [s]."""
+    return run.slip_share(run.wheel, SATURATED_VELOCITY) * run.signal.duration
 
 
 def slip_after(run: Run, start: float, velocity: float) -> float | None:
-    """First time [s] with the right damper above a velocity after the start of the bump, as if that were at 5 s."""
-    speed = np.abs(run["damper_fr_velocity"])
+    """First time [s] of the damper over the plate above a velocity after the bump begins, as if that were at 5 s."""
+    speed = np.abs(damper_velocity(run))
     at = np.flatnonzero((speed > velocity) & (run.time >= start))
     return None if not at.size else float(run.time[at[0]]) - start + BUMP_START_S
 
@@ -178,34 +182,10 @@ def when(time: float | None) -> str:
 SHOWN_S = 3.0
 """The figures show 3 s from the start of the bump [s]."""
 
-RELATIVE = "relative acceleration damper top - knuckle"
-
-FIGURE_AXES: dict[str, tuple[str, str, Interval, Interval]] = {
-    "seat rail": ("3.13", "seat_rail_acc_z", (-0.8, -0.6), (0.4, 0.6)),
-    "seat": ("3.14", "seat_acc_z", (-1.0, -0.5), (0.0, 0.5)),
-    "knuckle": ("3.15", "knuckle_fr_acc_z", (-2.0, -1.0), (1.0, 2.0)),
-    RELATIVE: ("3.16", "", (-5.0, 0.0), (0.0, 5.0)),
-    "engine": ("3.17", "engine_acc_z", (-1.5, -1.0), (0.5, math.inf)),
-    "roof left rear": ("3.18", "roof_left_rear_acc_z", (-0.8, -0.6), (0.4, 0.6)),
-}
-"""Point to figure, channel, and the last intervals of its axis at the lower and the upper end [m/s2]. Figure 3.16 has
-ticks at -5, 0 and 5 only; the upper end of 3.17 is unreadable above 0.5."""
-
-
-def extremes(run: Run, start: float) -> dict[str, tuple[float, float]]:
-    """Lowest and highest vertical acceleration [m/s2] of every point, from the start of the bump on [s]."""
-    shown = (run.time >= start) & (run.time <= start + SHOWN_S)
-    motions = {
-        point: (run[channel] if channel else relative_acceleration(run))[shown]
-        for point, (_, channel, _, _) in FIGURE_AXES.items()
-    }
-    return {point: (float(np.min(values)), float(np.max(values))) for point, values in motions.items()}
-
-
 RUNG_DOWN = 0.2
 """Rung down when the motion stays below this share of its largest value after the bump."""
 
-BODY = ("seat_rail", "seat", "roof_left_rear", "body_front")
+BODY = ("seat_rail", "seat", "roof_right_rear", "body_front")
 """Output points on the body; the RMS over them stands for its vertical motion."""
 
 POINTS = (*BODY, "suspension_mount_fr", "suspension_mount_fl", "engine")

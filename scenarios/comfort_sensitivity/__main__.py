@@ -1,4 +1,4 @@
-"""Comfort on a smooth and a rough road against friction, suspension mount and body stiffness (source 1, chapter 4).
+"""Comfort on a smooth and a rough road against friction, suspension mount and body stiffness (Bommer 2006, chapter 4).
 
 python -m scenarios.comfort_sensitivity [--output DIR] [--quick] [--jobs N] [--engine auto|reduced|mujoco]
     [--records N] [--source-only] [--vehicle FILE.toml] [--set PATH=VALUE]
@@ -23,9 +23,7 @@ from scenarios.comfort_sensitivity.claims import (
     RIGID_BODY,
     SOURCE,
     TITLES,
-    level_claims,
     order_claims,
-    road_levels,
     size_claims,
     slip_claims,
 )
@@ -33,10 +31,21 @@ from scenarios.comfort_sensitivity.figures import (
     curve_table,
     draw_band_edge,
     draw_variation,
+    draw_wheel,
     edge_table,
     plain,
     setting,
 )
+from scenarios.comfort_sensitivity.histories import (
+    amplification_claim,
+    history_claims,
+    level_claims,
+    road_levels,
+    stiffness_claim,
+    wheel_claims,
+    wheel_modes,
+)
+from scenarios.comfort_sensitivity.trials import end_trials, level_trials, trial_cases
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.reduced.march import has_compiler
@@ -68,7 +77,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     notes = [
         *setting(comfort),
         f"{comfort.computed} runs of {comfort.records.duration:g} s, {len(set(cases))} of them for the three "
-        f"parameters of source 1; computed in {seconds:.1f} s with --jobs {runs.jobs}.",
+        f"parameters of Bommer 2006; computed in {seconds:.1f} s with --jobs {runs.jobs}.",
     ]
     for variation in SOURCE:
         beside = {"with a rigid body": rigid[variation.name]} if rigid else {}
@@ -87,14 +96,27 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         notes += more
         data |= numbers | plain({"rigid_body_" + name: found for name, found in rigid.items()})
     levels = road_levels(comfort)
+    draw_wheel(folder / "wheel.png", comfort, levels)
+    trials, louder = (end_trials(comfort), level_trials(comfort)) if beyond else ({}, {})
     data["levels"] = {
-        road: {"largest_seat_rail": one.seat_rail.tolist(), "swing": one.swing.tolist()} for road, one in levels.items()
+        road: {
+            "largest_seat_rail": {name: one.tolist() for name, one in found.largest.items()},
+            "swing": found.swing.tolist(),
+        }
+        for road, found in levels.items()
+    }
+    data["trials"] = {
+        label: {f"{name}, {road}, {value:g}": one for (name, road, value), one in found.items()}
+        for label, found in trials.items()
     }
     slip = slip_claims(comfort.nominal(), runs.car().vehicle.damper.slip_velocity)
-    claims = [*slip, *order_claims(curves), *size_claims(curves, rigid), *level_claims(levels)]
+    claims = [*slip, *order_claims(curves), *size_claims(curves, trials), *level_claims(levels, louder)]
+    claims += [*history_claims(levels), amplification_claim(comfort.nominal()), stiffness_claim(wheel_modes(comfort))]
+    claims += wheel_claims(levels)
     return Findings(
-        title="Comfort on a smooth and a rough road (source 1, chapter 4)",
+        title="Comfort on a smooth and a rough road (Bommer 2006, chapter 4)",
         claims=claims,
+        tyres=comfort.tyres,
         unjudged={one.name: QUICK_WHY for one in claims if one.name != SURE} if options.quick else {},
         notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
         data=data,
@@ -103,7 +125,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Options of this study alone."""
-    parser.add_argument("--source-only", action="store_true", help="only the three parameters of source 1")
+    parser.add_argument("--source-only", action="store_true", help="only the three parameters of Bommer 2006")
 
 
 main = car_study("comfort_sensitivity", study, comfort_options, add_options)
@@ -123,7 +145,7 @@ def beyond_cases(comfort: ComfortRuns) -> list[Case]:
         for engine in ENGINES
         for case in comfort.cases(car, road, engine=engine, count=1)
     ]
-    return [*more, *comfort.all_cases(BODY), *edges, *checks]
+    return [*more, *comfort.all_cases(BODY), *edges, *checks, *trial_cases(comfort)]
 
 
 def beyond_findings(
@@ -134,7 +156,7 @@ def beyond_findings(
     Args:
         comfort: what runs the cars.
         folder: where to.
-        linear: curves of source 1, with the linear damper.
+        linear: curves of Bommer 2006, with the linear damper.
     """
     against = {road: comfort.point(0.0, DEGRESSIVE, road, ()) for road in ROAD_RMS}
     damper = comfort.runs.car(DEGRESSIVE).vehicle.damper

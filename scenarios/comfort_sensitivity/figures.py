@@ -1,4 +1,4 @@
-"""Figures of the comfort study, histories, spectra, relative comfort (4.1 to 4.12 of source 1), and its tables."""
+"""Figures of the comfort study, histories, spectra, relative comfort (4.1 to 4.12 of Bommer 2006), and its tables."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from scenarios.charts import figure_file
 from scenarios.claims import markdown
 from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, Vector, chosen_engine
 from scenarios.comfort_sensitivity.claims import PUBLISHED, PUBLISHED_SLIP
+from scenarios.comfort_sensitivity.histories import MEASURED_PEAKS, SPECTRUM_WINDOW_S, RoadLevels
 from scenarios.study import car_text
 from vehicle.analysis.comfort import COMFORT_BAND
 from vehicle.analysis.spectra import power_spectral_density
@@ -23,7 +24,7 @@ from vehicle.rendering.figure import COLOURS
 from vehicle.rendering.placed_axes import Margins, placed_axes
 
 EXCERPT_S = (27.0, 27.5)
-"""Time shown by source 1 [s]."""
+"""Time shown by Bommer 2006 [s]."""
 
 WINDOW_S = 4.0
 """Length of the windows of the spectra [s]."""
@@ -67,9 +68,10 @@ def draw_variation(
     heading = title or f"Comfort against {variation.label} ({numbers})"
     spectra = f"spectra: Welch, Hann windows of {WINDOW_S:g} s, half overlapping, first record"
     caption = (
-        f"Roads of {_levels()}, under the right front wheel. Histories and {spectra}, engine {engine}. "
+        f"Roads of {_levels()}, under the {comfort.runs.car().vehicle.wheel_text(comfort.runs.wheel)}. Histories and "
+        f"{spectra}, engine {engine}. "
         f"Comfort: RMS of the seat rail, x, y and z, unweighted, {COMFORT_BAND[0]:g} to {COMFORT_BAND[1]:g} Hz, "
-        f"relative to the reference on the same records; mean of {comfort.records.text()}, engine {comfort.engine}; "
+        f"relative to the reference on the same records; mean of {comfort.text()}; "
         f"bars: two standard errors over the records"
     )
     with figure_file(path, (10.4, 10.4), heading, caption, placed=True) as figure:
@@ -89,7 +91,7 @@ def draw_variation(
             _comfort(relative, curves[road], ROAD_COLOURS[road], "this car" if beside else None)
             for (label, others), style in zip((beside or {}).items(), ("--", ":"), strict=False):
                 _comfort(relative, others[road], "#555555", label, style)
-            _, ends = ("", {}) if base else PUBLISHED.get((variation.name, road), ("", {}))
+            ends = {} if base else PUBLISHED.get((variation.name, road), {})
             if ends:
                 middle = [0.5 * (low + high) for low, high in ends.values()]
                 half = [0.5 * (high - low) for low, high in ends.values()]
@@ -109,7 +111,7 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
     slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
     caption = (
         f"Share of the time with the right damper above {1e3 * slip_velocity:g} mm/s (full) and above 1 mm/s (dotted), "
-        f"nominal car, {comfort.records.text()}, engine {comfort.engine}; bars: two standard errors over the records; "
+        f"nominal car, {comfort.text()}; bars: two standard errors over the records; "
         "dashed: published"
     )
     with figure_file(
@@ -133,6 +135,32 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
         axis.axvline(ROAD_EDGE_HZ, color="#555555", linewidth=0.9)
         axis.set(xlabel="lower band edge [Hz]", ylabel="share of the time in slip [%]", ylim=(0.0, 100.0))
         axis.legend(loc="lower right")
+
+
+def draw_wheel(path: Path, comfort: ComfortRuns, levels: Mapping[str, RoadLevels]) -> None:
+    """Write the figure of the spectra of the wheel on both roads, with what was measured on asphalt and cobbles.
+
+    Args:
+        path: PNG file.
+        comfort: how the cars were run.
+        levels: of both roads.
+    """
+    caption = (
+        f"Vertical acceleration of the knuckle over the plate, nominal car, {comfort.records.text()}; Welch, Hann "
+        f"windows of {SPECTRUM_WINDOW_S:g} s, half overlapping. "
+        "Dashed: peaks measured with a car and on roads that are not described"
+    )
+    title = "Power spectral density of the wheel's vertical acceleration (figure 2.1)"
+    with figure_file(path, (7.6, 5.0), title, caption) as figure:
+        axis = figure.subplots()
+        for (road, level), (kind, measured) in zip(levels.items(), MEASURED_PEAKS.items(), strict=True):
+            colour = ROAD_COLOURS[road]
+            shown = (level.frequency >= 1.0) & (level.frequency <= 50.0)
+            axis.plot(level.frequency[shown], level.wheel[shown], color=colour, label=f"{road} road")
+            axis.axvline(measured, color=colour, linestyle="--", linewidth=0.9, label=f"measured on {kind}")
+        axis.set(xscale="log", yscale="log", xlim=(1.0, 50.0))
+        axis.set(xlabel="frequency [Hz]", ylabel="PSD of the knuckle, z [(m/s²)²/Hz]")
+        axis.legend(loc="upper left")
 
 
 def _history(axis: Any, rail: Vector, look: Mapping[str, Any]) -> None:

@@ -23,6 +23,7 @@ from scenarios.damper_choice.claims import (
     rate_claims,
     ratio_claims,
 )
+from scenarios.damper_choice.damper_curves import compare_curves, curve_claims, curve_figure
 from scenarios.damper_choice.figures import iteration_figure, optimum_figure, response_figures, trade_off_figure
 from scenarios.damper_choice.fit import (
     HALF_FREE,
@@ -43,10 +44,12 @@ from scenarios.damper_choice.runs import (
     road_holding,
     trade_off,
 )
-from scenarios.study import lumped_study
+from scenarios.study import VERTICAL_TYRES, lumped_study
 from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
 from vehicle.parameters.toml_file import as_table
 from vehicle.parameters.vehicle import load_vehicle
+
+TITLE = "Choice of dampers for road holding (Mehmood, Khan and Mehmood 2014)"
 
 HEAVY_INDEX = 0.5
 """Least J / (Ms a b) of the comparison fit of --refit [-]."""
@@ -66,18 +69,21 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
     printed = half_car_measure(parameters, "printed", parameters.highway)
     cars = {"fitted quarter car": parameters.quarter_car, "complete car": complete_car_quarter(load_vehicle())}
     wide_damping = [float(c) for c in np.geomspace(200.0, 10000.0, 25 if options.quick else 81)]
+    curves = compare_curves(parameters, duration=6.0 if options.quick else 30.0)
     trades = {name: trade_off(car, wide_damping) for name, car in cars.items()}
 
     claims = [
         *ratio_claims(parameters),
-        *quarter_response_claims(lines, quarter),
+        *quarter_response_claims(parameters, lines, quarter),
         *quarter_optimum_claims(parameters, found["highway"]["printed"], "printed"),
         *quarter_optimum_claims(parameters, found["highway"]["physical"], "physical"),
-        *half_response_claims(wide, half),
+        *half_response_claims(parameters, wide, half),
         *half_optimum_claims(found["highway"]["printed"], "printed"),
-        *rate_claims(found["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
+        *rate_claims(parameters, found["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
         *half_optimum_claims(found["highway"]["physical"], "physical"),
+        *curve_claims(curves),
     ]
+    curve_figure(folder, curves)
     response_figures(folder, lines, quarter, wide, half)
     for road, measures in found.items():
         optimum_figure(folder, measures, road)
@@ -94,7 +100,7 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
     if options.refit:
         data["refit"] = _refit(parameters)
         notes.append(_refit_note(data["refit"]))
-    return Findings(title="Choice of dampers for road holding", claims=claims, unjudged=None, notes=notes, data=data)
+    return Findings(title=TITLE, claims=claims, tyres=VERTICAL_TYRES, unjudged=None, notes=notes, data=data)
 
 
 def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:

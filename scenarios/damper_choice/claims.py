@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
 from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim
 from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
-from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
+from scenarios.damper_choice.runs import (
+    HALF_DAMPING,
+    QUARTER_DAMPING,
+    START_REAR,
+    RoadHolding,
+    half_car_measure,
+    half_responses,
+)
+from scenarios.places import placed
+from vehicle.lumped.half_car_rider import ENDS
 from vehicle.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.parameters.damper_choice import DamperChoiceParameters
 
@@ -22,6 +33,20 @@ RATE_READING = 0.05
 SAME = 0.15
 """"No effect of damping": the curves differ by less than this share of the road amplitude [-]."""
 
+CROSSING = 1.5
+"""Reading of the 6 Hz at which the order of the curves changes, a third of a tick interval [Hz]."""
+
+STIFFER = 1.1
+"""Stiffer front tyre for the row on the crossing at the front [-]."""
+
+MATCHED = 1.04
+"""Stiffer rear tyre for the row on the printed R of the rear [-]."""
+
+PICTURES = {2: "figure_02_03_quarter_car.png", 5: "figure_05_to_08_half_car.png", 9: "figure_09_10_highway.png"}
+"""First figure of the source that a picture shows -> its file."""
+
+ITERATION = "figure_11_12_13_iteration.png"
+
 ASIDE = 1500.0
 """Distance from the optimum at which both flanks are compared [N s/m]."""
 
@@ -33,22 +58,32 @@ def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
     names = (("quarter car", QUARTER_RATIOS), ("half car front", FRONT_RATIOS), ("half car rear", REAR_RATIOS))
     ends = [(*one, t.axle.suspension_stiffness, t.sprung_share) for one, t in zip(names, tyres, strict=True)]
     why = "c / (2 sqrt(k m)); one sqrt(k m) is fitted to four printed ratios, so each may be off by its last digit"
-    return [
+    rows = [
         FITTED.number(f"{name}: damping ratio at {c:.0f} N s/m", printed, c / (2.0 * np.sqrt(k * m)), 0.011, why)
         for name, ratios, k, m in ends
         for c, printed in ratios.items()
     ]
+    split = len(QUARTER_RATIOS)
+    return placed(rows[:split], "figures 2 and 3", PICTURES[2]) + placed(rows[split:], "figures 5 to 8", PICTURES[5])
 
 
-def quarter_response_claims(lines: Array, responses: dict[float, Array]) -> list[Claim]:
-    """Rows on figures 2 and 3."""
+def quarter_response_claims(
+    parameters: DamperChoiceParameters, lines: Array, responses: dict[float, Array]
+) -> list[Claim]:
+    """Rows on figures 2 and 3.
+
+    Args:
+        parameters: the quarter car.
+        lines: [Hz], (m,).
+        responses: |response| of wheel and body; damping [N s/m] -> (2, m).
+    """
     wheel = np.array([responses[c][0] for c in QUARTER_DAMPING])
     body = np.array([responses[c][1] for c in QUARTER_DAMPING])
-    rows = _regions("figure 2: quarter car wheel", lines, wheel, 2.0, "2 to 3 Hz")
+    rows = _regions("quarter car wheel", lines, wheel, 2.0, "2 to 3 Hz")
     peaks = [_local_peaks(lines, curve) for curve in wheel]
     rows.append(
         FITTED.statement(
-            "figure 2: low damping adds a second local maximum at about 7 Hz",
+            "low damping adds a second local maximum at about 7 Hz",
             "two maxima at 0.62, one at 1.09",
             f"maxima at {_hz(peaks[0])} Hz for {QUARTER_DAMPING[0]:.0f} N s/m, {_hz(peaks[-1])} Hz for "
             f"{QUARTER_DAMPING[-1]:.0f} N s/m",
@@ -56,10 +91,12 @@ def quarter_response_claims(lines: Array, responses: dict[float, Array]) -> list
             "7 Hz is read from an axis with ticks every 5 Hz: within 1 Hz",
         )
     )
+    rows.append(_second_maximum(parameters, lines))
+    rows = placed(rows, "figure 2", PICTURES[2])
     for c, curve in zip(QUARTER_DAMPING, body, strict=True):
         rows.append(
             FITTED.number(
-                f"figure 3: quarter car sprung peak at {c:.0f} N s/m [Hz]",
+                f"quarter car sprung peak at {c:.0f} N s/m [Hz]",
                 2.0,
                 float(lines[curve.argmax()]),
                 0.5,
@@ -69,7 +106,7 @@ def quarter_response_claims(lines: Array, responses: dict[float, Array]) -> list
         )
     rows.append(
         FITTED.statement(
-            "figure 3: one sprung peak for every damping, lower with more damping",
+            "one sprung peak for every damping, lower with more damping",
             "one peak, falling",
             f"{[len(_local_peaks(lines, curve)) for curve in body]} maxima, heights "
             + ", ".join(f"{value:.2f}" for value in body.max(axis=1)),
@@ -78,32 +115,70 @@ def quarter_response_claims(lines: Array, responses: dict[float, Array]) -> list
             "counted on lines 0.01 Hz apart up to 15 Hz",
         )
     )
-    return rows
+    return placed(rows, "figure 3", PICTURES[2])
 
 
-def half_response_claims(lines: Array, responses: dict[float, Array]) -> list[Claim]:
-    """Rows on figures 5 to 8."""
+def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
+    """Row on the height of the second maximum of the wheel."""
+    dampings, heights = (4000.0, 3000.0, 2500.0), []
+    for c in dampings:
+        curve = np.abs(quarter_car_model(parameters.quarter_car, c).response(lines))[0]
+        heights.append(float(curve[np.searchsorted(lines, _last_peak(lines, curve))]))
+    return PREDICTED.statement(
+        "the second maximum of the wheel grows as the damping falls",
+        "grows",
+        f"{_values(np.array(heights))} m/m at {', '.join(f'{c:.0f}' for c in dampings)} N s/m",
+        bool(np.all(np.diff(heights) > 0.0)),
+        "last local maximum up to 15 Hz",
+    )
+
+
+def half_response_claims(
+    parameters: DamperChoiceParameters, lines: Array, responses: dict[float, Array]
+) -> list[Claim]:
+    """Rows on figures 5 to 8; arguments as of `quarter_response_claims`, responses of the half car."""
     stack = np.array([responses[c] for c in HALF_DAMPING])  # (damping, coordinate, line)
-    rows = _regions("figure 5: half car front wheel", lines, stack[:, 0], 2.0, "2 Hz")
-    rows += _regions("figure 6: half car rear wheel", lines, stack[:, 1], 2.0, "2 Hz")
+    rows = []
+    for end, (name, figure) in enumerate((("front", 5), ("rear", 6))):
+        why = _why_half(parameters, lines, end)
+        regions = _regions(f"half car {name} wheel", lines, stack[:, end], 2.0, "2 Hz", why)
+        rows += placed(regions, f"figure {figure}", PICTURES[5])
+    hop = [_last_peak(lines, curves[0]) for curves in (stack[:, 0], stack[:, 1])]
+    masses = [axle.unsprung_mass for axle in (parameters.half_car.front, parameters.half_car.rear)]
+    rows.append(
+        FITTED.statement(
+            "the unsprung mass of the rear is higher, which moves its peaks",
+            "rear heavier, other frequencies",
+            f"{masses[1]:.0f} against {masses[0]:.0f} kg; last maximum at {hop[1]:.1f} against {hop[0]:.1f} Hz with "
+            f"{HALF_DAMPING[0]:.0f} N s/m",
+            masses[1] > masses[0] and hop[1] < hop[0],
+            "the masses are fitted to the printed R, optima and axes",
+            place="figures 5 and 6",
+            picture=PICTURES[5],
+        )
+    )
     heave, pitch = stack[:, 2].max(axis=1), stack[:, 3].max(axis=1)
     dampings = ", ".join(f"{c:.0f}" for c in HALF_DAMPING)
     rows.append(
         FITTED.statement(
-            "figures 7 and 8: the pitch peak rises with damping while the heave peak falls",
+            "the pitch peak rises with damping while the heave peak falls",
             "rises, falls",
             f"pitch {_values(pitch)} rad/m, heave {_values(heave)} m/m at {dampings} N s/m",
             bool(np.all(np.diff(pitch) > 0.0) and np.all(np.diff(heave) < 0.0)),
             "equal dampers at unequal arms couple heave and pitch through c (a - b); the springs nearly balance",
+            place="figures 7 and 8",
+            picture=PICTURES[5],
         )
     )
     rows.append(
         FITTED.number(
-            "figure 7: heave peak, mean over damping [Hz]",
+            "heave peak, mean over damping [Hz]",
             2.0,
             float(lines[stack[:, 2].argmax(axis=1)].mean()),
             0.5,
             "printed as the frequency of the quarter car; read from an axis with ticks every 5 Hz",
+            place="figure 7",
+            picture=PICTURES[5],
         )
     )
     return rows
@@ -118,14 +193,14 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHoldin
     kind = FITTED if measure == "printed" else COMPARED
     rows = [
         kind.number(
-            f"figure 9: quarter car optimum damping, {measure} measure [N s/m]",
+            f"quarter car optimum damping, {measure} measure [N s/m]",
             3750.0,
             best.damping,
             250.0,
             f"printed as 3500 to 4000; R = {best.value:.3f} there",
         ),
         (PREDICTED if measure == "printed" else COMPARED).statement(
-            f"figure 9: steeper below the optimum than above, {measure} measure",
+            f"quarter car: steeper below the optimum than above, {measure} measure",
             "steeper below",
             f"R rises by {below:.3f} to {ASIDE:.0f} N s/m below, by {above:.3f} to {ASIDE:.0f} N s/m above",
             below > above,
@@ -149,9 +224,10 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHoldin
                 not bool(np.all(np.diff(signed) > 0.0)),
                 "bands in which the wheel moves more than the road count negative, so the signed sum only rises with "
                 "damping; the printed curves must come from magnitudes, and R as printed is taken with them",
+                place="equation 10",
             )
         )
-    return rows
+    return placed(rows, "figure 9", PICTURES[9])
 
 
 def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
@@ -163,11 +239,9 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
     if measure == "physical":
         why += "; the source optimises the printed measure, to which the car is fitted: here for comparison"
     rows = [
+        kind.number(f"front optimum, equal dampers, {measure} measure [N s/m]", 4000.0, front.damping, READING, why),
         kind.number(
-            f"figure 10: front optimum, equal dampers, {measure} measure [N s/m]", 4000.0, front.damping, READING, why
-        ),
-        kind.number(
-            f"figure 10: rear optimum, equal dampers, {measure} measure [N s/m]",
+            f"rear optimum, equal dampers, {measure} measure [N s/m]",
             3125.0,
             rear.damping,
             2.0 * READING,
@@ -182,14 +256,30 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
             "the rear wheel is heavier than the front one in the fitted car",
         ),
     ]
+    for end, (best, curve) in enumerate(zip(found.equal_optima, found.equal, strict=True)):
+        below, above = (
+            float(np.interp(best.damping + shift, found.damping, curve)) - best.value for shift in (-ASIDE, ASIDE)
+        )
+        rows.append(
+            (PREDICTED if measure == "printed" else COMPARED).statement(
+                f"half car {ENDS[end]}: steeper below the optimum than above, {measure} measure",
+                "steeper below",
+                f"R rises by {below:.3f} to {ASIDE:.0f} N s/m below, by {above:.3f} to {ASIDE:.0f} N s/m above",
+                below > above,
+                "both flanks at the same distance from the optimum",
+            )
+        )
+    rows = placed(rows, "figure 10", PICTURES[9])
     for step, printed, figure in ((first, 4250.0, 11), (second, 3000.0, 12), (third, 4250.0, 13)):
         rows.append(
             kind.number(
-                f"figure {figure}: {step.changed} damping, {measure} measure [N s/m]",
+                f"step {figure - 10}: {step.changed} damping, {measure} measure [N s/m]",
                 printed,
                 step.damping,
                 READING,
                 why,
+                place=f"figure {figure}",
+                picture=ITERATION,
             )
         )
     rows.append(
@@ -199,15 +289,18 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
             f"{len(found.read_off)} steps: " + ", ".join(f"{s.changed} {s.damping:.0f}" for s in found.read_off),
             len(found.read_off) == 3,
             "each end read among multiples of 250 N s/m, as printed",
+            place="section 4.2",
+            picture=ITERATION,
         )
     )
     return rows
 
 
-def rate_claims(found: RoadHolding, at_front: Array, at_rear: Array) -> list[Claim]:
+def rate_claims(parameters: DamperChoiceParameters, found: RoadHolding, at_front: Array, at_rear: Array) -> list[Claim]:
     """Rows on the values of R of the printed measure.
 
     Args:
+        parameters: vehicle, road, bands.
         found: printed measure on the highway.
         at_front: R with 4000 N s/m at both ends.
         at_rear: R with 3250 N s/m at both ends.
@@ -224,11 +317,12 @@ def rate_claims(found: RoadHolding, at_front: Array, at_rear: Array) -> list[Cla
     ):
         rows.append(
             FITTED.number(
-                f"figures 10 to 13: R {name}",
+                f"R {name}",
                 printed,
                 float(ours),
                 RATE_READING if "front" in name else 2.0 * RATE_READING,
-                "two digits read from a figure whose axis ends at 9 (front) or 10 (rear): 0.05 and 0.1",
+                "two digits read from a figure whose axis ends at 9 (front) or 10 (rear): 0.05 and 0.1"
+                + (f"; {_why_rear(parameters)}" if name.startswith("rear, equal") else ""),
             )
         )
     fronts = [float(at_front[0]), first.fluctuation[0], second.fluctuation[0]]
@@ -242,34 +336,94 @@ def rate_claims(found: RoadHolding, at_front: Array, at_rear: Array) -> list[Cla
             "needs strong coupling of the ends: the fit takes a moment of inertia far below that of a real car",
         )
     )
-    return rows
+    return placed(rows, "section 4.2, figures 10 to 13", ITERATION)
 
 
-def _regions(name: str, lines: Array, curves: Array, low_edge: float, printed_edge: str) -> list[Claim]:
-    """Rows on the three frequency regions of a wheel response."""
+def _why_rear(parameters: DamperChoiceParameters) -> str:
+    """What raising R of the rear by its tyre does to the R after step 1."""
+    rear = parameters.half_car.rear
+    stiffer = replace(rear, tyre_stiffness=MATCHED * rear.tyre_stiffness)
+    other = replace(parameters, half_car=replace(parameters.half_car, rear=stiffer))
+    measure = half_car_measure(other, "printed", parameters.highway)
+    equal, improved = measure(START_REAR, START_REAR)[1], measure(4250.0, START_REAR)[1]
+    return (
+        f"the fit balances it against the R after step 1: with a rear tyre {MATCHED - 1.0:.0%} stiffer they are "
+        f"{equal:.2f} and {improved:.2f}, printed 3.9 and 3.55"
+    )
+
+
+def _why_half(parameters: DamperChoiceParameters, lines: Array, end: int) -> tuple[str, str]:
+    """Experiments for the two rows on a wheel of the half car.
+
+    Args:
+        parameters: the half car.
+        lines: [Hz], (m,).
+        end: 0 front, 1 rear.
+    """
+    ratios = (FRONT_RATIOS, REAR_RATIOS)[end]
+    scale = np.mean([c / ratio for c, ratio in ratios.items()])
+    damped = half_responses(parameters, lines, [float(scale * ratio) for ratio in QUARTER_RATIOS.values()])
+    spread = _spread(np.array([curves[end] for curves in damped.values()]))[lines < 2.0].max()
+    no_effect = f"with the damping ratios of the quarter car, 0.62 to 1.09, they would differ by {spread:.2f} m/m"
+    front = parameters.half_car.front
+    stiffer = replace(front, tyre_stiffness=STIFFER * front.tyre_stiffness)
+    other = half_responses(
+        replace(parameters, half_car=replace(parameters.half_car, front=stiffer)), lines, HALF_DAMPING
+    )
+    crossing = _crossing(lines, other[HALF_DAMPING[0]][end], other[HALF_DAMPING[-1]][end])
+    return no_effect, f"with a front tyre {STIFFER - 1.0:.0%} stiffer they would cross at {crossing:.1f} Hz"
+
+
+def _regions(
+    name: str,
+    lines: Array,
+    curves: Array,
+    low_edge: float,
+    printed_edge: str,
+    why: tuple[str, str] = ("", ""),
+) -> list[Claim]:
+    """Rows on the three frequency regions of a wheel response; `why` holds an experiment for each of both rows."""
     softest, firmest = curves[0], curves[-1]
-    low = lines < low_edge
     middle, high = (lines > 3.0) & (lines < 5.0), lines > 8.0
-    spread = float((curves.max(axis=0) - curves.min(axis=0))[low].max())
+    apart = _spread(curves)
+    spread = float(apart[lines < low_edge].max())
+    beyond = float(lines[np.flatnonzero(apart > SAME)[0]])
     above = firmest > softest
-    crossing = float(lines[np.flatnonzero(above & (lines < 12.0))[-1]])
+    crossing = _crossing(lines, softest, firmest)
+    extra = [f"; {one}" if one else "" for one in why]
     return [
         PREDICTED.statement(
             f"{name}: no effect of damping below {printed_edge}",
             "no meaningful difference",
             f"the curves differ by at most {spread:.2f} m/m below {low_edge:g} Hz",
             spread < SAME,
-            f"rule: less than {SAME} m/m, a tenth of the printed axis; differences here come from the "
-            "body resonance, whose height depends on damping",
+            f"rule: less than {SAME} m/m, a tenth of the printed axis; they differ by more from {beyond:.2f} Hz on, by "
+            f"the body resonance, whose height depends on damping{extra[0]}",
         ),
         PREDICTED.statement(
             f"{name}: 2 to 6 Hz less with low damping, beyond less with high damping",
             "change of order at 6 Hz",
             f"the curves of lowest and highest damping cross at {crossing:.1f} Hz",
-            bool(np.all(above[middle]) and not np.any(above[high]) and abs(crossing - 6.0) < 1.5),
-            "rule: in order from 3 to 5 Hz and above 8 Hz, crossing within 1.5 Hz of 6 Hz, a third of a tick interval",
+            bool(np.all(above[middle]) and not np.any(above[high]) and abs(crossing - 6.0) < CROSSING),
+            f"rule: in order from 3 to 5 Hz and above 8 Hz, crossing within {CROSSING} Hz of 6 Hz, a third of a tick "
+            f"interval{extra[1]}",
         ),
     ]
+
+
+def _spread(curves: Array) -> Array:
+    """Largest difference of curves at each line."""
+    return np.asarray(curves.max(axis=0) - curves.min(axis=0))
+
+
+def _crossing(lines: Array, softest: Array, firmest: Array) -> float:
+    """Highest line up to 12 Hz at which the firmest damper moves the wheel more than the softest [Hz]."""
+    return float(lines[np.flatnonzero((firmest > softest) & (lines < 12.0))[-1]])
+
+
+def _last_peak(lines: Array, curve: Array) -> float:
+    """Frequency of the last local maximum [Hz]."""
+    return _local_peaks(lines, curve)[-1]
 
 
 def _local_peaks(lines: Array, curve: Array) -> list[float]:

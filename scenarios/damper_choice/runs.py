@@ -76,9 +76,20 @@ def quarter_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[
     return {c: np.abs(quarter_car_model(parameters.quarter_car, c).response(lines)) for c in QUARTER_DAMPING}
 
 
-def half_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[float, Array]:
-    """|response| of front wheel, rear wheel, heave, pitch for the damping of figures 5 to 8; damping -> (4, m)."""
-    return {c: np.abs(half_car_model(parameters.half_car, c, c).response(lines)) for c in HALF_DAMPING}
+def half_responses(
+    parameters: DamperChoiceParameters, lines: Array, dampings: Sequence[float] = HALF_DAMPING
+) -> dict[float, Array]:
+    """|response| of front wheel, rear wheel, heave, pitch with equal dampers.
+
+    Args:
+        parameters: the half car.
+        lines: [Hz], (m,).
+        dampings: [N s/m]; those of figures 5 to 8 by default.
+
+    Returns:
+        Damping -> (4, m).
+    """
+    return {c: np.abs(half_car_model(parameters.half_car, c, c).response(lines)) for c in dampings}
 
 
 def half_car_measure(parameters: DamperChoiceParameters, measure: str, road: ExponentialRoad) -> Fluctuation:

@@ -35,6 +35,7 @@ from vehicle.commands.options import engine_option, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.excitation.four_post import DURATION_S, MOTIONS
 from vehicle.linear.modes import Mode
+from vehicle.parameters.driving import tyre_words
 
 CARS = ("focus_road", "sedan")
 """Shipped cars on four wheels."""
@@ -103,6 +104,7 @@ def study(cars: Sequence[Car], folder: Path, options: argparse.Namespace) -> Fin
         name, shown = one.car.vehicle.name, [run for run in one.runs if run.response is not None]
         engines = " and ".join(sorted({run.engine for run in one.runs}))
         made = f"engine {engines}; {QUICK_DURATION if options.quick else DURATION_S:g} s each"
+        made = f"tyres {one.car.vehicle.driving.words}; {made}"
         caption = f"Displacements of the plates as on, and a share of those on, a road of class A at 80 km/h; {made}"
         response_figure(folder / f"{name}_responses.png", one.car, shown, one.exact, caption)
         slip = 1e3 * one.car.vehicle.damper.slip_velocity
@@ -112,6 +114,7 @@ def study(cars: Sequence[Car], folder: Path, options: argparse.Namespace) -> Fin
     return Findings(
         title="Cars on a four-post rig",
         claims=claims,
+        tyres=tyre_words(one.vehicle.driving for one in cars),
         unjudged=dict.fromkeys(peaks, TOO_SHORT) if options.quick else {},
         notes=[
             *(text for one in found for text in (in_words(one), mode_table(one), peak_table(one), level_table(one))),

@@ -17,14 +17,17 @@ from scenarios.claims import Findings, markdown
 from scenarios.half_car_rider.claims import base_case_claims, dose_claims, matrix_claim, speed_claims, travel_claims
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
-from scenarios.study import lumped_study
+from scenarios.study import VERTICAL_TYRES, lumped_study
 from vehicle.lumped.half_car_rider import ENDS
 from vehicle.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
 from vehicle.parameters.semi_active import LAWS, PASSIVE
 
+TITLE = "Half car with seat and rider (Parametric study of rider's comfort in a vehicle with semi-active suspension)"
+
 SETTLING_NOTE = (
     "Settling times: the source names no band. 0.5 % of the peak is the one of 0.5, 1, 2 and 5 % that comes nearest to "
-    "its eleven times, fitted to them in that sense; 2 and 5 % stand beside each."
+    "its eleven times, so that these rows are `chosen`; the others stand beside each. Which of two places settles "
+    "later is judged at all four bands."
 )
 
 ASSUMED = (
@@ -73,7 +76,7 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
         "speed_scan": scan,
         "base_case": base_case_table(car, history),
     }
-    return Findings(title="Half car with seat and rider", claims=claims, unjudged=None, notes=notes, data=data)
+    return Findings(title=TITLE, claims=claims, tyres=VERTICAL_TYRES, unjudged=None, notes=notes, data=data)
 
 
 def _lift_off_note(glued: Sequence[Outcome], free: Sequence[Outcome]) -> str:

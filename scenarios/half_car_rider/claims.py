@@ -7,20 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from scenarios.claims import COMPARED, PREDICTED, Claim
+from scenarios.claims import COMPARED, DUPLICATE, PREDICTED, Claim, Kind
 from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
 from scenarios.half_car_rider.runs import (
     KMH,
-    SETTLING_BAND,
     SPEEDS,
     VARIED,
     Motion,
     Outcome,
+    outcome,
     passive,
     peak,
-    settling_time,
     varied,
 )
+from scenarios.half_car_rider.settling_claims import settling_claims
 from vehicle.lumped.half_car_rider import half_car_rider
 from vehicle.lumped.history import Array, History
 from vehicle.parameters.half_car_rider import HalfCarRiderParameters
@@ -28,26 +28,17 @@ from vehicle.parameters.half_car_rider import HalfCarRiderParameters
 Study = Mapping[str, list[list[Outcome]]]
 """Varied parameter -> speed -> factor -> outcome."""
 
-READING = 0.3
-"""The printed times are read from figures, most of them with the word "about" [s]."""
-
 STIFF_SEAT = 50000.0
 """Seat stiffness for the row on figure 10 [N/m]: the source does not print its own."""
 
-SETTLING: tuple[tuple[str, Motion, float, bool, str], ...] = (
-    ("upper_limb", "displacement", 3.5, True, "figure 5"),
-    ("lower_limb", "displacement", 3.5, True, "figure 5"),
-    ("upper_limb", "acceleration", 3.5, True, "figure 6"),
-    ("lower_limb", "acceleration", 3.5, True, "figure 6"),
-    ("front_body", "displacement", 3.0, False, "figure 7"),
-    ("rear_body", "displacement", 3.5, True, "figure 7"),
-    ("pitch", "displacement", 3.5, False, "figure 8"),
-    ("front_wheel", "displacement", 1.7, False, "figure 9"),
-    ("rear_wheel", "displacement", 1.2, False, "figure 9"),
-    ("seat", "acceleration", 3.5, False, "figure 10"),
-    ("body", "acceleration", 1.7, False, "figure 10"),
-)
-"""Place, quantity, printed settling time [s], whether it is a lower limit, figure."""
+RIGID_SEAT = 150000.0
+"""Seat ten times as stiff as the assumed one, for the rows on the tyre stiffness [N/m]."""
+
+CRAWL = 2.0
+"""Speed at which the bump is a pulse of the body's own frequency [km/h]."""
+
+SLOWER = (10.0, 15.0)
+"""Speeds below the base case, whose pulses the upper body follows [km/h]."""
 
 LITTLE = 0.5
 """A change of the dose value counts as "little" below this share of what the sprung mass does at that speed [-]."""
@@ -60,7 +51,17 @@ DIRECTIONS = {
     "tyre_damping": "little",
     "suspension_damping": "little",
 }
-"""Printed effect on the dose values."""
+"""Effect on the dose values in the text of figures 11 to 22."""
+
+CONCLUSIONS = {
+    "sprung_mass": ("falls", DUPLICATE),
+    "unsprung_mass": ("rises", PREDICTED),
+    "suspension_stiffness": ("rises", DUPLICATE),
+    "tyre_stiffness": ("rises", DUPLICATE),
+    "tyre_damping": ("falls", PREDICTED),
+    "suspension_damping": ("rises", PREDICTED),
+}
+"""Effect on the dose values in the conclusions, and whether the text says the same."""
 
 TRAVEL_DIRECTIONS = {"suspension_stiffness": "rises", "suspension_damping": "falls", "tyre_stiffness": "falls"}
 """Printed effect on the suspension travel (figures 23 to 25)."""
@@ -69,28 +70,46 @@ TRAVEL_DIRECTIONS = {"suspension_stiffness": "rises", "suspension_damping": "fal
 def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Claim]:
     """Rows on figures 5 to 10: sizes and settling times of the base case."""
     rows = []
-    shown: tuple[tuple[Motion, str, float, str], ...] = (
-        ("displacement", "mm", 1e3, "figure 5"),
-        ("acceleration", "m/s2", 1.0, "figure 6"),
+    shown: tuple[tuple[Motion, str, float, int], ...] = (
+        ("displacement", "mm", 1e3, 5),
+        ("acceleration", "m/s2", 1.0, 6),
     )
     for quantity, unit, factor, figure in shown:
         upper, lower = (factor * peak(history.of(name, quantity)) for name in ("upper_limb", "lower_limb"))
-        name = f"{figure}: peak {quantity} of the upper body above that of the lower body"
-        ours = f"upper {upper:.3g} {unit}, lower {lower:.3g} {unit}"
-        rows.append(PREDICTED.statement(name, "larger", ours, upper > lower, _why_upper(car, quantity)))
-    stiff = passive(replace(car, seat=replace(car.seat, stiffness=STIFF_SEAT)), SPEEDS[0])
-    (seat, body), stiffer = ([peak(one.acceleration(n)) for n in ("seat", "body")] for one in (history, stiff))
+        rows.append(
+            PREDICTED.statement(
+                f"peak {quantity} of the upper body above that of the lower body",
+                "larger",
+                f"upper {upper:.3g} {unit}, lower {lower:.3g} {unit}",
+                upper > lower,
+                _why_upper(car, quantity),
+                place=f"figure {figure}",
+                picture=f"figure_{figure:02d}.png",
+            )
+        )
+    (seat, body), stiffer, slower = (
+        [peak(one.acceleration(n)) for n in ("seat", "body")]
+        for one in (history, passive(_with_seat(car, STIFF_SEAT), SPEEDS[0]), passive(car, SLOWER[0]))
+    )
     rows.append(
         PREDICTED.statement(
-            "figure 10: peak acceleration of the seat above that of the chassis",
+            "peak acceleration of the seat above that of the chassis",
             "larger",
             f"seat {seat:.3g} m/s2, chassis {body:.3g} m/s2",
             seat > body,
             "the seat is not printed; the assumed one isolates from the pulse of the bump. With a seat of "
-            f"{STIFF_SEAT:.0f} N/m it would be {stiffer[0]:.3g} against {stiffer[1]:.3g} m/s2",
+            f"{STIFF_SEAT:.0f} N/m it would be {stiffer[0]:.3g} against {stiffer[1]:.3g} m/s2, with the assumed one at "
+            f"{SLOWER[0]:.0f} km/h {slower[0]:.3g} against {slower[1]:.3g} m/s2",
+            place="figure 10",
+            picture="figure_10.png",
         )
     )
-    return rows + [_settling(history, *row) for row in SETTLING]
+    return rows + settling_claims(car, history)
+
+
+def _with_seat(car: HalfCarRiderParameters, stiffness: float) -> HalfCarRiderParameters:
+    """The car with another seat stiffness [N/m]."""
+    return replace(car, seat=replace(car.seat, stiffness=stiffness))
 
 
 def _why_upper(car: HalfCarRiderParameters, quantity: str) -> str:
@@ -98,27 +117,17 @@ def _why_upper(car: HalfCarRiderParameters, quantity: str) -> str:
         return "the upper limb on its spring overshoots the seat"
     isolated = float(np.sqrt(2.0 * car.upper_limb.stiffness / car.upper_limb.mass)) / (2.0 * np.pi)
     pulse = SPEEDS[0] * KMH / (2.0 * car.bump.length)
+    histories = {speed: passive(car, speed) for speed in SLOWER}
+    slower = " and ".join(
+        " against ".join(f"{peak(one.acceleration(name)):.2f}" for name in ("upper_limb", "lower_limb"))
+        + f" m/s2 at {speed:.0f} km/h"
+        for speed, one in histories.items()
+    )
     return (
         f"above sqrt(2) times its own frequency ({isolated:.1f} Hz) the upper limb is isolated from the seat, the "
-        f"stiffly held lower limb is not; the pulse of the bump has {pulse:.1f} Hz"
+        f"stiffly held lower limb is not; the pulse of the bump has {pulse:.1f} Hz. Slower, with a longer pulse, it is "
+        f"{slower}"
     )
-
-
-def _settling(history: History, place: str, quantity: Motion, printed: float, limit: bool, figure: str) -> Claim:
-    times = {
-        band: settling_time(history.time, history.of(place, quantity), band) for band in (SETTLING_BAND, 0.02, 0.05)
-    }
-    found = times[SETTLING_BAND]
-    ours = float(history.time[-1]) if found is None else found
-    two, five = ("beyond the record" if (t := times[band]) is None else f"{t:.2f} s" for band in (0.02, 0.05))
-    why = (
-        f"rule: last time above 0.5 % of the peak, t = 0 when the front wheel meets the bump; 2 %: {two}, 5 %: {five}; "
-        f"tolerance {READING} s, read from a figure"
-    )
-    label = f"{figure}: settling time of {place} {quantity} [s]"
-    if limit:
-        return PREDICTED.statement(label, f"longer than {printed}", f"{ours:.2f}", ours >= printed - READING, why)
-    return PREDICTED.number(label, printed, ours, READING, why)
 
 
 def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[float]) -> list[Claim]:
@@ -133,8 +142,24 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
             factors,
             reasons[parameter],
             LITTLE * np.abs(change["sprung_mass", limb]),
+            place=f"figure {_first_figure(parameter) + column}",
+            picture=_picture(parameter),
         )
         for parameter, direction in DIRECTIONS.items()
+        for column, limb in enumerate(("upper", "lower"))
+    ]
+    rows += [
+        _direction(
+            f"conclusions: VDV of the {limb} body with {VARIED[parameter]}",
+            direction,
+            change[parameter, limb],
+            factors,
+            reasons[parameter] if kind is PREDICTED else "the text on the figures says the same",
+            kind=kind,
+            place="section 4",
+            picture=_picture(parameter),
+        )
+        for parameter, (direction, kind) in CONCLUSIONS.items()
         for limb in ("upper", "lower")
     ]
     for limb in ("upper", "lower"):
@@ -148,9 +173,21 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
                 f"mean change {mass:.1%}, {stiffness:.1%} against {unsprung:.1%}",
                 bool(min(mass, stiffness) > unsprung),
                 "mean over the five speeds of the magnitude of the change from 80 to 120 %",
+                place="abstract, section 3.2",
+                picture=_picture("unsprung_mass"),
             )
         )
     return rows
+
+
+def _first_figure(parameter: str) -> int:
+    """Number of the figure of the upper body; that of the lower body follows."""
+    return 11 + 2 * list(VARIED).index(parameter)
+
+
+def _picture(parameter: str) -> str:
+    first = _first_figure(parameter)
+    return f"figure_{first}_{first + 1}_{parameter}.png"
 
 
 def travel_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[float]) -> list[Claim]:
@@ -162,21 +199,36 @@ def travel_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence
             _changes(studied[parameter], "travel"),
             factors,
             _why_travel(car, parameter, factors),
+            place=f"figure {23 + index}",
+            picture="figure_23_24_25_travel.png",
         )
-        for parameter, direction in TRAVEL_DIRECTIONS.items()
+        for index, (parameter, direction) in enumerate(TRAVEL_DIRECTIONS.items())
     ]
 
 
 def _direction(
-    name: str, direction: str, change: Array, factors: Sequence[float], why: str, little: Array | float = 0.0
+    name: str,
+    direction: str,
+    change: Array,
+    factors: Sequence[float],
+    why: str,
+    little: Array | float = 0.0,
+    *,
+    kind: Kind = PREDICTED,
+    place: str,
+    picture: str,
 ) -> Claim:
     """Row on what a parameter does at every speed; "little" is below the effects given."""
     agrees = {"little": np.abs(change) < little, "rises": change > 0.0, "falls": change < 0.0}[direction]
     rule = f"less than {LITTLE:.0%} of the effect of the sprung mass" if direction == "little" else direction
-    changes = ", ".join(f"{100.0 * value:+.1f}" for value in change)
     speeds = ", ".join(f"{speed:.0f}" for speed in SPEEDS)
-    ours = f"{changes} % from {factors[0]:.0%} to {factors[-1]:.0%}, at {speeds} km/h"
-    return PREDICTED.statement(name, direction, ours, bool(np.all(agrees)), f"rule: {rule} at every speed; {why}")
+    ours = f"{_percent(change)} % from {factors[0]:.0%} to {factors[-1]:.0%}, at {speeds} km/h"
+    why = f"rule: {rule} at every speed; {why}"
+    return kind.statement(name, direction, ours, bool(np.all(agrees)), why, place=place, picture=picture)
+
+
+def _percent(change: Array) -> str:
+    return ", ".join(f"{100.0 * value:+.1f}" for value in change)
 
 
 def _changes(table: Sequence[Sequence[Outcome]], name: str) -> Array:
@@ -194,6 +246,7 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
     ratio = car.front.tyre_stiffness / car.front.suspension_stiffness
     hop = float(np.sqrt((car.front.tyre_stiffness + car.front.suspension_stiffness) / car.front.unsprung_mass))
     share = car.front.tyre_damping * hop / car.front.tyre_stiffness
+    rigid = _with_seat(car, RIGID_SEAT)
     below = (
         f"the limbs answer below 6 Hz, where a wheel on a tyre {ratio:.0f} times stiffer than its suspension follows "
         f"the road; what happens near the wheel hop ({hop / (2.0 * np.pi):.1f} Hz) reaches them weakly"
@@ -202,20 +255,31 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
         "sprung_mass": "a heavier body is moved less by the same force",
         "unsprung_mass": below,
         "suspension_stiffness": "the spring force on the body grows with its stiffness",
-        "tyre_stiffness": f"{below}, the lower limb more than the upper",
+        "tyre_stiffness": f"{below}, the lower limb more than the upper. The seat between them is not printed: with "
+        f"one of {RIGID_SEAT:.0f} N/m the upper body has {_percent(_upper_changes(rigid, 'tyre_stiffness', SPEEDS))} %",
         "tyre_damping": f"at the wheel hop the tyre damper gives {share:.0%} of the force of the tyre spring",
-        "suspension_damping": "the damper passes the quick motion of the wheel to the body; the conclusions of the "
-        "source say that the discomfort rises with it, as here",
+        "suspension_damping": "the damper passes the quick motion of the wheel to the body; the text of the "
+        "source says little and its conclusions say that the discomfort rises. The damper helps only where the bump is "
+        f"a pulse of the body's own frequency: {_percent(_upper_changes(car, 'suspension_damping', (CRAWL,)))} % for "
+        f"the upper body at {CRAWL:.0f} km/h",
     }
+
+
+def _upper_changes(car: HalfCarRiderParameters, parameter: str, speeds: Sequence[float]) -> Array:
+    """Change of the dose value of the upper body from 80 to 120 % of a parameter, one for each speed [km/h]."""
+    cars = [varied(car, parameter, factor) for factor in (0.8, 1.0, 1.2)]
+    return relative_changes([[outcome(one, passive(one, speed)).upper_vdv for one in cars] for speed in speeds])
 
 
 def _why_travel(car: HalfCarRiderParameters, parameter: str, factors: Sequence[float]) -> str:
     """Peaks of the parts of the travel, wheel minus body, at the base speed."""
     ends = [passive(varied(car, parameter, factor), SPEEDS[0]) for factor in (factors[0], factors[-1])]
     wheel, body = ([1e3 * peak(one.displacement(f"front_{name}")) for one in ends] for name in ("wheel", "body"))
+    crawl = [outcome(one, passive(one, CRAWL)).travel for one in (varied(car, parameter, f) for f in factors)]
     return (
         f"the travel is body minus wheel; at the base speed the peak of the front wheel goes from {wheel[0]:.1f} to "
-        f"{wheel[1]:.1f} mm, that of the body above it from {body[0]:.1f} to {body[1]:.1f} mm"
+        f"{wheel[1]:.1f} mm, that of the body above it from {body[0]:.1f} to {body[1]:.1f} mm. At {CRAWL:.0f} km/h the "
+        f"travel goes from {1e3 * crawl[0]:.2f} to {1e3 * crawl[-1]:.2f} mm"
     )
 
 
@@ -242,6 +306,8 @@ def speed_claims(
             "the impulse h0 wb 2 / (pi v) k that reaches the body falls as 1 / v. The dose value is largest at "
             f"{scan['speed'][peak]:.0f} km/h ({scan['upper'][peak]:.2f}, {at_peak:.0f} ms on the bump) and falls from "
             "there on, with linear and with one-sided tyres",
+            place="figures 11 to 22, section 4",
+            picture="speed.png",
         ),
         COMPARED.statement(
             "VDV of 15 m/s^1.75 is severe discomfort",
@@ -249,6 +315,8 @@ def speed_claims(
             f"largest of the study {max(upper):.2f} m/s^1.75",
             max(upper) < 15.0,
             "one bump stays far below the limit; unweighted acceleration, as in the source",
+            place="section 3.2",
+            picture="speed.png",
         ),
     ]
 
@@ -263,6 +331,7 @@ def matrix_claim(car: HalfCarRiderParameters) -> Claim:
         printed < 0.0,
         "typing errors: neither is symmetric and the pitch damping is negative, so the printed equations grow for "
         "ever; the figures of the source cannot come from them as they stand",
+        place="equation 16",
     )
 
 

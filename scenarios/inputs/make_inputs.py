@@ -39,14 +39,21 @@ QUICK_DURATION = 5.0
 """Length of the signals with --quick [s]."""
 
 
-def level_signal(level: str, *, quick: bool) -> Signal:
-    """The shipped input of a level, or a short one of the same spectrum and level."""
+def level_signal(level: str, wheel: str, *, quick: bool) -> Signal:
+    """The shipped input of a level, or a short one of the same spectrum and level.
+
+    Args:
+        level: of `LEVELS`.
+        wheel: that it drives.
+        quick: whether the short one is wanted.
+    """
     if not quick:
-        return read_signal(find_input(f"{level}.csv"))
+        return read_signal(find_input(f"{level}.csv"), wheel=wheel)
     return random_road(
         rms=LEVELS[level],
         seed=SEED,
         duration=QUICK_DURATION,
+        wheel=wheel,
         lower_band_edge=SHAKER_EDGE_HZ,
         roll_off_order=SHAKER_ROLL_OFF_ORDER,
     )
@@ -64,7 +71,7 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
         inputs[name] = (
             signal,
             [
-                f"{name}: random displacement of the plate under the front right wheel, constant velocity PSD "
+                f"{name}: random displacement of the plate under the wheel on the shaker, constant velocity PSD "
                 "(displacement PSD ~ 1/f^2)",
                 f"RMS {rms:.2e} m (exact), band {band}, seed {SEED}, {signal.duration:g} s at 1000 Hz",
                 "begins and ends at rest (half cosine of 0.5 s at both ends); low, mid and high are one signal, scaled",

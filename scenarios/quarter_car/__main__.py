@@ -1,4 +1,4 @@
-"""The quarter-car family of source 1: every figure of chapter 2 and the appendices, and its table of results.
+"""The quarter-car family of the thesis (Bommer 2006): figures of chapter 2 and the appendices, and a table of results.
 
 python -m scenarios.quarter_car [--output DIR] [--parameters FILE.toml] [--figure NAME] [--quick] [--force]
 """

@@ -1,4 +1,4 @@
-"""The figures of chapter 2 and appendices B to D of source 1, under the numbers they have there."""
+"""The figures of chapter 2 and appendices B to D of the thesis (Bommer 2006), under the numbers they have there."""
 
 from __future__ import annotations
 
@@ -10,7 +10,17 @@ from typing import Any
 import numpy as np
 
 from scenarios.charts import chart, lines
-from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, NO_FRICTION, STEEP, STEP, Array, Runs
+from scenarios.quarter_car.runs import (
+    CONSTANT,
+    DEGRESSIVE,
+    HIGH,
+    LEVELS,
+    LOW,
+    NO_FRICTION,
+    STEP,
+    Array,
+    Runs,
+)
 from vehicle.analysis.spectra import power_spectral_density
 from vehicle.laws.coulomb import Coulomb
 from vehicle.linear.response import frequency_response
@@ -38,11 +48,11 @@ ENGINE: dict[str, Run] = {
     "no engine": lambda runs, a: runs.sine(a),
 }
 
-CONSTANT_AND_DEGRESSIVE: dict[str, Run] = {
-    # The larger one first, so that it does not hide the other.
-    "constant damping": lambda runs, level: runs.road(level, STEEP, engine="elastomer"),
-    "degressive": lambda runs, level: runs.road(level, STEEP, engine="elastomer", degressive=True),
-}
+TOLD = {"slip": (2.0, 12.5), "stick": (4.8, 25.0)}
+"""Frequencies at which the text reads figure 2.5 [Hz]."""
+
+CONSTANT_AND_DEGRESSIVE = {"constant damping": CONSTANT, "degressive": DEGRESSIVE}
+"""The larger one first, so that it does not hide the other."""
 
 
 def _curves(
@@ -52,12 +62,10 @@ def _curves(
     return [(name, values, c, s) for (name, values), c, s in zip(named.items(), colours, styles, strict=False)]
 
 
-def _over_time(
-    panel: Any, histories: Mapping[str, History], label: str, of: Quantity, *, title: str = "", look: Any = ()
-) -> None:
-    """One quantity of several histories over time; `look` as of `_curves`."""
+def _over_time(panel: Any, histories: Mapping[str, History], label: str, of: Quantity, *, title: str = "") -> None:
+    """One quantity of several histories over time."""
     time = next(iter(histories.values())).time
-    curves = _curves({name: of(history) for name, history in histories.items()}, *look)
+    curves = _curves({name: of(history) for name, history in histories.items()})
     lines(panel, time, curves, xlabel="time [s]", ylabel=label, title=title)
 
 
@@ -111,8 +119,15 @@ def _force_axes(panel: Any, reach: float, name: str) -> None:
 def figure_2_5(runs: Runs, path: Path) -> None:
     """FRFs of the linear models."""
     frequency = np.geomspace(1.0, 50.0, 800)
-    caption = "Response to the road displacement: damper in slip (2.1) and in stick (2.2)."
-    parts: dict[str, Any] = {"|H| [m/m]": np.abs, "phase [deg]": lambda h: np.degrees(np.angle(h))}
+    caption = (
+        "Response to the road displacement: damper in slip (2.1) and in stick (2.2). Dotted: the frequencies of the "
+        "text, 2 and 12.5 Hz in slip, 4.8 and 25 Hz in stick."
+    )
+    # From 10 deg down, so that a lag of 180 deg does not jump between both ends of the axis.
+    parts: dict[str, Any] = {
+        "|H| [m/m]": np.abs,
+        "phase [deg]": lambda h: 10.0 - np.mod(10.0 - np.degrees(np.angle(h)), 360),
+    }
     with chart(path, caption, rows=2, columns=2, size=(9, 7)) as axes:
         for column, damper in enumerate(("slip", "stick")):
             model = runs.model(damper=damper)
@@ -121,6 +136,8 @@ def figure_2_5(runs: Runs, path: Path) -> None:
                 curves = _curves({output: part(response) for output, response in found.items()})
                 lines(axes[2 * row + column], frequency, curves, xlabel="frequency [Hz]", ylabel=label, title=damper)
                 axes[2 * row + column].set_xscale("log")
+                for told in TOLD[damper]:
+                    axes[2 * row + column].axvline(told, color="#888888", linestyle=":", linewidth=0.9)
             axes[column].set_yscale("log")
 
 
@@ -185,11 +202,18 @@ def figure_2_15(runs: Runs, path: Path) -> None:
     caption = "Body displacement: undamped shaking on the low road, damped motion on the high one."
     with chart(path, caption, rows=2, size=(9, 6)) as axes:
         for panel, level in zip(axes, (LEVELS[0], LEVELS[-1]), strict=True):
-            history = runs.road(level).during(0.3 * runs.duration, 0.65 * runs.duration)
-            moved = {"body": history.displacement("body"), "road": history.inputs[:, 0]}
+            shown = slice(*(round(share * runs.duration / STEP) for share in (0.3, 0.65)))
+            body, road = runs.marched("no engine", level).displacement[0], runs.road_profile(level)
             title = f"road RMS {1e3 * level:g} mm"
-            curves = _curves(moved, styles=("-", ":"))
-            lines(panel, history.time, curves, xlabel="time [s]", ylabel="displacement [m]", title=title)
+            curves = _curves({"body": body[shown], "road": road[shown]}, styles=("-", ":"))
+            lines(
+                panel,
+                STEP * np.arange(body.size)[shown],
+                curves,
+                xlabel="time [s]",
+                ylabel="displacement [m]",
+                title=title,
+            )
 
 
 def figure_2_18(runs: Runs, path: Path) -> None:
@@ -220,22 +244,28 @@ def figure_b_1(runs: Runs, path: Path) -> None:
     velocity = np.linspace(-0.015, 0.015, 4001)
     with chart(path, caption, columns=2) as axes:
         for panel, reach in zip(axes, (0.015, 5e-4), strict=True):
-            for steepness, color in zip((1e6, 1e5, 1e4), COLOURS, strict=False):
+            for variant, (steepness, color) in enumerate(zip((1e6, 1e5, 1e4), COLOURS, strict=False)):
                 law = Coulomb(friction_limit=runs.car.friction.limit, smoothing=steepness)
                 v = velocity * reach / 0.015
                 panel.plot(v, law.force(v), color=color, linewidth=1.2, label=f"eps {steepness:.0e} s/m")
-                met = runs.with_small_mass(LEVELS[0], steepness).sliding_velocity()[::50]
+                met = runs.marched("small mass", LEVELS[0], variant).sliding_velocity[0, ::50]
                 panel.plot(met, law.force(met), ".", color=color, markersize=3)
             _force_axes(panel, reach, "damper velocity")
 
 
 def figure_c_3(runs: Runs, path: Path) -> None:
     """Relative velocity of the damper with and without degressive damper."""
-    with chart(path, "Sliding velocity with the degressive damper and with constant damping.", columns=2) as axes:
+    with chart(
+        path, "Velocity of the damper on one road, degressive and with constant damping (eps 1e6 s/m).", columns=2
+    ) as axes:
         for panel, level in zip(axes, (LOW, HIGH), strict=True):
-            histories = {name: run(runs, level) for name, run in CONSTANT_AND_DEGRESSIVE.items()}
-            title, look = f"road RMS {1e3 * level:g} mm", (COLOURS[1::-1], ("-", "-"))
-            _over_time(panel, histories, "damper velocity [m/s]", History.sliding_velocity, title=title, look=look)
+            found = {
+                name: runs.marched(family, level, variant).sliding_velocity[0]
+                for name, (family, variant) in CONSTANT_AND_DEGRESSIVE.items()
+            }
+            time, title = STEP * np.arange(found["degressive"].size), f"road RMS {1e3 * level:g} mm"
+            curves = _curves(found, COLOURS[1::-1], ("-", "-"))
+            lines(panel, time, curves, xlabel="time [s]", ylabel="damper velocity [m/s]", title=title)
 
 
 FIGURES: dict[str, Callable[[Runs, Path], None]] = {
@@ -275,19 +305,19 @@ FIGURES: dict[str, Callable[[Runs, Path], None]] = {
     "C.2": partial(
         _roads,
         caption="Elastomer model with the degressive damper (C.2) and with constant damping (2.13), eps 1e6 s/m.",
-        compared={name: (name, 0) for name in ("degressive", "constant damping")},
+        compared={"degressive": DEGRESSIVE, "constant damping": CONSTANT},
     ),
     "C.3": figure_c_3,
     "D.4": partial(
         _roads,
         caption="Two-dimensional model (D.28): angle of the strut from the vertical; below: near 20 Hz.",
-        compared={f"{angle} deg": ("inclined", variant) for variant, angle in enumerate(("0", "4.2", "8.4"))},
+        compared={"0 deg": DEGRESSIVE, "4.2 deg": ("inclined", 0), "8.4 deg": ("inclined", 1)},
         zoom=True,
     ),
     "D.5": partial(
         _roads,
         caption="Two-dimensional model at 4.2 deg: longitudinal damping Dh [N s/m]; below: near 20 Hz.",
-        compared={f"Dh {damping}": ("inclined", variant) for damping, variant in (("0", 3), ("550", 1), ("1100", 4))},
+        compared={f"Dh {damping}": ("inclined", variant) for damping, variant in (("0", 2), ("550", 0), ("1100", 3))},
         zoom=True,
     ),
 }

@@ -131,6 +131,7 @@ def in_mujoco_claims(runs: Runs) -> list[Claim]:
                 f"not printed, our own check at {1e3 * DEFAULT_STEP:g} ms: RMS of {', '.join(places)} within 1 %, slip "
                 "(100/eps) within 0.5 points"
                 + ("" if "damper" in places else "; the two laws differ below 1/eps, which the damper mass feels"),
+                place="section 2.3.2.4",
             )
         )
     return claims

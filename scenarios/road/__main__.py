@@ -28,7 +28,7 @@ CARS = {"without occupant": "focus_road", "with occupant": "focus_road_seated"}
 
 ROADS, SPEEDS = ("A", "B", "C"), (50.0, 80.0, 120.0)
 FRICTIONS = (0.0, 31.25, 62.5, 125.0, 250.0)
-"""Coulomb friction of every damper [N]; source 1 has 125 N in front."""
+"""Coulomb friction of every damper [N]; Bommer 2006 has 125 N in front."""
 
 SPEED = 80.0
 """Speed of the study of friction [km/h]."""
@@ -80,8 +80,9 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         notes += checks(rides, folder, list(cars)[-1], roads)
     seconds = clock.perf_counter() - started
     return Findings(
-        title="A car on four wheels on the road: class, speed, friction, occupant (beyond source 1)",
+        title="A car on four wheels on the road: class, speed, friction, occupant (beyond Bommer 2006)",
         claims=claims,
+        tyres=rides.tyres(),
         unjudged={one.name: QUICK_WHY for one in claims} if quick else {},
         notes=[*notes, f"{rides.computed} runs in {seconds:.0f} s.", *([QUICK_NOTE] if quick else [])],
         data={

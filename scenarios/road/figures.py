@@ -58,8 +58,8 @@ def draw_friction(path: Path, runs: RideRuns, roads: Sequence[str], speed: float
     ]
     caption = (
         f"Over the Coulomb friction of every damper, relative to the same car without friction on the same records, at "
-        f"{speed:g} km/h on roads of ISO 8608; {_cars(runs)}; {runs.text()}; bars: two standard errors of the ratio "
-        "over the records."
+        f"{speed:g} km/h on roads of ISO 8608; {_cars(runs)}; {runs.text(speed)}; bars: two standard errors of the "
+        "ratio over the records."
     )
     with figure_file(path, (10.5, 7.0), "Friction of the dampers", caption) as figure:
         axes = figure.subplots(2, 2, sharex=True).ravel()

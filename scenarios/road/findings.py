@@ -1,4 +1,4 @@
-"""What the rides say: tables, and rows that ask whether the finding of source 1 holds on four wheels."""
+"""What the rides say: tables, and rows that ask whether the finding of Bommer 2006 holds on four wheels."""
 
 from __future__ import annotations
 

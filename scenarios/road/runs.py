@@ -21,7 +21,7 @@ from vehicle.commands.road import road_drive
 from vehicle.errors import SimulationError
 from vehicle.names import AXES
 from vehicle.parameters.vehicle import Vehicle
-from vehicle.sweeps.case import Case, overrides_of
+from vehicle.sweeps.case import Case, all_tyre_words, overrides_of
 from vehicle.sweeps.measure import of_one
 from vehicle.sweeps.runs import Runs, Vector
 from vehicle.sweeps.sweep import sweep
@@ -34,7 +34,7 @@ LEAD_S = 2.0
 class RideMeasure:
     """Turns a run on a road into numbers, all without the lead.
 
-    `rail` is the comfort value of source 1, sqrt(RMSx^2 + RMSy^2 + RMSz^2) unfiltered in 2 to 50 Hz; `rail_weighted`
+    `rail` is the comfort value of Bommer 2006, sqrt(RMSx^2 + RMSy^2 + RMSz^2) unfiltered in 2 to 50 Hz; `rail_weighted`
     and `seat_weighted` are vector sums after ISO 2631-1 (x and y by Wd, z by Wk), `seat_value` the SEAT value along z;
     the last two are NaN of a car without seat. `load_front` and `load_rear` are RMS of the dynamic tyre load over the
     static one, quadratic mean of the wheels of an axle; `lowest_load` that of any tyre over its static one; `pulling`
@@ -181,12 +181,22 @@ class RideRuns:
         """Number of runs so far."""
         return self.records * len(self._done)
 
-    def text(self) -> str:
-        """For captions."""
+    def tyres(self, speed: float | None = None) -> str:
+        """What the tyres of the rides so far do, at one speed [km/h] or all."""
+        rides = [ride for ride in self._done if speed in (None, ride.speed)]
+        return all_tyre_words([case for ride in rides for case in self.cases(ride)[:1]])
+
+    def text(self, speed: float | None = None) -> str:
+        """Return records, tyres and engine of the rides so far, for captions.
+
+        Args:
+            speed: of the rides that are meant [km/h]; None for all.
+        """
         many = f"{self.records} records" if self.records > 1 else "1 record"
         seeds = f"seeds 1 to {self.records}" if self.records > 1 else "seed 1"
         return (
-            f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, engine {self.engine}, rolling tyres"
+            f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, tyres {self.tyres(speed)}, engine "
+            f"{self.engine}"
         )
 
     def compute(self, rides: Sequence[Ride]) -> None:
@@ -230,6 +240,7 @@ class RideRuns:
         changes = () if ride.friction is None else all_friction(vehicle, ride.friction)
         changes = (*changes, *one_sided_tyres(vehicle)) if ride.one_sided else changes
         numbers = {**dict.fromkeys(ROAD_NUMBERS), "speed": ride.speed, "duration": self.duration + LEAD_S}
+        numbers["overrides"] = self.overrides
         drives = [
             road_drive(ride.road, argparse.Namespace(**{**numbers, "seed": seed}), vehicle)
             for seed in range(1, self.records + 1)

@@ -1,4 +1,4 @@
-"""What the authors of source 1 did by hand, automatic: parameters fitted to FRFs and bump records (section 3.2).
+"""What Bommer (2006) did by hand, automatic: parameters fitted to FRFs and bump records (section 3.2).
 
 python -m scenarios.tuning [--output DIR] [--quick] [--jobs N] [--vehicle FILE.toml] [--force]
 python -m scenarios.tuning --frf measured_low.uff --level low --frf measured_high.csv --level my_signal.csv
@@ -151,8 +151,9 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
         data |= {"bumps": fit_numbers(alone.result), "low": fit_numbers(stuck), "damper_frozen": fit_numbers(damper)}
     parameter_figure(folder / "parameters.png", found, true)
     return Findings(
-        title="Parameters fitted to FRFs and bump records (source 1, section 3.2, automatic)",
+        title="Parameters fitted to FRFs and bump records (Bommer 2006, section 3.2, automatic)",
         claims=demonstration_claims(final, alone, true),
+        tyres=tuning.vehicle.driving.words,
         unjudged={"bump records alone, and the authors' own order": "left out with --quick"} if quick else {},
         notes=notes,
         data=data,
@@ -181,6 +182,7 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
     return Findings(
         title=f"Parameters fitted to {', '.join(files)}",
         claims=own_claims(result, final),
+        tyres=tuning.vehicle.driving.words,
         notes=[*fit_notes("The fit", result, final), *(["The files:\n\n" + "\n".join(notices)] if notices else [])],
         data={"all": fit_numbers(result)},
         values=value_lines(result, tuning.vehicle),
@@ -256,7 +258,7 @@ def add_options(found: Parser) -> None:
         action="append",
         default=[],
         metavar=TEXT,
-        help="parameter, its bounds and where the fit begins; those of source 1 by default; may be repeated",
+        help="parameter, its bounds and where the fit begins; those of Bommer 2006 by default; may be repeated",
     )
     own.add_argument(
         "--channel",

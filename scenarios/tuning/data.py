@@ -145,10 +145,10 @@ AUTHORS = (
     # Section 3.1.3.2: damper of the quarter car.
     Range(path="damper.viscous", low=3e2, high=8e3, start=1500.0),
     Range(path="damper.coulomb_friction", low=15.0, high=400.0, start=75.0),
-    # Appendix F prints it with an exponent that nobody can read: do the data tell?
+    # Appendix F prints 1.2e6, the source says that it hardly matters: do the data tell?
     Range(path="bushings.torque_arm_body.stiffness.z", low=1.2e4, high=1.2e6, start=1.3e5),
 )
-"""Section "starting values before tuning" of source 1; the bounds are ours and far from start and result."""
+"""Section "starting values before tuning" of Bommer 2006; the bounds are ours and far from start and result."""
 
 SLIDING = ("damper.viscous", "damper.coulomb_friction")
 """What a damper that sticks does not show: the authors tuned them on bumps (section 3.2.2)."""

@@ -13,7 +13,7 @@ from vehicle.parameters.vehicle import load_vehicle
 
 RIGHT = re.compile("_fr(?![a-z])")  # the wheel, not "front"
 
-# Appendix E of source 1, per side [kg]; the split of damper and spring and the torque arm are assumed.
+# Appendix E of Bommer 2006, per side [kg]; the split of damper and spring and the torque arm are assumed.
 APPENDIX_E = {
     "a_arm": 4.05,
     "knuckle": 7.05,
@@ -110,7 +110,7 @@ def test_trimmed_body(ixx):
         np.testing.assert_allclose(moments, expected, rtol=1e-12)
         assert "used as given" in found.report
     else:
-        # Short by 30 kg m2 (source 1): the repair spreads that over the axes.
+        # Short by 30 kg m2 (Bommer 2006): the repair spreads that over the axes.
         assert np.all(np.abs(moments - expected) < 31.0) and np.any(moments != expected)
         assert "triangle inequality" in found.report
     a, b, c = np.linalg.eigvalsh(found.inertia)

@@ -1,4 +1,4 @@
-"""Joints, rows and constants of the compiled car against section 3.1.3 of source 1."""
+"""Joints, rows and constants of the compiled car against section 3.1.3 of Bommer 2006."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def test_the_constants_of_the_elements_are_in_the_model(car):
     tyre = numeric(model, "law/bushing/tyre_fr")
     np.testing.assert_array_equal(tyre[:6], [1.5e5, 1.5e5, 2.5e5, 0.0, 0.0, 400.0])
     engine = numeric(model, "law/bushing/torque_arm_engine")
-    np.testing.assert_array_equal(engine[:6], [5e5, 1.3e5, 6.5e5, 2000.0, 1000.0, 0.0])
+    np.testing.assert_array_equal(engine[:6], [5e5, 1.3e6, 6.5e5, 2000.0, 1000.0, 0.0])
     assert numeric(model, "law/main_spring_fl")[0] == 2.5e4
     # Every connection with the flexible body knows the shape of its node.
     body = model.body("body").id

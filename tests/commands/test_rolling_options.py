@@ -10,7 +10,11 @@ import pytest
 
 from vehicle.commands import modes, shaker
 from vehicle.commands.road import road_drive
+from vehicle.excitation.road_drive import RoadDrive
+from vehicle.parameters.driving import Driving, tyre_words
+from vehicle.parameters.shipped import vehicle_file
 from vehicle.parameters.vehicle import load_vehicle
+from vehicle.sweeps.case import SignalFile, all_tyre_words, drivings, table_cases
 
 ROAD = ["--road", "A", "--speed", "72", "--duration", "3", "--engine", "reduced", "--quiet"]
 
@@ -25,10 +29,25 @@ def drive(vehicle: str, **given: object) -> tuple[str, ...]:
 def test_tyres_roll_on_a_road_by_default() -> None:
     assert drive("sedan") == ("driving.speed=20.0",)
     assert drive("sedan", tyre="standing") == ()
-    assert drive("sedan", overrides=["driving.speed=10"]) == ()
+    assert drive("sedan", overrides=["driving.speed=10"]) == drive("sedan", overrides=["speed=10"]) == ()
     # On blocks behind, as on its rig.
     assert drive("focus") == ()
     assert drive("focus", tyre="rolling") == ("driving.speed=20.0",)
+
+
+def test_words_of_several_runs() -> None:
+    speeds = {0.0, 80.0 / 3.6, 50.0 / 3.6, 120.0 / 3.6}
+    assert tyre_words(Driving(speed=one) for one in speeds) == "standing or rolling at 50, 80 and 120 km/h"
+    sources = [
+        RoadDrive(road="A", speed=speed, wheels=(("fr", 0.0, "right"),), track=1.5, driving=speed / 3.6)
+        for speed in (80.0, 50.0)
+    ]
+    cases = table_cases(["front.damper.viscous"], [(1000,), (2000,)], sources, vehicle=vehicle_file(Path("sedan")))
+    rolling = {name: tyre_words(cars) for name, cars in drivings(cases).items()}
+    assert rolling == {"road_A_80": "rolling at 80 km/h", "road_A_50": "rolling at 50 km/h"}
+    assert all_tyre_words(cases) == "rolling at 50 and 80 km/h"
+    varied = table_cases(["speed"], [(0,), (20,)], [SignalFile(path=Path("low.csv"))], vehicle=cases[0].vehicle)
+    assert all_tyre_words(varied) == "standing or rolling at 72 km/h"
 
 
 def test_a_run_says_what_its_tyres_do(tmp_path: Path) -> None:
@@ -36,7 +55,7 @@ def test_a_run_says_what_its_tyres_do(tmp_path: Path) -> None:
     for name, more in (("rolling", []), ("standing", ["--tyre", "standing"])):
         assert shaker.main([*ROAD, *more, "--vehicle", "sedan", "--output", str(tmp_path / name)]) == 0
         summary = json.loads((tmp_path / name / "summary.json").read_text())
-        assert summary["tyre"] == {"rolling": "rolling at 20 m/s", "standing": "standing"}[name]
+        assert summary["tyre"] == {"rolling": "rolling at 72 km/h", "standing": "standing"}[name]
         said[name] = summary["comfort"]["seat_rail"]["rms_2_50_hz"]["x"]
     assert said["rolling"] < 0.7 * said["standing"]
     # Its vehicle file repeats it.
@@ -49,7 +68,7 @@ def test_a_run_says_what_its_tyres_do(tmp_path: Path) -> None:
 def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
     assert modes.main(["--vehicle", "sedan", "--speed", "80", "--damper", "sliding", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert found["tyre"] == "rolling at 22.22 m/s"
+    assert found["tyre"] == "rolling at 80 km/h"
     roll = next(mode for mode in found["modes"] if mode["description"].startswith("body roll"))
     assert 1.7 < roll["frequency_hz"] < 2.2  # on standing tyres 3.8 Hz
     assert found["growing"] == []

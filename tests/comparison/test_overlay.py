@@ -39,7 +39,7 @@ BANDS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 50.0)
 def measured(tmp_path_factory, car):
     """FRFs in g per m, measured downwards, with coherence, of a car with other mounts."""
     frequency = np.arange(2.0, 48.0, 0.25)
-    clean = Car.load(overrides=overrides_of(car.vehicle, HIDDEN)).matrix_frf(tuple(PLACES), frequency)
+    clean = Car.load(overrides=overrides_of(car.vehicle, HIDDEN)).matrix_frf(tuple(PLACES), frequency, wheel="fr")
     real, imaginary = np.random.default_rng(11).standard_normal((2, *clean.shape))
     noisy = clean * (1.0 + NOISE * (real + 1j * imaginary))
     channels = []
@@ -73,6 +73,8 @@ def run(tmp_path_factory, measured):
     arguments = [
         "--input",
         str(folder / "short.csv"),
+        "--wheel",
+        "front_right",
         "--engine",
         "reduced",
         "--output",
@@ -87,7 +89,9 @@ def exact_errors(car):
     """|ln(H / Hm)|^2 of both cars by their matrices, band by band: channel and lower edge to the root of its mean."""
     frequency = np.arange(2.0, 48.0, 0.25)
     other = Car.load(overrides=overrides_of(car.vehicle, HIDDEN))
-    ratio = np.log(car.matrix_frf(tuple(PLACES), frequency) / other.matrix_frf(tuple(PLACES), frequency))
+    ratio = np.log(
+        car.matrix_frf(tuple(PLACES), frequency, wheel="fr") / other.matrix_frf(tuple(PLACES), frequency, wheel="fr")
+    )
     found: dict[tuple[str, float], float] = {}
     for low, high in pairwise(BANDS):
         inside = (frequency >= low) & (frequency < high)

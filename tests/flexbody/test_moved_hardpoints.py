@@ -135,7 +135,7 @@ def test_the_same_points_and_masses_give_the_same_bytes_and_one_body():
 
 
 def rigid_file(folder):
-    """The car of source 1 without its body file."""
+    """The car of Bommer 2006 without its body file."""
     text = FOCUS_FILE.read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("superelement =")]
     (folder / "car.toml").write_text("\n".join(lines), encoding="utf-8")

@@ -13,7 +13,7 @@ from vehicle.linear.modes import car_modes
 from vehicle.linear.part_motions import group_of
 from vehicle.linear.response import frequency_response
 
-SPRUNG, UNSPRUNG, SUSPENSION, TYRE = 180.0, 45.0, 3e4, 2.5e5  # the quarter car of source 1
+SPRUNG, UNSPRUNG, SUSPENSION, TYRE = 180.0, 45.0, 3e4, 2.5e5  # the quarter car of Bommer 2006
 VISCOUS, TYRE_DAMPING = 1500.0, 400.0
 
 

@@ -14,7 +14,7 @@ from vehicle.simulation.callbacks import compiled_rows
 from vehicle.simulation.rows import Rows, prepare_model
 from vehicle.simulation.run import simulate
 
-LAW = Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02)  # appendix C.2 of source 1
+LAW = Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02)  # appendix C.2 of Bommer 2006
 VALVE = [13500.0, 0.0, 13500.0 * 0.02]
 SMOOTHING, MASS, STIFFNESS = 1e5, 40.0, 4e4
 OVERRIDES = ['damper.viscous_law="degressive"']

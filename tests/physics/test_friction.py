@@ -8,7 +8,7 @@ import pytest
 from tests.simulation.row_model import Stepper, add_damper, empty_spec
 from vehicle.laws.stribeck import Stribeck
 
-LIMIT, SMOOTHING, VISCOUS = 125.0, 1e5, 2250.0  # the damper of source 1
+LIMIT, SMOOTHING, VISCOUS = 125.0, 1e5, 2250.0  # the damper of Bommer 2006
 CREEP = 2.0 / np.pi * LIMIT * SMOOTHING  # N s/m, slope of the smooth law at rest
 
 

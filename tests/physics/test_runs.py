@@ -77,14 +77,14 @@ def test_frf_from_time_and_from_the_matrices(damper):
     plate = run["plate_fr_displacement"][:-1]
     frequency, found = periodic_response(run.recording.timestep, plate, responses, period=4.0)
     assert frequency.size == 197  # 1 to 50 Hz in steps of 0.25
-    exact = car.matrix_frf(channels, frequency, damper=damper)
+    exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
     error = np.sum(np.abs(found - exact) ** 2, axis=1)
     size = np.sum(np.abs(exact) ** 2, axis=1)
     # The demand of the project: 1 % RMS over 1 to 50 Hz.
     each = dict(zip(channels, np.sqrt(error / size), strict=True))
     assert max(each.values()) < 0.01, each
     # The other state of the damper is another car: the comparison can fail.
-    other = car.matrix_frf(channels, frequency, damper="sliding" if damper == "stuck" else "stuck")
+    other = car.matrix_frf(channels, frequency, damper="sliding" if damper == "stuck" else "stuck", wheel="fr")
     assert np.sqrt(np.sum(np.abs(found[2] - other[2]) ** 2) / size[2]) > 0.2
 
 
@@ -132,7 +132,7 @@ def test_the_recorded_damper_force_is_its_law(high_run):
     velocity, force = high_run["damper_fr_velocity"], high_run["damper_fr_force"]
     damper = high_run.car.vehicle.damper
     fast = np.abs(velocity) > 0.02
-    assert fast.sum() > 200
+    assert fast.sum() > 100
     exact = damper.viscous * velocity + np.sign(velocity) * damper.coulomb_friction
     np.testing.assert_allclose(force[fast], exact[fast], rtol=1e-3, atol=0.5)
     # Never more than the limit: neither while it sticks nor while it breaks away.

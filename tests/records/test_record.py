@@ -9,7 +9,8 @@ from vehicle.commands.comfort import main
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.excitation.signal_file import read_signal
 from vehicle.records import text, text_format
-from vehicle.records.formats import FORMATS, read_columns
+from vehicle.records.formats import TABLES, write_record
+from vehicle.records.reader import read_columns
 from vehicle.records.table import Record, Vector, Wanted, key_column
 
 TIME: Vector = np.linspace(2.0, 5.999, 4000)
@@ -21,10 +22,10 @@ CHANNELS: dict[str, Vector] = {
 UNITS = {**dict.fromkeys(CHANNELS, "m/s2"), "damper_fr_force": "N"}
 
 
-@pytest.fixture(params=FORMATS)
+@pytest.fixture(params=TABLES)
 def run(request, tmp_path):
     path = tmp_path / f"time.{request.param}"
-    FORMATS[request.param].write(path, Record(time=TIME, channels=CHANNELS, units=UNITS), "x to the rear")
+    write_record(path, request.param, Record(time=TIME, channels=CHANNELS, units=UNITS), "x to the rear")
     return path
 
 
@@ -42,7 +43,7 @@ def test_comfort_reads_a_place_of_a_run(run, tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)
     plain = tmp_path / "plain.csv"
     axes: dict[str, Vector] = dict(zip("xyz", list(CHANNELS.values())[:3], strict=True))
-    FORMATS["csv"].write(plain, Record(time=TIME, channels=axes, units=dict.fromkeys("xyz", "m/s2")), "")
+    write_record(plain, "csv", Record(time=TIME, channels=axes, units=dict.fromkeys("xyz", "m/s2")), "")
     assert main(["--input", str(plain), "--json"]) == 0
     expected = json.loads(capsys.readouterr().out)
     for axis in "xyz":
@@ -76,7 +77,7 @@ def test_arrays_that_are_no_record_are_refused(tmp_path):
 def test_the_shaker_reads_the_plates_of_a_run(run):
     plates = {"plate_fr_displacement": 1e-3 * (1.0 - np.cos(50.0 * (TIME - 2.0))), "plate_fl_displacement": 0.0 * TIME}
     record = Record(time=TIME, channels=CHANNELS | plates, units=UNITS | dict.fromkeys(plates, "m"))
-    FORMATS[run.suffix[1:]].write(run, record, "x to the rear")
+    write_record(run, run.suffix[1:], record, "x to the rear")
     signal = read_signal(run)
     assert signal.wheels == ("fr",)  # the other plate stood still
     assert signal.notices == ("time begins at 2 s in the file and was shifted to 0",)

@@ -12,10 +12,9 @@ from vehicle.errors import DataError
 from vehicle.excitation.signal_file import read_signal
 from vehicle.records import hdf_format, matlab_format
 from vehicle.records.channel import Channel, uniform_axis
-from vehicle.records.formats import read_columns
 from vehicle.records.frf import read_frf
 from vehicle.records.geometry import Geometry
-from vehicle.records.reader import read_record
+from vehicle.records.reader import read_columns, read_record
 from vehicle.records.uff_writer import write
 
 TIME = uniform_axis(2048, 1.0 / 2048.0)

@@ -32,6 +32,7 @@ def one_pole(pole, height, velocity):
         slip=np.zeros((2, 1), dtype=complex),
         modal=np.zeros((1, 1), dtype=complex),
         branch=np.zeros((0, 1), dtype=complex),
+        slope=np.zeros((1, 0), dtype=complex),
         matrices=None,  # type: ignore[arg-type]
     )
 

@@ -17,7 +17,7 @@ from vehicle.rendering.layout import Layout
 from vehicle.rendering.motion import RecordedMotion
 from vehicle.rendering.recorded_run import hub_channel
 from vehicle.rendering.road_strip import RoadStrip
-from vehicle.rendering.rolling import RollingRim
+from vehicle.rendering.rolling import RollingWheel
 from vehicle.rendering.shot import Shot, Take
 from vehicle.rendering.stage import stage_model
 
@@ -89,15 +89,33 @@ def test_rims_roll_with_the_road(road_car, road_run):
     state, data = motion.at(0.4), mujoco.MjData(model)
     data.geom_xpos[:], data.geom_xmat[:] = motion.geoms(state, 1.0)
     before = data.geom_xmat.reshape(-1, 3, 3).copy()
-    rim = RollingRim(motion, wheel, SPEED)
+    rolling = RollingWheel(motion, wheel, "knuckle_rr", SPEED)
     quarter = 0.5 * np.pi * 0.295 / SPEED
-    rim.turn(data, state, 1.0, quarter)
-    assert {model.geom(geom).name for geom in rim.geoms} == {"rim_rr", "wheel_bolts_rr"}
+    rolling.turn(data, state, 1.0, quarter)
+    assert {model.geom(geom).name for geom in rolling.rim} == {"rim_rr", "wheel_bolts_rr"}
+    # The tyre goes with its hub, to which it is fixed where it stands.
+    np.testing.assert_allclose(data.geom_xmat[rolling.tyre].reshape(-1, 3, 3), before[rolling.tyre], atol=1e-12)
+    np.testing.assert_allclose(data.geom_xpos[rolling.tyre], motion.geoms(state, 1.0)[0][rolling.tyre], atol=1e-12)
     geom = model.geom("rim_rr").id
     across = motion.poses(state, 1.0)[1][model.body("tyre_rr").id]
     turned = across.T @ data.geom_xmat[geom].reshape(3, 3) @ before[geom].T @ across
     # What was on top (z) is now in front (-x).
     np.testing.assert_allclose(turned @ [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], atol=1e-12)
+
+
+def test_the_spin_of_a_wheel_leaves_the_flat_of_its_tyre_below(road_car, road_run):
+    model = stage_model(road_car, (320, 180), road=True)
+    motion = RecordedMotion(model, road_run.recording, 0.0, 1.0)
+    state, data = motion.at(0.4), mujoco.MjData(model)
+    spun = dataclasses.replace(state, rotation=state.rotation.copy())
+    spun.rotation[model.body("tyre_rr").id] += [0.0, 0.1, 0.0]
+    rolling = RollingWheel(motion, road_car.vehicle.composition.wheels[2], "knuckle_rr", 0.0)
+    rolling.turn(data, state, 2.0, 0.4)
+    kept = data.geom_xmat[rolling.tyre].copy()
+    rolling.turn(data, spun, 2.0, 0.4)
+    np.testing.assert_array_equal(data.geom_xmat[rolling.tyre], kept)
+    # At speed 0 the rim stands too.
+    np.testing.assert_allclose(data.geom_xmat[rolling.rim], motion.geoms(state, 2.0)[1][rolling.rim], atol=1e-12)
 
 
 def test_wheels_are_called_front_where_they_are():

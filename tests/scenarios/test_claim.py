@@ -11,6 +11,7 @@ import scenarios
 from scenarios.__main__ import main as print_list
 from scenarios.claims import (
     FITTED,
+    NOT_TESTABLE,
     PREDICTED,
     STATUSES,
     TABLE,
@@ -18,6 +19,7 @@ from scenarios.claims import (
     Findings,
     Kind,
     Status,
+    claim_table,
     headline,
     interval_claim,
     spread_claim,
@@ -46,11 +48,34 @@ def test_an_extreme_agrees_inside_its_interval():
     assert open_end.within and open_end.published == "0.5 or more" and open_end.source == "axis interval"
 
 
-def test_a_distribution_agrees_when_the_interval_lies_between_its_percentiles():
-    ours = [0.01 * number for number in range(101)]  # 5th percentile 0.05, 95th 0.95
-    assert spread_claim("a", (0.06, 0.94), ours, "w").within
-    assert not spread_claim("a", (0.04, 0.94), ours, "w").within
-    assert not spread_claim("a", (0.06, 0.96), ours, "w").within
+def test_a_spread_agrees_where_the_interval_is_probable_and_prints_the_probability():
+    narrow = [0.45, 0.46, 0.47, 0.46, 0.45, 0.47, 0.46, 0.46]  # within one tick
+    inside = spread_claim("a", (0.4, 0.6), narrow, "w", place="figure 3.13", picture="seat_rail.png")
+    assert inside.within and inside.probability == pytest.approx(1.0, abs=1e-4)
+    assert inside.ours == "0.46 +- 0.0076 (8 values)"
+    assert inside.why == "probability of the interval 100 %, must be above 5 %; w"
+    assert (inside.place, inside.picture) == ("figure 3.13", "seat_rail.png")
+    outside = spread_claim("a", (0.5, 0.6), narrow, "w")
+    assert outside.within is False and outside.probability is not None and 0.0 < outside.probability < 0.05
+    wide = spread_claim("a", (0.5, 0.6), [0.1, 0.9, 0.3, 0.7, 0.5, 0.4, 0.6, 0.2], "w")
+    assert wide.within and wide.probability is not None and 0.05 < wide.probability < 0.2
+
+
+def test_one_value_of_a_spread_is_compared_with_the_interval():
+    assert spread_claim("a", (0.5, 0.6), [0.55], "w") == interval_claim("a", (0.5, 0.6), 0.55, "w")
+
+
+def test_a_row_that_no_one_can_test_has_no_verdict_and_is_not_counted():
+    rows = [
+        NOT_TESTABLE.number("a", 1.0, 1.0, 0.1, "input unknown"),
+        NOT_TESTABLE.statement("b", "x", "y", True, "w"),
+        interval_claim("c", (0.0, 1.0), 0.5, "w", status="not testable"),
+        spread_claim("d", (0.0, 1.0), [0.5, 0.6], "w", status="not testable"),
+    ]
+    assert [row.within for row in rows] == [None] * 4
+    rows.append(made("predicted", True))
+    assert headline([asdict(row) for row in rows]) == "1 of 1 predicted rows agree; in addition 4 not testable"
+    assert "| not testable | not testable |" in claim_table([asdict(rows[0])])
 
 
 def made(status: Status, within: bool) -> Claim:
@@ -60,8 +85,8 @@ def made(status: Status, within: bool) -> Claim:
 def test_the_headline_counts_predicted_rows_only():
     claims = [made(status, within) for status in STATUSES for within in (True, False, False)]
     assert headline([asdict(claim) for claim in [*claims, made("predicted", True)]]) == (
-        "2 of 4 predicted rows agree; beside them 3 fitted (1 agree), 3 chosen (1 agree), 3 own check (1 agree), "
-        "3 duplicate (1 agree)"
+        "2 of 4 predicted rows agree; in addition 3 fitted (1 agree), 3 chosen (1 agree), 3 own check (1 agree), "
+        "3 duplicate (1 agree), 3 not testable"
     )
 
 
@@ -69,18 +94,19 @@ def test_files_hold_rows_notes_and_data(tmp_path):
     rows = [
         TABLE.number("a | b", 2.0, 2.1, 0.2, "w"),
         made("fitted", False),
-        interval_claim("c", (95.0, float("inf")), 90.0, "v"),
+        interval_claim("c", (95.0, float("inf")), 90.0, "v", place="figure 4.12"),
     ]
     Findings(title="Title", claims=rows, notes=["A note."], data={"extra": [1.0, float("inf")]}).write(tmp_path)
     text = (tmp_path / "results.md").read_text(encoding="utf-8")
-    assert "\n1 of 2 predicted rows agree; beside them 1 fitted (0 agree)," in text
-    assert "| a \\| b | 2 | 2.1 | +5.0 % | yes | predicted | table |  | w |" in text
-    assert "| a | b | c |  | NO | fitted | text |  | w |" in text
-    assert "| c | 95 or more | 90 | -5.3 % | NO | predicted | axis interval | [95, ] | v |" in text
+    assert "\n1 of 2 predicted rows agree; in addition 1 fitted (0 agree)." in text
+    assert "| a \\| b |  | 2 | 2.1 | +5.0 % | yes | predicted | table | w |" in text
+    assert "| a |  | b | c |  | NO | fitted | text | w |" in text
+    assert "| c | figure 4.12 | 95 or more | 90 | -5.3 % | NO | predicted | axis interval | v |" in text
     assert text.endswith("A note.\n")
     content = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
     assert set(content["rows"][0]) == {
-        "name", "published", "ours", "deviation", "within", "why", "status", "source", "interval"
+        "name", "published", "ours", "deviation", "within", "why", "status", "source", "interval",
+        "place", "picture", "probability",
     }  # fmt: skip
     assert [row["interval"] for row in content["rows"]] == [None, None, [95.0, None]]
     assert content["rows"][0]["deviation"] == pytest.approx(0.05)

@@ -8,7 +8,9 @@ import pytest
 
 from scenarios.claims import Claim
 from scenarios.damper_choice.__main__ import main
+from scenarios.damper_choice.damper_curves import compare_curves
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
+from vehicle.lumped.road_holding import quarter_car_model, tyre_load_ratio
 from vehicle.output.written_files import MARKER
 from vehicle.parameters.damper_choice import FITTED, damper_choice_parameters
 from vehicle.parameters.vehicle import load_vehicle
@@ -35,6 +37,7 @@ def test_every_file_is_there_and_no_temporary_one(results):
         "figure_11_12_13_iteration.png",
         "trade_off_fitted_quarter_car.png",
         "trade_off_complete_car.png",
+        "damper_curves.png",
     }
 
 
@@ -44,19 +47,43 @@ def test_rows_show_what_the_source_prints(results):
     assert len(rows) == len(content["rows"])
     assert all(set(row) == {field.name for field in fields(Claim)} for row in rows.values())
     for name in (
-        "figure 9: quarter car optimum damping, printed measure [N s/m]",
-        "figure 9: steeper below the optimum than above, printed measure",
-        "figure 9: steeper below the optimum than above, physical measure",
-        "figures 7 and 8: the pitch peak rises with damping while the heave peak falls",
+        "quarter car optimum damping, printed measure [N s/m]",
+        "quarter car: steeper below the optimum than above, printed measure",
+        "quarter car: steeper below the optimum than above, physical measure",
+        "the pitch peak rises with damping while the heave peak falls",
         "optimum front above rear, printed measure",
         "optimum front above rear, physical measure",
         "iteration converges in three steps, printed measure",
         "R of both ends falls through the iteration",
-        "figure 3: one sprung peak for every damping, lower with more damping",
-        *(f"figure 3: quarter car sprung peak at {c} N s/m [Hz]" for c in (4000, 5000, 6000, 7000)),
+        "one sprung peak for every damping, lower with more damping",
+        *(f"quarter car sprung peak at {c} N s/m [Hz]" for c in (4000, 5000, 6000, 7000)),
     ):
         assert rows[name]["within"] is True, name
     assert rows["equation 10 without magnitude bars"]["within"] is False
+    curves = [row for name, row in rows.items() if name.startswith("damper curve: ")]
+    assert len(curves) == 2
+    assert all(row["status"] == "not testable" and row["within"] is None for row in curves)
+
+
+def test_every_row_has_its_place_and_a_picture_that_is_there(results):
+    rows = json.loads((results / "results.json").read_text(encoding="utf-8"))["rows"]
+    assert all(row["place"] for row in rows)
+    assert {row["picture"] for row in rows} - {""} <= {path.name for path in results.iterdir()}
+    assert sum(row["picture"] == "" for row in rows) == 0
+
+
+def test_one_coefficient_gives_the_linear_tyre_load_and_rebound_pulls_the_body_down():
+    found = compare_curves(P, duration=6.0)
+    linear = tyre_load_ratio(quarter_car_model(P.quarter_car), P.highway, P.bands)[0]
+    assert found.tyre_load[0].mean() == pytest.approx(linear, rel=0.1)  # four roads of 4 s: 5 % each
+    # F = c v + d |v| with d = c / 3 has the mean d E|v|, which the spring must hold.
+    car = P.quarter_car
+    mean = car.wheel.suspension_damping / 3.0 * found.velocity * np.sqrt(2.0 / np.pi)
+    assert (found.height[0] - found.height[2]).mean() == pytest.approx(mean / car.wheel.suspension_stiffness, rel=0.1)
+    velocity, (one, low, rebound) = found.curves
+    np.testing.assert_allclose(one, car.wheel.suspension_damping * velocity)
+    np.testing.assert_allclose(low[::-1], -low, atol=1e-9)
+    assert rebound[-1] == pytest.approx(-2.0 * rebound[0])
 
 
 def test_both_roads_and_both_measures_are_reported(results):

@@ -60,6 +60,32 @@ def test_agreements_and_findings_of_the_shipped_car(results):
     assert rows["matrices [C] and [K] below equation 16"] is False
 
 
+def test_text_and_conclusions_on_suspension_damping_both_stand(results):
+    rows = {row["name"]: row for row in json.loads((results / "results.json").read_text())["rows"]}
+    for limb in ("upper", "lower"):
+        name = f"VDV of the {limb} body with suspension damping"
+        text, conclusion = rows[name], rows[f"conclusions: {name}"]
+        assert (text["published"], text["within"]) == ("little", False)
+        assert (conclusion["published"], conclusion["within"]) == ("rises", True)
+        assert text["ours"] == conclusion["ours"]
+        changes = [float(value) for value in text["ours"].split(" %")[0].split(", ")]
+        assert all(9.0 < value < 18.0 for value in changes)
+
+
+def test_settling_times_are_chosen_and_say_the_band_that_the_print_needs(results):
+    rows = [row for row in json.loads((results / "results.json").read_text())["rows"] if "settling time" in row["name"]]
+    assert len(rows) == 11
+    assert {row["status"] for row in rows} == {"chosen"}
+    assert all("The printed time needs a band of" in row["why"] for row in rows)
+
+
+def test_every_row_has_its_place_and_a_picture_that_is_there(results):
+    rows = json.loads((results / "results.json").read_text(encoding="utf-8"))["rows"]
+    assert all(row["place"] for row in rows)
+    assert {row["picture"] for row in rows} - {""} <= {path.name for path in results.iterdir()}
+    assert [row["name"] for row in rows if not row["picture"]] == ["matrices [C] and [K] below equation 16"]
+
+
 def test_base_case_is_tabled_for_every_place(results):
     table = json.loads((results / "results.json").read_text(encoding="utf-8"))["base_case"]
     history = passive(CAR, SPEEDS[0])

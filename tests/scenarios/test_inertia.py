@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from scenarios.inertia import led_by, main, roll_claims, roll_mode, roll_peak
+from scenarios.evidence import status_of
+from scenarios.inertia import led_by, loss_angle, main, moment_about_cog, roll_claims, roll_mode, roll_peak
 from vehicle.car import Car
 
 
@@ -22,7 +23,8 @@ def test_modes_are_judged_and_roll_peaks_need_a_long_record(results):
     rows = {row["name"]: (row["status"], row["within"]) for row in content["rows"]}
     assert rows == {
         "roll mode (Rx) of the matrices, Ixx 1000 [Hz]": ("own check", True),
-        "six rigid body modes": ("predicted", True),
+        "six rigid body modes": (status_of("rigid_modes"), True),
+        "hydromount, loss angle at 7 Hz [deg]": ("predicted", True),
         "engine modes": ("fitted", True),
         "flexible modes of the trimmed body": ("fitted", True),
     }
@@ -52,9 +54,24 @@ def test_modes_belong_to_the_part_with_most_energy(car):
 
 
 def test_roll_rows_follow_the_peaks():
-    assert [claim.within for claim in roll_claims((6.4, 5.7), (6.4, 5.7))] == [True, True, True]
-    assert [claim.within for claim in roll_claims((6.9, 6.3), (6.9, 6.3))] == [False, False, True]
-    assert roll_claims((6.44, 4.8), (6.44, 4.8))[2].within is False
+    moments, between = (184.0, 369.0), {1080.0: 5.78}
+    for peaks, expected in (((6.4, 5.7), [True] * 3), ((6.9, 6.3), [False, False, True])):
+        assert [claim.within for claim in roll_claims(peaks, peaks, moments, {})] == expected
+    row = roll_claims((6.44, 4.8), (6.44, 4.8), moments, between)[2]
+    assert row.within is False
+    # 813 kg 1.011 m above the origin hold 831 kg m2 of the 1000 and of the 1200.
+    assert "+118 % about the centre of gravity (169 to 369 kg m2 as printed, 184 to 369" in row.why
+    assert "Ixx 1080 has 5.78 Hz" in row.why
+
+
+def test_the_moment_about_the_centre_of_gravity_is_the_printed_one_where_nothing_was_repaired():
+    assert moment_about_cog(Car.load(overrides=["body.inertia.ixx=1200"])) == pytest.approx(369.0, abs=0.5)
+
+
+def test_the_loss_angle_is_that_of_a_spring_beside_a_spring_and_damper():
+    mount = SimpleNamespace(stiffness=(0, 0, 3e5), damping=(0, 0, 0.0), maxwell_stiffness=1e5, maxwell_damping=1e3)
+    # At K2/D2 = 100 rad/s the branch is K2 (1 + i)/2: tan = 0.5e5 / 3.5e5.
+    assert loss_angle(mount, 100.0 / (2.0 * np.pi)) == pytest.approx(np.degrees(np.arctan(0.5 / 3.5)))
 
 
 def exact_response(car):

@@ -32,14 +32,16 @@ def made_up(runs, chosen, duration, engine):
     for one in chosen:
         comfort = {"skyhook": 0.8, "groundhook": 1.2}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay) * one.factor**0.2
         tyre = {"skyhook": 1.1, "groundhook": 0.9}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay)
-        found[one] = {"weighted": comfort, "unfiltered": 2.0 * comfort, "tyre": 0.2 * tyre, "lowest": 0.3}
+        found[one] = {"weighted": comfort, "unfiltered": 2.0 * comfort, "tyre": 0.2 * tyre, "hop": 0.1 * tyre}
+        found[one]["lowest"] = 0.3
     return found
 
 
 def test_it_says_what_its_numbers_show(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(semi_active, "computed", made_up)
     assert main(["--quick", "--output", str(tmp_path / "out")]) == 0
-    assert "2 own check (2 agree)" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "2 own check (2 agree); tyres rolling at 80 km/h" in said
     text = (tmp_path / "out" / "results.md").read_text(encoding="utf-8")
     assert "-20.0 %, with a delay of 40 ms +12.0 %" in text and "-10.0 %, with a delay of 40 ms +26.0 %" in text
     assert (
@@ -54,11 +56,13 @@ def test_measure_of_sines():
     time = 1e-3 * np.arange(13001, dtype=np.float64)
     wave, sizes = np.sin(2 * np.pi * 8.0 * time), {"x": 3.0, "y": 4.0, "z": 12.0}
     channels = {f"seat_rail_acc_{axis}": (size * wave)[None] for axis, size in sizes.items()}
-    channels |= {"tyre_fr_force_z": (4000.0 + 1000.0 * np.sin(2 * np.pi * 11.0 * time))[None]}
+    hop, body = np.sin(2 * np.pi * 11.0 * time), np.cos(2 * np.pi * 1.4 * time)
+    channels |= {"tyre_fr_force_z": (4000.0 * (1.0 + 0.25 * hop + 0.1 * body))[None]}
     runs = Runs(time=time, channels=channels, vehicles=(), tyre_load={"fr": np.array([4000.0])})
     numbers = {name: values[0] for name, values in RideMeasure(wheels=("fr",)).of(runs).items()}
     assert numbers["unfiltered"] == pytest.approx(13.0 / np.sqrt(2.0), rel=5e-3)
-    assert numbers["tyre"] == pytest.approx(0.25 / np.sqrt(2.0), rel=1e-3)
-    assert numbers["lowest"] == pytest.approx(0.75, rel=1e-3)
+    assert numbers["tyre"] == pytest.approx(np.sqrt(0.25**2 + 0.1**2) / np.sqrt(2.0), rel=1e-3)
+    assert numbers["hop"] == pytest.approx(0.25 / np.sqrt(2.0), rel=1e-3)
+    assert numbers["lowest"] == pytest.approx(np.min((1.0 + 0.25 * hop + 0.1 * body)[3000:]), rel=1e-12)
     weighted = weighted_record(1e-3, runs["seat_rail_acc_z"][0], "Wk")[round(LEAD_S / 1e-3) :]
     assert numbers["weighted"] == pytest.approx(np.sqrt(np.mean(weighted**2)), rel=1e-12)

@@ -37,13 +37,14 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
     assert summary["input"]["rms_m"] == pytest.approx(5.25e-4, rel=1e-5)  # six digits in the file
     assert set(summary["slip_share"]) == {"fr", "fl", "slip_velocity"}
     assert set(summary["friction_saturated_share"]) == set(summary["first_slip_s"]) == {"fr", "fl"}
-    assert summary["friction_saturated_share"]["fr"] >= summary["slip_share"]["fr"] > 0.0
+    assert summary["input"]["wheel"] == "fl", "the wheel of the vehicle file"
+    assert summary["friction_saturated_share"]["fl"] >= summary["slip_share"]["fl"] > 0.0
     # One velocity for share and first time; the friction is saturated sooner, and has its own key.
     with np.load(folder / "time.npz") as arrays:
-        first = arrays["time"][np.abs(arrays["damper_fr_velocity"]) > summary["slip_share"]["slip_velocity"]][0]
-    assert summary["first_slip_s"]["fr"] == pytest.approx(first, abs=1e-9)
-    assert summary["first_friction_saturated_s"]["fr"] < summary["first_slip_s"]["fr"]
-    assert f"in slip (|v| > 12 mm/s) for {100 * summary['slip_share']['fr']:.2f} %" in outcome.out
+        first = arrays["time"][np.abs(arrays["damper_fl_velocity"]) > summary["slip_share"]["slip_velocity"]][0]
+    assert summary["first_slip_s"]["fl"] == pytest.approx(first, abs=1e-9)
+    assert summary["first_friction_saturated_s"]["fl"] < summary["first_slip_s"]["fl"]
+    assert f"{100 * summary['slip_share']['fl']:.2f} % (left) of the time" in outcome.out
     assert set(summary["comfort"]["seat_rail"]["rms_2_50_hz"]) == {"x", "y", "z", "overall"}
     assert set(summary["static"]) == {"tyre_load_n", "rear_support_load_n", "residual_m"}
     assert summary["static"]["residual_m"] < 1e-6
@@ -97,13 +98,13 @@ def test_a_run_repeats_from_its_own_vehicle_file(shaker, short_signal, tmp_path)
     assert (tmp_path / "first" / "frf.csv").read_bytes() == (tmp_path / "again" / "frf.csv").read_bytes()
 
 
-def test_left_wheel_and_text_histories(shaker, short_signal, tmp_path):
-    outcome = shaker("--input", "short.csv", "--wheel", "front_left", "--time-format", "csv")
+def test_right_wheel_and_text_histories(shaker, short_signal, tmp_path):
+    outcome = shaker("--input", "short.csv", "--wheel", "front_right", "--time-format", "csv")
     assert outcome.code == 0, outcome.err
     folder = tmp_path / "runs" / "short"
     summary = json.loads((folder / "summary.json").read_text())
-    assert summary["input"]["wheel"] == "fl"
-    assert summary["slip_share"]["fl"] > summary["slip_share"]["fr"]
+    assert summary["input"]["wheel"] == "fr"
+    assert summary["slip_share"]["fr"] > summary["slip_share"]["fl"]
     lines = (folder / "time.csv").read_text().splitlines()
     assert lines[1].startswith("time [s],knuckle_fr_acc_x [m/s2]")
     assert len(lines) == 2 + 6001

@@ -1,4 +1,4 @@
-"""The comfort value of source 1, its statistical error, and whether the vibration had settled."""
+"""The comfort value of Bommer 2006, its statistical error, and whether the vibration had settled."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vehicle.analysis.spectra import band_periodogram, band_rms, rms_of
 from vehicle.errors import DataError
 
 COMFORT_BAND = (2.0, 50.0)
-"""band of the comfort value [Hz] (source 1, chapter 4)"""
+"""band of the comfort value [Hz] (Bommer 2006, chapter 4)"""
 DRIFT_LIMIT = 0.01
 """drift of the RMS above which a comfort value is refused (bad-inputs item 43) [-]"""
 SIGNIFICANCE = 3.0
@@ -104,7 +104,7 @@ def comfort_value(
     Raises:
         DataError: not three axes, or `band_rms` refuses the record.
 
-    Source: source 1 (Bommer 2006), chapter 4.
+    Source: Bommer 2006, chapter 4.
     """
     rows = checked_rows("acceleration", acceleration)
     if len(rows) != 3:

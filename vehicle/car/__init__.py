@@ -4,7 +4,7 @@ car = Car.load()
 run = car.run("low.csv")              # or Road("C", speed=80), or a Signal
 run["seat_rail_acc_z"]                # time history
 run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
-run.comfort().overall                 # unweighted RMS of the seat rail, 2 to 50 Hz
+run.comfort().overall                 # comfort value of Bommer 2006: unweighted RMS of the seat rail, 2 to 50 Hz
 """
 
 from vehicle.car.car import Car

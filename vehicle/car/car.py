@@ -52,7 +52,7 @@ class Car:
     """Car on a shaker or a road: its parameters, model, matrices, modes and runs.
 
     Args:
-        vehicle: parameters; those of the Ford-Focus-like car of source 1 by default.
+        vehicle: parameters; those of the Ford-Focus-like car of Bommer 2006 by default.
         folder: where the vehicle file lies, searched first for its superelement.
     """
 
@@ -71,7 +71,7 @@ class Car:
         """Read a car from a vehicle file.
 
         Args:
-            path: TOML file, or the name of a shipped car; that of source 1 by default.
+            path: TOML file, or the name of a shipped car; that of Bommer 2006 by default.
             overrides: path to value, as {"damper.coulomb_friction": 93.75}; or texts "damper.coulomb_friction=93.75".
 
         Returns:
@@ -208,9 +208,17 @@ class Car:
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
 
     def matrix_frf(
-        self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str = "fr"
+        self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str | None = None
     ) -> npt.NDArray[np.complex128]:
-        """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies)."""
+        """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies).
+
+        Args:
+            channels: accelerations.
+            frequency: lines [Hz].
+            damper: "stuck" or "sliding", all of them.
+            wheel: whose plate moves; that of the shaker by default.
+        """
+        wheel = wheel or self.vehicle.shaker_wheel
         self.vehicle.require_wheels((wheel,))
         self.vehicle.require_channels(channels, self.vehicle.acceleration_channels)
         form = first_order(self.matrices.system, stuck=_is_stuck(damper))
@@ -256,7 +264,9 @@ class Car:
             car = self.varied(drive.overrides) if drive.overrides else self
             run = car.run(replace(signal, source=drive.name), progress, engine=engine, channels=channels)
             return replace(run, skip=start, road=drive.summary(signal))
-        signal = source if isinstance(source, Signal) else read_signal(find_input(source))
+        signal = (
+            source if isinstance(source, Signal) else read_signal(find_input(source), wheel=self.vehicle.shaker_wheel)
+        )
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
         run = self._simulated(signal, progress, engine, channels)
         return replace(run, skip=start) if start else run

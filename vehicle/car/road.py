@@ -106,7 +106,7 @@ class Road:
         A car that stands on blocks too is on a rig, and its tyres stand by default. NaN stands for the mean speed of a
         recorded drive.
         """
-        if any(text.partition("=")[0].strip().startswith("driving.speed") for text in overrides):
+        if any(text.partition("=")[0].strip() in ("driving.speed", "speed") for text in overrides):
             if self.tyre is not None:
                 raise ConfigurationError(f"--tyre {self.tyre} beside --set driving.speed: give one of them")
             return None

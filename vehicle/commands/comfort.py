@@ -134,12 +134,9 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
 def _about_the_seat(file: Path) -> list[str]:
     """What a run in the same folder says of its seat: that there is none."""
     from vehicle.output.run_comfort import NO_SEAT
+    from vehicle.records.run_summary import run_summary
 
-    try:
-        summary = json.loads((file.parent / "summary.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return []
-    return [NO_SEAT] if isinstance(summary, dict) and NO_SEAT in summary.get("notices", ()) else []
+    return [NO_SEAT] if NO_SEAT in run_summary(file.parent).get("notices", ()) else []
 
 
 def _overview(results: list[dict[str, Any]]) -> str:

@@ -306,7 +306,7 @@ def _run(
 
     car = Car.load(options.vehicle, options.overrides)
     known = (*car.vehicle.channels, *car.vehicle.load_channels)
-    signal = read_signal(find_input(options.run))
+    signal = read_signal(find_input(options.run), wheel=car.vehicle.shaker_wheel)
     asked = _measured(options, known, choice, measurement)  # refused before anything is simulated
     loads = {*(asked.record.channels if asked.record else ())} - set(car.vehicle.channels)
     run = car.run(
@@ -326,11 +326,13 @@ def _modes(
     from vehicle.comparison.pictures import plot_mac
     from vehicle.output.folder import output_folder, write_json, write_whole
 
-    found = compare_modes(_car(options), measurement, dict(choice.channels), options.damper)
+    car = _car(options)
+    found, tyres = compare_modes(car, measurement, dict(choice.channels), options.damper), car.vehicle.driving.words
     name = measurement.path.name
     summary = found.summary(name)
     caption = (
-        f"{name} at {len(found.points)} points of the car, dampers {options.damper}; rows and columns by frequency"
+        f"{name} at {len(found.points)} points of the car, dampers {options.damper}, tyres {tyres}; rows and columns "
+        "by frequency"
     )
     rows, columns = ([one.frequency for one in those] for those in (found.measured, found.simulated))
     tables = (

@@ -38,8 +38,8 @@ def parser() -> Parser:
         dest="wheels",
         action="append",
         choices=sorted(CORNERS),
-        help="wheel whose plate is driven; by default those that the names of the channels tell, else front_right; "
-        "may be repeated",
+        help="wheel whose plate is driven; by default those that the names of the channels tell, else that of the "
+        "vehicle file; may be repeated",
     )
     found.add_argument(
         "--band",

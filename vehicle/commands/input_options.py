@@ -55,7 +55,7 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     group.add_argument(
         "--wheel",
         choices=sorted(CORNERS),
-        help="wheel of a plain displacement column; front_right by default",
+        help="wheel of a plain displacement column; that of the vehicle file (shaker_wheel) by default",
     )
     group.add_argument(
         "--any-level",

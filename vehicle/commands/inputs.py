@@ -11,19 +11,21 @@ from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
     from vehicle.car.road import Road
+    from vehicle.parameters.vehicle import Vehicle
     from vehicle.sweeps.case import SignalFile
 
 
-def chosen_inputs(options: argparse.Namespace) -> list[Road] | list[SignalFile]:
+def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Road] | list[SignalFile]:
     """Return the inputs that the options ask for.
 
     Args:
         options: as of `signal_options` with several.
+        vehicle: the car, which names the wheel on the shaker where no option does.
 
     Raises:
         ConfigurationError: none, a file that does not exist, or a speed for no road.
     """
-    return _roads(options) if drives_on_road(options) else _files(options)
+    return _roads(options) if drives_on_road(options) else _files(options, vehicle)
 
 
 def _roads(options: argparse.Namespace) -> list[Road]:
@@ -49,10 +51,10 @@ def _roads(options: argparse.Namespace) -> list[Road]:
     return roads
 
 
-def _files(options: argparse.Namespace) -> list[SignalFile]:
+def _files(options: argparse.Namespace, vehicle: Vehicle) -> list[SignalFile]:
     from vehicle.excitation.input_files import find_input
     from vehicle.sweeps.case import SignalFile
 
-    wheel = CORNERS[options.wheel or "front_right"]
+    wheel = CORNERS[options.wheel] if options.wheel else vehicle.shaker_wheel
     paths = [find_input(name).resolve() for name in options.input]
     return [SignalFile(path=path, wheel=wheel, accept_implausible=options.any_level) for path in paths]

@@ -49,7 +49,8 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.analysis.load_spectrum import load_spectrum
     from vehicle.output.folder import write_text, write_whole
-    from vehicle.records.formats import read_columns
+    from vehicle.records.reader import read_columns
+    from vehicle.records.run_summary import run_summary
     from vehicle.rendering.load_plot import plot_loads
 
     source = _time_file(options.run)
@@ -65,9 +66,10 @@ def _job(options: argparse.Namespace) -> None:
         load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
         for name in names
     ]
+    tyres = run_summary(source.parent).get("tyre")
     about = (
-        f"{source.name}, {duration:g} s; rainflow counts of ASTM E1049; equivalent amplitude: one cycle a second of "
-        f"equal damage, slope {options.slope:g}"
+        f"{source.name}, {duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
+        f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"
     )
     write_text(table, _table(found, about))
     write_text(spectra, _spectra(found, about, options.classes))

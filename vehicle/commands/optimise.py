@@ -119,10 +119,11 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.sweeps.executors import executor_factory
 
     require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
+    car = Car.load(options.vehicle, options.overrides)
     plan = plan_search(
-        Car.load(options.vehicle, options.overrides),
+        car,
         [parsed_range(text) for text in options.vary],
-        chosen_inputs(options),
+        chosen_inputs(options, car.vehicle),
         options.minimise,
         maximise=options.maximise,
         limits=options.limit,

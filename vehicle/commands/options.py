@@ -27,7 +27,7 @@ def command_parser(name: str, description: str) -> Parser:
     return Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
 
 
-VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of source 1 by default"
+VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of Bommer 2006 by default"
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> None:

@@ -35,6 +35,7 @@ from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
+from vehicle.records.formats import TABLES, WRITTEN
 
 if TYPE_CHECKING:
     from vehicle.excitation.signal import Signal
@@ -62,7 +63,7 @@ def parser() -> Parser:
     )
     found.add_argument(
         "--time-format",
-        choices=("npz", "csv"),
+        choices=TABLES,
         default="npz",
         help="format of the time histories; %(default)s by default",
     )
@@ -79,7 +80,7 @@ def parser() -> Parser:
         dest="formats",
         action="append",
         default=[],
-        choices=("csv", "npz", "mat", "uff", "rpc", "h5"),
+        choices=WRITTEN,
         help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
         "uff with the places of the car; may be repeated",
     )
@@ -133,8 +134,6 @@ def _job(options: argparse.Namespace) -> None:
         from vehicle.records.reader import extra
 
         extra("h5py", "hdf5", "--format h5")
-    wheel = CORNERS[options.wheel or "front_right"]
-    choice = record_choice(options, wheel) if drive is None else None
     engine, reason = _engine(options)
     video_name = None
     if options.video is not None:
@@ -151,6 +150,8 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.output.run_files import require_plates, save_last_state, write_run
 
     car = Car.load(options.vehicle, overrides)
+    wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
+    choice = record_choice(options, wheel) if drive is None else None
     if drive is None:
         signal = read_signal(
             source,

@@ -71,7 +71,7 @@ def _job(options: argparse.Namespace) -> None:
     paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
     changes = [[f"{path}={value}" for path, value in zip(paths, row, strict=True)] for row in rows]
     car = Car.load(options.vehicle, options.overrides)
-    plan = plan_sweep(car, changes, chosen_inputs(options), engine=options.engine, skip=options.skip)
+    plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=ROWS)
     for text in () if options.quiet else plan.notes:
@@ -89,8 +89,8 @@ def _job(options: argparse.Namespace) -> None:
     if not options.quiet:
         differences = f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
         print(
-            f"{folder}: {len(plan.cases)} runs, {len(table.failed)} failed, evaluated from {plan.skip:g} s on; "
-            f"table.csv, {differences}sweep.json, rows.jsonl, timing.csv"
+            f"{folder}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "
+            f"{plan.skip:g} s on; table.csv, {differences}sweep.json, rows.jsonl, timing.csv"
         )
         print("comfort_*: unweighted RMS of the seat rail, 2 to 50 Hz; *_weighted_*: weighted RMS (ISO 2631-1)")
         for case, reason in table.failed[:5]:

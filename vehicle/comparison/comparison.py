@@ -68,4 +68,5 @@ def comparison_of(
         signatures=signatures,
         records=records,
         notices=tuple(notices),
+        tyres=simulated.tyres,
     )

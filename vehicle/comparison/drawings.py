@@ -13,7 +13,7 @@ from vehicle.comparison.tables import Comparison
 
 def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
     """Return the name of each picture, as "compare_frf_seat_rail", and what writes it as PNG at a path."""
-    caption = f"measured: {comparison.measured}; simulated: {comparison.simulated}"
+    caption = f"measured: {comparison.measured}; simulated: {comparison.run}"
     drawings: dict[str, Callable[[Path], None]] = {}
     for place in dict.fromkeys(_place(one.channel) for one in comparison.responses):
         own = [one for one in comparison.responses if _place(one.channel) == place]

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from vehicle.car import Run
 from vehicle.errors import ConfigurationError
-from vehicle.records.formats import read_columns
 from vehicle.records.frf import FrfData, read_frf
 from vehicle.records.measured import estimated_frf
+from vehicle.records.reader import read_columns
+from vehicle.records.run_summary import run_summary
 from vehicle.records.table import Record
 
 Responses = Callable[[Sequence[str], float | None], FrfData | None]
@@ -25,11 +26,13 @@ class Simulated:
         record: all its time histories; the first sample is at time 0.
         responses: names of accelerations, and the length of Hann windows [s] or None, to the responses to the plate;
             None where there are none.
+        tyres: what the tyres of its car do; empty where no summary says it.
     """
 
     name: str
     record: Record
     responses: Responses
+    tyres: str = ""
 
 
 def of_run(run: Run) -> Simulated:
@@ -46,7 +49,7 @@ def of_run(run: Run) -> Simulated:
         )
 
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
-    return Simulated(name=run.signal.source, record=record, responses=responses)
+    return Simulated(name=run.signal.source, record=record, responses=responses, tyres=run.car.vehicle.driving.words)
 
 
 def of_folder(folder: Path) -> Simulated:
@@ -67,4 +70,5 @@ def of_folder(folder: Path) -> Simulated:
             return None if found is None else found[0]
         return read_frf(folder / "frf.csv") if (folder / "frf.csv").is_file() else None
 
-    return Simulated(name=folder.name, record=record, responses=responses)
+    tyres = str(run_summary(folder).get("tyre", ""))
+    return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres)

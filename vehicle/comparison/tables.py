@@ -40,6 +40,7 @@ class Comparison:
         signatures: of all of them together.
         records: comparisons of time histories.
         notices: of the measurement.
+        tyres: what the tyres of the run do; empty where that is unknown.
     """
 
     measured: str
@@ -48,6 +49,12 @@ class Comparison:
     signatures: Signatures | None = None
     records: tuple[RecordComparison, ...] = ()
     notices: tuple[str, ...] = ()
+    tyres: str = ""
+
+    @property
+    def run(self) -> str:
+        """The run in words: name and tyres."""
+        return self.simulated + (f" (tyres {self.tyres})" if self.tyres else "")
 
     def __repr__(self) -> str:
         """Return the tables of the console."""
@@ -122,6 +129,7 @@ class Comparison:
         return {
             "measured": self.measured,
             "simulated": self.simulated,
+            "tyre": self.tyres or None,
             "responses": [
                 {
                     "channel": one.channel,
@@ -158,7 +166,7 @@ class Comparison:
     def csv(self) -> str:
         """Content of `compare.csv`; empty cells where a column belongs to the other kind."""
         about = (
-            f"# measured {self.measured}, simulated {self.simulated}; worst first; error: root of the mean of "
+            f"# measured {self.measured}, simulated {self.run}; worst first; error: root of the mean of "
             "|ln(simulated / measured)|^2 weighted by both coherences; magnitude positive where simulated is larger; "
             "iso18571: ISO/TS 18571, 0 to 1, mean over windows of window_s at the full rate, weighted by their RMS; "
             "lag: positive where simulated is late, in the middle of the record; drift: its change per time"
@@ -170,7 +178,7 @@ class Comparison:
         """The tables for the console."""
         rows = self.rows()
         bands, times = ([row for row in rows if row["kind"] == kind] for kind in ("frf", "time"))
-        lines = [f"measured {self.measured} beside simulated {self.simulated}"]
+        lines = [f"measured {self.measured} beside simulated {self.run}"]
         if bands:
             worst = bands[0]
             lines.append(

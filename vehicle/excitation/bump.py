@@ -64,6 +64,7 @@ def bump(
     start: float = BUMP_START_S,
     noise_rms: float = NOISE_RMS,
     seed: int = NOISE_SEED,
+    noise_edge: float = SHAKER_EDGE_HZ,
     wheel: str = "fr",
 ) -> Signal:
     """Bump with the shaker's random noise before and after it.
@@ -80,6 +81,7 @@ def bump(
         start: beginning of the bump [s].
         noise_rms: RMS of the noise before and after the bump [m]; 0 for none.
         seed: seed of the noise.
+        noise_edge: lower edge of its band [Hz].
         wheel: driven wheel.
 
     Raises:
@@ -102,7 +104,7 @@ def bump(
             seed=seed,
             duration=duration,
             rate=rate,
-            lower_band_edge=SHAKER_EDGE_HZ,
+            lower_band_edge=noise_edge,
             roll_off_order=SHAKER_ROLL_OFF_ORDER,
         ).displacement["fr"]
         outside = (time <= start) | (time >= start + BUMP_DURATION_S)

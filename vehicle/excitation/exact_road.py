@@ -1,4 +1,4 @@
-"""The smooth and the rough road of source 1 under the right front wheel.
+"""The smooth and the rough road of Bommer 2006 under one wheel.
 
 Both are one road at two levels: constant velocity PSD G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) from f1 to f2, so the lower
 edge f1 decides how much of the printed RMS is motion that the suspension feels.
@@ -16,12 +16,11 @@ from vehicle.excitation.signal import Signal, uniform_time
 from vehicle.excitation.slip_set import CHOSEN
 
 ROAD_RMS = {"smooth": 0.0075, "rough": 0.043}
-"""RMS of the displacement [m] (source 1, chapter 4)."""
+"""RMS of the displacement [m] (Bommer 2006, chapter 4)."""
 
 ROAD_EDGE_HZ = CHOSEN.road_edge_hz
-"""Lower band edge f1 of both roads [Hz]. One number for two shares: 30.0 % and 81.4 % remain against 31.3 % and 79.4 %;
-0.031 Hz would meet the smooth road and 0.021 Hz the rough one. A record of 30 s, which the source shows with a swing of
-0.1 m, has its lowest line at 0.033 Hz."""
+"""Lower band edge f1 of both roads [Hz]. One number for two shares: 31.6 % and 81.5 % remain against 31.3 % and
+79.4 %. A record of 30 s, which the source shows with a swing of 0.1 to 0.2 m, has its lowest line at 0.033 Hz."""
 
 LEAD_S = 10.0
 """Time before the evaluated record [s]: several decay times of the slowest mode with both dampers stuck."""
@@ -59,7 +58,7 @@ def road(
     Raises:
         ConfigurationError: a parameter is out of range.
 
-    Source: source 1, sections 2.3.1 and 4; Shinozuka and Deodatis, Appl. Mech. Rev. 44 (1991).
+    Source: Bommer 2006, sections 2.3.1 and 4; Shinozuka and Deodatis, Appl. Mech. Rev. 44 (1991).
     """
     positive("RMS", rms, "m")
     positive("lower band edge", lower_band_edge, "Hz")

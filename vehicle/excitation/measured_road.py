@@ -1,4 +1,10 @@
-"""A measured road: heights of two tracks over the distance, from a file."""
+"""A measured road: heights of two tracks over the distance, from a file.
+
+Points at nearly equal distances are samples of a road: a cubic spline goes through them. It retains 98.5 % of a wave
+of four points, where straight lines retain 81 %. Points at other distances are corners, as of a cleat: the road is
+straight between them, where a spline would swing by many times the heights. A contact patch of length a takes the exact
+mean of either, from its integral Z: (Z(x + a/2) - Z(x - a/2)) / a.
+"""
 
 from __future__ import annotations
 
@@ -13,9 +19,9 @@ from vehicle.errors import DataError, VehicleError
 from vehicle.excitation.iso_road import Side
 from vehicle.records.channel import uniform_axis
 from vehicle.records.crg_format import read_surface, road_words
-from vehicle.records.formats import FORMATS, read_table
+from vehicle.records.formats import recognised_format
 from vehicle.records.named_columns import named_columns
-from vehicle.records.reader import read_record, recognise
+from vehicle.records.reader import read_record, read_table
 from vehicle.records.table import Header, Vector, Wanted, name_and_unit
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
@@ -23,6 +29,10 @@ TRACKS = {"left": ("left", "lelev", "lprof", "left elev", "left elevation", "lef
           "right": ("right", "relev", "rprof", "right elev", "right elevation", "right profile", "rwp")}  # fmt: skip
 """Names of the tracks in profiles of other programs, in small letters without dots."""
 UNITS = {"m": 1.0, "mm": 1e-3}
+
+SAMPLED = 2.0
+"""Maximum ratio of two distances between neighbouring points of a sampled road [-], which allows for the jitter of an
+odometer and for a missing point; above it the points are corners."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -58,11 +68,18 @@ class MeasuredRoad:
     def words(self) -> str:
         """What it is, for messages and headers."""
         step = self.length / (self.distance.size - 1)
-        every = f"{self.length:.4g} m, a point every {step:.3g} m, contact patch {self.patch:g} m"
+        points = f"a point every {step:.3g} m" if self.sampled else f"straight between {self.distance.size} points"
+        every = f"{self.length:.4g} m, {points}, contact patch {self.patch:g} m"
         return f"measured road {self.source}, {every}"
 
+    @property
+    def sampled(self) -> bool:
+        """True if the points are samples of the road, False if they are corners of it."""
+        steps = np.diff(self.distance)
+        return bool(np.max(steps) <= SAMPLED * np.min(steps))
+
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
-        """Return heights at equal distances, by a cubic spline; arguments as of `IsoRoad.height`.
+        """Return heights at equal distances, as of `height_at`; arguments as of `IsoRoad.height`.
 
         Raises:
             DataError: the road ends before.
@@ -70,7 +87,7 @@ class MeasuredRoad:
         return self.height_at(uniform_axis(steps, step, start), side)
 
     def height_at(self, place: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
-        """Return heights above the first point [m], (m,): a cubic spline or its mean over the patch; 0 before the road.
+        """Return heights above the first point [m], (m,): of the road, or means over the patch; 0 before the road.
 
         Half a patch beyond its last point the road goes on level.
 
@@ -87,7 +104,8 @@ class MeasuredRoad:
                 "shorter --duration"
             )
         heights = self.right if side == "right" else self.left
-        spline = scipy.interpolate.CubicSpline(self.distance - self.distance[0], heights - heights[0])
+        degree = 3 if self.sampled else 1
+        spline = scipy.interpolate.make_interp_spline(self.distance - self.distance[0], heights - heights[0], k=degree)
         if self.patch > 0.0:
             whole, ends = spline.antiderivative(), place + 0.5 * self.patch * np.array([[-1.0], [1.0]])
             areas = whole(np.clip(ends, 0.0, self.length))
@@ -110,8 +128,8 @@ def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
         ConfigurationError: there is no such file.
         DataError: bad data; the message names the place.
     """
-    name = recognise(path)
-    if name == "crg":
+    recognised = recognised_format(path)
+    if recognised.name == "crg":
         return _surface_road(path, track, patch)
     source = ""
     notices: tuple[str, ...] = ()
@@ -122,7 +140,7 @@ def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
         try:
             found, notices = _named_tracks(path)
         except VehicleError:
-            if name not in FORMATS:
+            if not recognised.table:
                 raise
             raise error from None
         source = str(path)

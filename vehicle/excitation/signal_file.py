@@ -25,7 +25,7 @@ from vehicle.records.clock import (
     is_uniform,
     without_rounding,
 )
-from vehicle.records.formats import is_table, read_table
+from vehicle.records.reader import is_table, read_table
 from vehicle.records.resampled import resampled
 from vehicle.records.table import TIME, USABLE, Header, Table, Vector, Wanted, name_and_unit
 from vehicle.records.text_format import write_table

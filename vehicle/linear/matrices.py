@@ -69,6 +69,8 @@ class CarMatrices:
         one_sided: wheels whose tyres do not pull.
         spinning: bodies that turn with a rolling wheel: their angle is of no importance, and not known.
         carried_by: body that each body is fixed to, itself where it can move on its parent.
+        slope: forces on the coordinates per velocity of a plate, by the static load of a rolling tyre on the slope of
+            the road, a part of the inputs of `system`; (n, w), (n, 0) for tyres that stand.
         modal: velocity coordinates of the flexible modes.
     """
 
@@ -87,6 +89,7 @@ class CarMatrices:
     body_places: dict[str, Vector]
     carried_by: dict[str, str]
     modal: slice
+    slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = True) -> CarMatrices:
@@ -196,6 +199,7 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
             "bends": _bends(rows, jacobian),
             "tyre_rows": vertical,
             **{f"tyre_{kind}": numbers for kind, numbers in tyres.items()},
+            "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
         },
     )
 

@@ -38,7 +38,7 @@ HIGHEST_POLE = 2.0 * np.pi * 100.0
 """|s| [rad/s] up to which every pole is judged: the comfort band ends at 50 Hz, the weightings at 80."""
 
 POLE_LIMIT = 0.10
-"""Largest error of the peak of a pole. The car of source 1 has 0.02 at its vibrations and 0.05 at a real pole of 71 Hz,
+"""Largest error of the peak of a pole. The `focus` car has 0.02 at its vibrations and 0.05 at a real pole of 71 Hz,
 where every RMS below 100 Hz is within 0.4 % of an eighth of the step; up to 0.22 it stayed within 1 %."""
 
 LEAST_DAMPING = 0.01
@@ -46,11 +46,11 @@ LEAST_DAMPING = 0.01
 
 LOCAL_LIMIT = 0.10
 """Largest error of the ringing after a step of friction. Friction is a part of the motion only: over 10 s of the high
-input the RMS of the damper top was off by 2.4 % at 0.07 (the car of source 1), 5.3 % at 0.08, 10 % at 0.12, 16 % at
+input the RMS of the damper top was off by 2.4 % at 0.07 (the car of Bommer 2006), 5.3 % at 0.08, 10 % at 0.12, 16 % at
 0.19 and 20 % at 0.31 (stiffer and stiffer suspension mounts); body, engine and knuckle stayed within 0.15 %."""
 
 STEEP_LIMIT = 1.0
-"""Largest w h of a steeper piece of a table: its vibration is 4.7 % high there. Stops of the dampers of source 1, hit
+"""Largest w h of a steeper piece of a table: its vibration is 4.7 % high there. Stops of the dampers of `focus`, hit
 at 12 mm on a road of 6 mm RMS, against an eighth of the step: the vertical RMS of the damper top was off by 2 % at 0.2
 (friction alone), 3 % at 0.75, 5 % at 1.2 and 31 % at 1.7, that of the seat rail by 0.05 % at most."""
 

@@ -30,6 +30,7 @@ def run_card(run: Any) -> str:
         "signal": f"{Path(run.signal.source).name}, {run.signal.duration:g} s, "
         f"RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}",
         "car": repr(run.car),
+        "tyres": run.car.vehicle.driving.words,
         "engine": run.recording.statistics.engine,
         "time in slip": ", ".join(f"{wheel} {100 * share:.1f} %" for wheel, share in shares.items()),
     }

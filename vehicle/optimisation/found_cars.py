@@ -17,7 +17,7 @@ from vehicle.optimisation.search_files import Beside, agreement, numbers, write_
 from vehicle.optimisation.trials import Trials
 from vehicle.parameters.vehicle import Vehicle
 from vehicle.parameters.whole_body import body_rules
-from vehicle.sweeps.case import overrides_of
+from vehicle.sweeps.case import all_tyre_words, varied_cases
 
 STILL = 0.005
 """Share of the hypervolume: a Pareto front that grew by more in the last quarter has not converged."""
@@ -62,14 +62,19 @@ class FoundCars:
         return {name: numbers(found.problem, found.tried.values[row]) for name, row in found.named.items()}
 
     @property
+    def tyres(self) -> str:
+        """What the tyres do on all inputs."""
+        trials = self.trials
+        return all_tyre_words(varied_cases([()], trials.inputs, vehicle=trials.vehicle, fixed=trials.fixed))
+
+    @property
     def caption(self) -> str:
         """Description of the search below its picture."""
         limits = ", ".join(wish.words for wish in self.trials.problem.limits)
-        tyres = ", rolling tyres" if any(map(overrides_of, self.trials.inputs)) else ""
         count = len(self.trials.spread.bands)
         return (
-            f"{self.vehicle.name} on {', '.join(self.trials.problem.inputs)}{tyres}; engine {self.trials.engine}, "
-            f"{len(self.outcome.tried.reasons)} cars, seed {self.seed}"
+            f"{self.vehicle.name} on {', '.join(self.trials.problem.inputs)}; tyres {self.tyres}; engine "
+            f"{self.trials.engine}, {len(self.outcome.tried.reasons)} cars, seed {self.seed}"
             + (f"; limits {limits}" if limits else "")
             + (f"; {self.trials.spread.words} within the tolerances" if count > 1 else "")
         )
@@ -97,6 +102,7 @@ class FoundCars:
                 "vehicle": self.vehicle.name,
                 "inputs": {source.name: source.identity() for source in self.trials.inputs},
                 "engine": self.trials.engine,
+                "tyre": self.tyres,
                 "evaluated_from_s": self.skip,
                 "notices": list(self.notices),
                 "mujoco": self.checked,
@@ -147,6 +153,7 @@ class FoundCars:
             changes = problem.changes(tried.points[row].tolist()).items()
             words = [*self.trials.fixed, *(f"{path}={value!r}" for path, value in changes)]
             lines.append(f"{name}: " + " ".join(f"--set {shlex.quote(word)}" for word in words))
+        lines.append(f"tyres {self.tyres}; engine {self.trials.engine}; evaluated from {self.skip:g} s on")
         if beside is not None:
             far = agreement(found, beside)
             lines.append(

@@ -10,7 +10,7 @@ import numpy as np
 from vehicle.excitation.signal_file import write_signal
 from vehicle.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.output.own_files import parameters_text, write_own_files
-from vehicle.records.formats import FORMATS
+from vehicle.records.formats import write_record
 from vehicle.records.table import Record
 from vehicle.rendering.drive_plot import plot_convergence, plot_replication
 from vehicle.replication.found_drive import FoundDrive
@@ -57,7 +57,8 @@ def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
     last = found.steps[-1]
     errors = dict(zip(target.channels, min(found.steps, key=lambda step: step.error).errors.tolist(), strict=True))
     about = (
-        f"{target.source.name}, {low:g} to {high:g} Hz; {run.recording.statistics.engine} engine; error "
+        f"{target.source.name}, {low:g} to {high:g} Hz; tyres {run.car.vehicle.driving.words}; "
+        f"{run.recording.statistics.engine} engine; error "
         f"{100.0 * found.error:.3g} % after {last.number} runs"
     )
     said = [f"plate displacement found from {target.source.name}", f"{low:g} to {high:g} Hz"]
@@ -66,7 +67,7 @@ def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
     for name, wanted, answered in zip(target.channels, target.values, found.response, strict=True):
         channels |= {f"target_{name}": wanted, name: answered}
     record = Record(time=target.time, channels=channels, units=dict.fromkeys(channels, "m/s2"))
-    write_whole(folder / FILES["response"], lambda path: FORMATS["csv"].write(path, record, about))
+    write_whole(folder / FILES["response"], lambda path: write_record(path, "csv", record, about))
     write_text(folder / FILES["iterations"], _table(found, target.channels, about))
     write_whole(
         folder / FILES["response_plot"],

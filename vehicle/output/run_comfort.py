@@ -22,7 +22,7 @@ NO_SEAT = (
 
 
 def comfort_values(run: Run) -> dict[str, Any]:
-    """Comfort values of both places, where the car has them: the unweighted RMS of source 1, and ISO 2631-1."""
+    """Comfort values of both places, where the car has them: the unweighted RMS of Bommer 2006, and ISO 2631-1."""
     return {place: _at(run, place) for place in (RAIL, SEAT) if _recorded(run, place)}
 
 

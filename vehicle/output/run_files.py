@@ -24,7 +24,7 @@ from vehicle.output.own_files import parameters_text, write_own_files
 from vehicle.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.whole_body import body_notices
-from vehicle.records.formats import FORMATS
+from vehicle.records.formats import write_record
 from vehicle.records.frf import write_frf
 from vehicle.records.measured import Measured
 from vehicle.records.table import Record
@@ -80,7 +80,7 @@ def write_run(
         folder: as of `output_folder`.
         run: the run.
         time_format: "npz" or "csv".
-        formats: further ones of `vehicle.output.run_formats.WRITERS`.
+        formats: further ones of `vehicle.records.formats.WRITTEN`.
         engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
         video: name of the film, or a path of its own, and what writes it.
         measured: a measurement that is put beside the run.
@@ -109,7 +109,7 @@ def write_run(
     files |= write_own_files(folder, run.car)
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME
-    write_whole(folder / files["time"], lambda path: FORMATS[time_format].write(path, record, frame))
+    write_whole(folder / files["time"], lambda path: write_record(path, time_format, record, frame))
     if responses:
         first, *others = responses
         further, words = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
@@ -247,6 +247,7 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "duration_s": run.signal.duration,
             "highest_hz": run.signal.highest,
             "wheel": run.wheel,
+            "wheel_text": run.car.vehicle.wheel_text(run.wheel),
         },
         "evaluated_s": [run.skip, run.signal.duration],
         "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},
@@ -337,5 +338,6 @@ def _caption(run: Run, response: FrequencyResponse) -> str:
     levels = ", ".join(f"{1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}" for wheel in moving)
     return (
         f"{Path(run.signal.source).name}, RMS {levels}, {run.signal.duration:g} s; estimator: {response.estimator}, "
-        f"resolution {response.resolution_hz:.2g} Hz; engine: {run.recording.statistics.engine}"
+        f"resolution {response.resolution_hz:.2g} Hz; tyres {run.car.vehicle.driving.words}; engine: "
+        f"{run.recording.statistics.engine}"
     )

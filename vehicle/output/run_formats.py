@@ -10,14 +10,10 @@ from typing import Any
 
 from vehicle.analysis.motion_response import MotionResponse
 from vehicle.car import Car, Run
-from vehicle.records import hdf_format, matlab_format, rpc_format, uff_writer
 from vehicle.records.channel import Channel, uniform_axis
-from vehicle.records.formats import FORMATS
+from vehicle.records.formats import BY_NAME, write_record
 from vehicle.records.geometry import Geometry
 from vehicle.records.table import Record
-
-WRITERS = ("csv", "npz", "mat", "uff", "rpc", "h5")
-"""Formats that a run can be written in, which are the endings of the files."""
 
 _ACCELERATION = re.compile(r"(?P<place>\w+)_acc_(?P<axis>[xyz])")
 _PLATE = re.compile(r"(?P<place>plate_\w+)_displacement")
@@ -100,21 +96,21 @@ def writer(
     """What writes a run in a format.
 
     Args:
-        form: of `WRITERS`.
+        form: of `vehicle.records.formats.WRITTEN`.
         run: the run.
         responses: its FRFs; none where there are none.
         channels: names of their rows.
         frame: axes of the vectors, in words.
     """
-    if form in FORMATS:
+    if BY_NAME[form].table:
         record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
-        return lambda path: FORMATS[form].write(path, record, frame)
+        return lambda path: write_record(path, form, record, frame)
     histories = time_channels(run)
     about = f"{run.car.vehicle.name}; {frame}"
+    write = BY_NAME[form].function("writer", "write")
     if form == "rpc":
-        return lambda path: rpc_format.write(path, histories, about)
+        return lambda path: write(path, histories, about)
     everything = histories + response_channels(responses, channels)
     if form == "uff":
-        return lambda path: uff_writer.write(path, everything, about, geometry(run.car))
-    write = {"mat": matlab_format.write, "h5": hdf_format.write}[form]
+        return lambda path: write(path, everything, about, geometry(run.car))
     return lambda path: write(path, everything, about)

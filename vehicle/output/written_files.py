@@ -96,6 +96,7 @@ def _of_earlier_versions(folder: Path) -> set[str]:
         found |= SWEEP
     if (folder / "results.json").is_file():
         found |= {path.name for path in folder.iterdir() if path.suffix in STUDY and path.is_file()}
+        found |= {f"figures/{path.name}" for path in (folder / "figures").glob("*.png")}
     car = folder / "car.xml"
     if car.is_file() and GENERATED.encode() in car.read_bytes()[:1000]:
         meshes = (f"meshes/{mesh.name}" for mesh in (folder / "meshes").glob("*.stl"))

@@ -85,8 +85,8 @@ def with_curve_files(table: Mapping[str, Any], folder: Path, place: str = "") ->
 def _points(file: Path, path: str, key: str) -> dict[str, Any]:
     """The columns of a file by their keys."""
     # Parameters are known without numpy, which tables are read with.
-    from vehicle.records.formats import read_table
     from vehicle.records.named_columns import named_columns
+    from vehicle.records.reader import read_table
     from vehicle.records.table import Wanted
 
     heads = {key: HEADS[key], "force": "force [N]"}

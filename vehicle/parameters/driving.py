@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -56,10 +56,22 @@ class Driving(Validated):
     @property
     def words(self) -> str:
         """What the tyres do, for summaries and captions."""
-        return f"rolling at {self.speed:.4g} m/s" if self.rolling else "standing"
+        return tyre_words([self])
 
 
 STANDING = Driving()
+
+
+def tyre_words(cars: Iterable[Driving]) -> str:
+    """Return what the tyres do in one or several runs: "standing", "rolling at 50, 80 and 120 km/h".
+
+    Args:
+        cars: how the car of each run drives.
+    """
+    speeds = sorted({car.speed for car in cars})
+    rolling = [f"{3.6 * speed:.4g}" for speed in speeds if speed > 0.0]
+    listed = " and ".join(part for part in (", ".join(rolling[:-1]), *rolling[-1:]) if part)
+    return " or ".join([*(["standing"] if 0.0 in speeds else []), *([f"rolling at {listed} km/h"] if rolling else [])])
 
 
 def driving_of(table: Mapping[str, Any]) -> Driving:

@@ -15,7 +15,20 @@ from vehicle.parameters.quantity import NAME_PATTERN
 from vehicle.parameters.template import read_template
 from vehicle.parameters.toml_file import convert, nearest
 
-KEPT = ("name", "gravity", "body", "solver", "driving", "hardpoints", "outputs", "connection", "load", "alias")
+KEPT = (
+    "name",
+    "gravity",
+    "shaker_wheel",
+    "shaker_wheel_in_source",
+    "body",
+    "solver",
+    "driving",
+    "hardpoints",
+    "outputs",
+    "connection",
+    "load",
+    "alias",
+)
 """Keys of a vehicle file that are no instance."""
 
 

@@ -29,6 +29,8 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     car = instances(table, (folder, folder / "templates"))
     own, given = (
         [
+            "shaker_wheel",
+            "shaker_wheel_in_source",
             "solver.timestep",
             *(f"driving.{key}" for key in _keys(Driving, everything=False)),
             *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),

@@ -9,7 +9,7 @@ from vehicle.errors import ConfigurationError
 
 VEHICLES = Path(str(resources.files("vehicle"))) / "vehicles"
 FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
-"""The Ford-Focus-like car of source 1."""
+"""The Ford-Focus-like car of Bommer 2006."""
 
 CARS = tuple(sorted(folder.parent.name for folder in VEHICLES.glob("*/vehicle.toml")))
 """Names of all cars."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import AXES, CORNERS, acceleration_channels, wheel_channels
+from vehicle.names import AXES, CORNERS, SIDE_SIGN, acceleration_channels, wheel_channels, wheel_words
 from vehicle.parameters.additions import new_loads
 from vehicle.parameters.base_car import vehicle_table
 from vehicle.parameters.body import TrimmedBody, require_inertia_table
@@ -56,9 +56,25 @@ class Head:
     gravity: float = quantity(
         "m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0 leaves the weight out"
     )
+    shaker_wheel: str = quantity(
+        "-",
+        "wheel whose plate a column of displacements without a wheel in its name drives",
+        choices=tuple(CORNERS.values()),
+        default="fr",
+    )
+    shaker_wheel_in_source: str = quantity(
+        "-",
+        "side on which the source of the car says that wheel is",
+        choices=("right", "left", "unsaid"),
+        default="unsaid",
+    )
 
     def __post_init__(self) -> None:
         validate(self)
+
+
+HEAD = tuple(Head.__dataclass_fields__)
+"""Keys of a vehicle file that stand above all tables."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,6 +84,8 @@ class Vehicle:
     Attributes:
         table: the vehicle file as used, nested tables; two cars with the same one are equal.
         name, gravity: as there; [m/s2].
+        shaker_wheel: wheel that a shaker drives where nothing else is said, as "fr".
+        shaker_wheel_in_source: its side in the words of the source: "right", "left" or "unsaid".
         body: trimmed body.
         solver: numerics.
         driving: whether its wheels roll.
@@ -77,6 +95,8 @@ class Vehicle:
     table: Mapping[str, Any]
     name: str = field(compare=False)
     gravity: float = field(compare=False)
+    shaker_wheel: str = field(compare=False)
+    shaker_wheel_in_source: str = field(compare=False)
     body: TrimmedBody = field(compare=False)
     solver: Solver = field(compare=False)
     driving: Driving = field(compare=False)
@@ -102,6 +122,14 @@ class Vehicle:
         """Names of all channels of a recording, in the order of the files."""
         dampers = [damper.name for damper in self.composition.dampers]
         return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
+
+    def wheel_text(self, wheel: str) -> str:
+        """A wheel for captions, by side, by channel, as its source calls it: "driver's left front wheel (fl)"."""
+        words = wheel_words(wheel, self.wheels)
+        said = self.shaker_wheel_in_source if wheel == self.shaker_wheel else "unsaid"
+        source = "" if said == "unsaid" else f"'{said} wheel' in the words of the source"
+        side = "driver's " if words.split()[0] in SIDE_SIGN else ""
+        return f"{side}{words} ({'; '.join(filter(None, (wheel, source)))})"
 
     def require_wheels(self, wheels: Iterable[str]) -> None:
         """Refuse wheels that the car does not have.
@@ -219,7 +247,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
         if key not in table:
             raise ConfigurationError(f"{key}: missing; every vehicle file has it")
     table = with_curve_files(table, folder or Path())
-    head = build(Head, {key: table[key] for key in ("name", "gravity")})
+    head = build(Head, {key: table[key] for key in HEAD if key in table})
     require_inertia_table(convert(dict, table["body"], "body"))
     body = build(TrimmedBody, table["body"], "body")
     solver = build(Solver, convert(dict, table["solver"], "solver"), "solver")
@@ -228,11 +256,15 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
         table=table,
         name=head.name,
         gravity=head.gravity,
+        shaker_wheel=head.shaker_wheel,
+        shaker_wheel_in_source=head.shaker_wheel_in_source,
         body=body,
         solver=solver,
         driving=driving_of(table),
         composition=compose(table, folders),
     )
+    if "shaker_wheel" in table:
+        vehicle.require_wheels((head.shaker_wheel,))
     require_plausible(vehicle)
     require_rolling(vehicle)
     return vehicle
@@ -280,7 +312,7 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
     """Read and validate a vehicle file.
 
     Args:
-        path: TOML file, or the name of a shipped car; the Ford-Focus-like car of source 1 by default.
+        path: TOML file, or the name of a shipped car; the Ford-Focus-like car of Bommer 2006 by default.
         overrides: texts "path.to.parameter=value".
 
     Returns:

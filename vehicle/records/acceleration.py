@@ -12,10 +12,9 @@ from vehicle.errors import DataError
 from vehicle.names import AXES
 from vehicle.records.channel_faults import faults
 from vehicle.records.choice import Choice, choose
-from vehicle.records.formats import is_table, read_columns
 from vehicle.records.integration import filtered
 from vehicle.records.rare_events import rare_events
-from vehicle.records.reader import read_record
+from vehicle.records.reader import is_table, read_columns, read_record
 from vehicle.records.table import Record, Vector
 from vehicle.records.units import STANDARD_GRAVITY
 

@@ -18,7 +18,8 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.records.channel import Channel, Measurement
-from vehicle.records.reader import bus_log, extra
+from vehicle.records.reader import extra
+from vehicle.records.signatures import can_log_type
 from vehicle.records.text import read_text
 
 _BYTES = r"(?P<data>(?:\s+[0-9A-Fa-f]{2})*)"
@@ -69,7 +70,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         MissingPartError: asammdf is not installed.
     """
     text = read_text(path, western=True)
-    form = bus_log(text.body[:4096])
+    form = can_log_type(text.body[:4096])
     frames = list(_frames(form, text.lines))
     if not frames:
         raise DataError(f"{path}: is a log of a CAN bus ({form}) without frames of data; record it again")

@@ -1,90 +1,118 @@
-"""The one way to tables and records in files. A format is a module with `read` and `write`, and a line in `FORMATS`."""
+"""The registry of file formats: how each is recognised, and which modules read and write it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from vehicle.errors import DataError
-from vehicle.records import npz_format, text_format
-from vehicle.records.clock import check_increasing, check_uniform, without_rounding
-from vehicle.records.reader import recognise
-from vehicle.records.table import TIME, Record, Table, Vector, Wanted, key_column, name_and_unit
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.records import refused_formats, signatures
+from vehicle.records.signatures import HEAD_BYTES, Head
 
-LEAST_SAMPLES = 3
-"""Of a record: two tell a step, the third that it is uniform."""
+if TYPE_CHECKING:
+    from vehicle.records.table import Record
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Format:
-    """A kind of file.
+    """A file format. Its modules lie in this package and are imported on first use.
 
     Attributes:
-        begins: first bytes of its files; none for the format of all others.
-        read: the table of a file, refused with the place of what is wrong.
-        write: a record, with the axes of its vectors in words.
+        name: name in messages; ending of the files that are written.
+        recognise: returns True for the head of its files.
+        reader: module with `read(path) -> Measurement`; with `databases`, `read(path, databases)`.
+        table: module with `read(path, wanted) -> Table` and `write(path, record, frame)`; empty where the format is
+            none of our own tables.
+        writer: module with `write(path, channels, about)`; empty where it is written as a table, or not at all.
+        databases: True where DBC files decode the CAN frames of the file.
     """
 
-    begins: bytes
-    read: Callable[[Path, Wanted], Table]
-    write: Callable[[Path, Record, str], None]
+    name: str
+    recognise: Callable[[Head], bool]
+    reader: str
+    table: str = ""
+    writer: str = ""
+    databases: bool = False
+
+    def function(self, role: str, name: str) -> Callable[..., Any]:
+        """Import a function of the format.
+
+        Args:
+            role: "reader", "table" or "writer".
+            name: "read" or "write".
+        """
+        module = import_module(f"{__package__}.{getattr(self, role)}")
+        function: Callable[..., Any] = getattr(module, name)
+        return function
 
 
-FORMATS = {
-    "npz": Format(begins=b"PK", read=npz_format.read, write=npz_format.write),
-    "csv": Format(begins=b"", read=text_format.read, write=text_format.write),
-}
-"""Name of a format, which is the ending of its files, and the format; files are recognised by what they hold."""
+FORMATS = (
+    Format(name="npz", recognise=signatures.is_npz, reader="array_format", table="npz_format"),
+    Format(name="xlsx", recognise=signatures.is_xlsx, reader="sheet_format"),
+    Format(name="tdms", recognise=signatures.is_tdms, reader="tdms_format"),
+    Format(name="mdf", recognise=signatures.is_mdf, reader="mdf_format", databases=True),
+    Format(name="h5", recognise=signatures.is_hdf5, reader="hdf_format", writer="hdf_format"),
+    Format(name="rpc", recognise=signatures.is_rpc, reader="rpc_format", writer="rpc_format"),
+    Format(name="parquet", recognise=signatures.is_parquet, reader="parquet_format"),
+    Format(name="erd", recognise=signatures.is_erd, reader="erd_format"),
+    Format(name="wav", recognise=signatures.is_wave, reader="wave_format"),
+    Format(name="mat", recognise=signatures.is_matlab, reader="matlab_format", writer="matlab_format"),
+    Format(name="lvm", recognise=signatures.is_lvm, reader="lvm_format"),
+    Format(name="can", recognise=signatures.is_can_log, reader="can_format", databases=True),
+    Format(name="vbo", recognise=signatures.is_vbo, reader="vbo_format"),
+    Format(name="crg", recognise=signatures.is_crg, reader="crg_format"),
+    Format(name="uff", recognise=signatures.is_uff, reader="uff_format", writer="uff_writer"),
+    Format(name="csv", recognise=lambda head: True, reader="logger_format", table="text_format"),
+)
+"""In the order of recognition: the first that recognises a file reads it. Text, the last, accepts all files that
+`vehicle.records.refused_formats` does not refuse."""
+
+BY_NAME = {entry.name: entry for entry in FORMATS}
 
 
-def is_table(path: Path) -> bool:
-    """Whether a file is of a format of this module; one that is not there counts as one, its reader says so."""
-    return not path.is_file() or recognise(path) in FORMATS
-
-
-def read_table(path: Path, wanted: Wanted) -> Table:
-    """Read a table of any format.
+def recognised_format(path: Path) -> Format:
+    """Return the format of a file, by its content, whatever the file is called.
 
     Args:
         path: the file.
-        wanted: what is asked of it.
 
     Raises:
         ConfigurationError: there is no such file.
-        DataError: bad data; the message names the place.
+        DataError: a format that is not read, or binary data.
     """
+    if not path.is_file():
+        raise ConfigurationError(f"{path}: no such file; give the path of a measurement file")
     try:
         with path.open("rb") as file:
-            head = file.read(8)
-    except OSError:
-        head = b""  # the reader of text says what is wrong
-    return next(one for one in FORMATS.values() if head.startswith(one.begins)).read(path, wanted)
+            data = file.read(HEAD_BYTES)
+        head = Head(path, data, path.stat().st_size)
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
+    *others, text = FORMATS
+    for entry in others:
+        if entry.recognise(head):
+            return entry
+    refused_formats.refuse(head)
+    return text
 
 
-def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'") -> Record:
-    """Read a record: a table with a column `time [s]` that is uniform.
+TABLES = tuple(entry.name for entry in FORMATS if entry.table)
+"""Formats of our own tables, in which a run is always written."""
+
+WRITTEN = tuple(entry.name for entry in FORMATS if entry.table or entry.writer)
+"""Formats in which a run can be written."""
+
+
+def write_record(path: Path, name: str, record: Record, frame: str) -> None:
+    """Write a record as a table.
 
     Args:
         path: the file.
-        needed: the columns in words, for messages.
-
-    Raises:
-        ConfigurationError: there is no such file.
-        DataError: it holds no record; the message names the place.
+        name: format, one of `TABLES`.
+        record: time, channels and units.
+        frame: axes of the vectors in words.
     """
-    table = read_table(path, Wanted(needed=needed, key=key_column(TIME, needed)))
-    channels: dict[str, Vector] = {}
-    units = {}
-    for index, cell in enumerate(table.header.cells):
-        name, unit = name_and_unit(cell)
-        if name in channels:
-            raise DataError(f"{table.header.where}: column {name!r} appears twice; each may appear once")
-        channels[name], units[name] = table.values[:, index], unit or ""
-    time, _ = channels.pop("time"), units.pop("time")
-    if time.size < LEAST_SAMPLES:
-        raise DataError(f"{path}: {time.size} samples, at least {LEAST_SAMPLES} are needed")
-    check_increasing(table, time)
-    uniform, notices = without_rounding(time)
-    check_uniform(table, uniform)
-    return Record(time=uniform, channels=channels, units=units, notices=(*table.notices, *notices))
+    BY_NAME[name].function("table", "write")(path, record, frame)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
 from vehicle.errors import DataError
-from vehicle.records.formats import read_table
+from vehicle.records.reader import read_table
 from vehicle.records.table import Header, Table, Vector, Wanted, key_column
 from vehicle.records.text_format import write_table
 

@@ -108,7 +108,7 @@ def _wanted_arrays(path: Path) -> list[str]:
 
 
 def write(path: Path, record: Record, frame: str) -> None:
-    """Write a record, with its units and its frame as texts; arguments as of `Format.write`.
+    """Write a record, with its units and its frame as texts; arguments of `vehicle.records.formats.write_record`.
 
     Not compressed: that takes more time than the run, and spares a sixth of the file.
     """

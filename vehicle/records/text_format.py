@@ -136,7 +136,7 @@ def write_table(
 
 
 def write(path: Path, record: Record, frame: str) -> None:
-    """Write a record, one row a sample; arguments as of `Format.write`."""
+    """Write a record, one row a sample; arguments of `vehicle.records.formats.write_record`."""
     heads = [TIME, *(f"{name} [{record.units[name]}]" for name in record.channels)]
     write_table(path, heads, [record.time, *record.channels.values()], [f"frame: {frame}"])
 

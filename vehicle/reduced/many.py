@@ -117,6 +117,7 @@ def simulate_many(
             record_rate=record_rate,
             tyre_load=tyre_load[car],
             channels=channels,
+            present_load=False,
         )
         statistics[car] = run.statistics
         table[:, car] = [run[name] for name in channels]

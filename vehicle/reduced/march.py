@@ -24,6 +24,7 @@ from vehicle.errors import MissingPartError
 from vehicle.laws.damper import friction_limit
 from vehicle.laws.friction import clamp, slope_at_rest
 from vehicle.reduced.control import Control, control, keep
+from vehicle.reduced.slope import Slope, slopes
 from vehicle.simulation.sampling import copy_row
 
 MISSING = "the reduced engine needs numba, which is missing (pip install numba)"
@@ -136,6 +137,7 @@ def march(
     before: Any,
     after: Any,
     controls: Control,
+    slope: Slope,
 ) -> None:
     """March over the steps between the rows of `plates` and keep every `every`-th end.
 
@@ -144,9 +146,9 @@ def march(
     Args:
         count: e.
         pair_factors: real and imaginary rows for the pairs: decay, damper velocities (e), inputs in the order two
-            forces, first plate, further forces, further plates; (2 (1 + e + e + m), p). One table, so that the compiler
-            sees that no row overlaps the state.
-        real_factors: the same rows for the real poles, real parts; (1 + e + e + m, q).
+            forces, first plate, further forces, further plates, tyres on slopes; (2 (1 + e + e + m + r), p). One table,
+            so that the compiler sees that no row overlaps the state.
+        real_factors: the same rows for the real poles, real parts; (1 + e + e + m + r, q).
         slip_plate: what the plates add to the damper velocities, (e, m).
         gain: G of the damper forces of a step, (e, e).
         laws: records of `vehicle.laws.damper`; (e,).
@@ -160,9 +162,10 @@ def march(
         velocities, before, after: damper velocities [m/s], and damper forces [N] of the steps that end and
             begin at a sample; (all samples, e).
         controls: controlled dampers, whose curves it changes.
+        slope: rolling tyres, an even number r.
     """
     pairs, reals = pair.shape[1], real.shape[0]
-    inputs, at = count + plates.shape[1], 1 + count
+    inputs, at = count + plates.shape[1] + slope.past.shape[0], 1 + count
     x, y, c, r = pair[0], pair[1], pair_factors, real_factors
     c0, c1, c2, c3, c4, c5 = c[0], c[1], c[2], c[3], c[4], c[5]
     c6, c7, c8, c9 = c[2 * at], c[2 * at + 1], c[2 * at + 2], c[2 * at + 3]
@@ -182,6 +185,7 @@ def march(
             u[2 + k] = force[k]
         for k in range(2, plates.shape[1]):
             u[count + k] = plates[step, k]
+        slopes(pair, real, plates, step, force, u, count + plates.shape[1], slope)
         f0, f1, z, d = u[0], u[1], u[2], u[3]
         w0, w1 = 0.0, 0.0
         for p in range(pairs):

@@ -57,6 +57,8 @@ class PoleModel:
         slip: rows of the damper velocities, real part taken; (w, p).
         modal: displacements u = Re(modal xi) of the velocity coordinates of MuJoCo; (n, p).
         branch: forces f_b = Re(branch xi) of the Maxwell branches; (b, p).
+        slope: effect of the velocity of each plate by the static load on the slope, which b_c contains; (p, w), (p, 0)
+            for tyres that stand.
         matrices: what the model was made from.
     """
 
@@ -68,6 +70,7 @@ class PoleModel:
     slip: Complex
     modal: Complex
     branch: Complex
+    slope: Complex
     matrices: CarMatrices
 
     def outputs(self, channels: Sequence[str]) -> Outputs:
@@ -111,7 +114,11 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     """
     form = first_order(matrices.system)
     w = len(form.system.inputs)
-    inputs = np.hstack([form.input, form.input_rate, form.friction])
+    slope = np.zeros((len(form.state), matrices.slope.shape[1]))
+    if slope.size:
+        mass = form.basis.T @ form.system.mass @ form.basis
+        slope[form.velocities] = np.linalg.solve(mass, form.basis.T @ matrices.slope)
+    inputs = np.hstack([form.input, form.input_rate, form.friction, slope])
     poles, vectors = np.linalg.eig(form.state)
     kept = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
     pairs = int(np.count_nonzero(poles.imag > 0.0))
@@ -123,9 +130,10 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         pairs=pairs,
         height=residues[:, :w],
         velocity=residues[:, w : 2 * w],
-        force=residues[:, 2 * w :],
+        force=residues[:, 2 * w : residues.shape[1] - slope.shape[1]],
         slip=form.slide @ weighted,
         modal=form.shapes(weighted, poles[kept]),
         branch=weighted[form.branches],
+        slope=residues[:, residues.shape[1] - slope.shape[1] :],
         matrices=matrices,
     )

@@ -19,6 +19,7 @@ from vehicle.reduced.march import March, compiled_march
 from vehicle.reduced.plate_samples import LongPlates, plate_samples
 from vehicle.reduced.pole_model import PoleModel
 from vehicle.reduced.readout import Readout
+from vehicle.reduced.slope import slope_of
 from vehicle.reduced.step_factors import StepFactors, step_factors
 from vehicle.reduced.validity import ValidityWatch
 from vehicle.simulation.acceleration import AHEAD, acceleration
@@ -44,6 +45,7 @@ def simulate_reduced(
     tyre_load: Mapping[str, float],
     channels: Sequence[str] | None = None,
     loads: LoadRows | None = None,
+    present_load: bool = True,
 ) -> Recording:
     """Run a car on its plates with the reduced engine.
 
@@ -55,6 +57,7 @@ def simulate_reduced(
         tyre_load: static tyre loads [N] by wheel.
         channels: names of the recorded channels; all but the loads by default.
         loads: rows of the load channels, where `channels` names such.
+        present_load: rolling tyres push on a slope by their present load; by their static load where False.
 
     Returns:
         The recording; without poses, and without an energy balance.
@@ -71,7 +74,7 @@ def simulate_reduced(
     samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
     step = interval / every
     plates = plate_samples(signal, step, (samples - 1) * every, AHEAD * every)
-    run = _Run(model, step_factors(model, step), dampers, signal.wheels)
+    run = _Run(model, step_factors(model, step), dampers, signal.wheels, tyre_load if present_load else None)
     # No step at all: compiling is no part of the time of the run.
     run.advance(march, plates[:1], every, 1, np.zeros((1, run.state().size)))
     run.begin(plates[:1][0, ::2])
@@ -133,10 +136,16 @@ class _Run:
         factors: of its step.
         dampers: their laws.
         wheels: driven wheels.
+        tyre_load: as of `slope_of`.
     """
 
     def __init__(
-        self, model: PoleModel, factors: StepFactors, dampers: Sequence[Damper], wheels: tuple[str, ...]
+        self,
+        model: PoleModel,
+        factors: StepFactors,
+        dampers: Sequence[Damper],
+        wheels: tuple[str, ...],
+        tyre_load: Mapping[str, float] | None,
     ) -> None:
         self.factors, self.pairs, self.wheels = factors, model.pairs, wheels
         self.corners = model.matrices.system.inputs
@@ -149,7 +158,8 @@ class _Run:
         decay, idle = factors.decay[:, None], np.zeros((len(factors.decay), even - count))
         slip, force = np.hstack([model.slip.T, idle]), np.hstack([decay * factors.force, idle])
         plates = factors.plate[:, self.columns]
-        rows = np.hstack([decay, slip, force[:, :2], plates[:, :2], force[:, 2:], plates[:, 2:]])
+        self.slope, tyres = slope_of(model, factors, self.columns, tyre_load)
+        rows = np.hstack([decay, slip, force[:, :2], plates[:, :2], force[:, 2:], plates[:, 2:], tyres])
         pairs, reals = rows[: model.pairs], rows[model.pairs :]
         self.pair_factors = np.ascontiguousarray(np.stack([pairs.real, pairs.imag], axis=2).reshape(model.pairs, -1).T)
         self.real_factors = np.ascontiguousarray(reals.real.T)
@@ -197,6 +207,7 @@ class _Run:
             self.before,
             self.after,
             self.control,
+            self.slope,
         )
 
     def fill(

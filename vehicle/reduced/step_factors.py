@@ -37,6 +37,7 @@ class StepFactors:
         plate: factors of z and z' of all plates at the beginning of a step, for eta; (p, 2 w).
         ahead: c0 and c1: xi = eta + ahead (z, z'); (p, 2 w).
         force: factors of the damper forces; (p, w).
+        slope: factors of forces as of `PoleModel.slope`, constant over a step; (p, w) or (p, 0).
     """
 
     timestep: float
@@ -44,6 +45,7 @@ class StepFactors:
     plate: Complex
     ahead: Complex
     force: Complex
+    slope: Complex
 
 
 def phi_functions(x: Complex, highest: int) -> list[Complex]:
@@ -85,4 +87,5 @@ def step_factors(model: PoleModel, timestep: float) -> StepFactors:
         plate=np.hstack([a0, a1]) + decay[:, None] * ahead,
         ahead=ahead,
         force=m0 * model.force,
+        slope=m0 * model.slope,
     )

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.analysis.frf import FrequencyResponse
-from vehicle.names import side_of, wheel_words
+from vehicle.names import side_of
 from vehicle.rendering.figure import (
     COLOURS,
     FADED,
@@ -83,7 +83,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
     with saved_figure(
         path,
         (13.0, 8.6),
-        title or f"FRFs to the plate under the {wheel_words(wheel, wheels)}",
+        title or f"FRFs to the plate under the {run.car.model.vehicle.wheel_text(wheel)}",
         f"{caption}; {FADED}",
         placed=True,
     ) as figure:
@@ -145,7 +145,8 @@ def plot_time(path: Path, run: RecordedRun) -> None:
     inside = (time >= start) & (time <= end)
     caption = (
         f"{Path(run.signal.source).name}, {level_words(recording, wheel, run.signal.rms(wheel))} at wheel {wheel}; "
-        f"dashed: slip velocity ±{1e3 * slip:g} mm/s, red: {side} damper in slip"
+        f"tyres {run.car.model.vehicle.driving.words}; dashed: slip velocity ±{1e3 * slip:g} mm/s, "
+        f"red: {side} damper in slip"
     )
     with saved_figure(path, (15.0, 9.2), "Main time histories", caption, placed=True) as figure:
         rows = len(panels) * (1.0,)

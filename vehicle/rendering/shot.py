@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.names import side_of, wheel_words
+from vehicle.names import side_of
 from vehicle.rendering.body_wireframe import Wireframe
 from vehicle.rendering.cameras import close_up, whole_car
 from vehicle.rendering.canvas import Canvas
@@ -30,7 +30,7 @@ from vehicle.rendering.recorded_run import (
     wheels_of,
 )
 from vehicle.rendering.road_strip import RoadStrip
-from vehicle.rendering.rolling import RollingRim
+from vehicle.rendering.rolling import RollingWheel
 from vehicle.rendering.rounding import round_factor, round_up
 from vehicle.rendering.trace_strip import Trace, TraceStrip
 
@@ -124,7 +124,7 @@ class Shot:
 
         recording, vehicle = run.recording, run.car.model.vehicle
         self.recording, self.vehicle, self.wheel = recording, vehicle, run.wheel
-        self.layout, self.speed, self.composition = layout, take.speed, vehicle.composition
+        self.layout, self.composition = layout, vehicle.composition
         self.wheels, self.dampers, self.hub = (
             wheels_of(recording),
             dampers_of(recording),
@@ -169,8 +169,9 @@ class Shot:
             first, every: the first frame and the distance to the next; all by default.
         """
         layout, factor = self.layout, self.cut.exaggeration
-        rims = [
-            RollingRim(self.motion, wheel, self.speed) for wheel in self.composition.wheels if self.speed is not None
+        wheels = [
+            RollingWheel(self.motion, wheel, hub_of(self.composition, wheel.name), self.vehicle.driving.speed)
+            for wheel in self.composition.wheels
         ]
         views = self._views()
         with closing(Canvas(self.model, (layout.width, layout.view_height), backend)) as canvas:
@@ -179,8 +180,8 @@ class Shot:
                 time = self.cut.start + number * self.cut.interval
                 state = self.states[number]
                 drawing.pose(state, factor)
-                for rim in rims:
-                    rim.turn(drawing.data, state, factor, time)
+                for wheel in wheels:
+                    wheel.turn(drawing.data, state, factor, time)
                 for camera, viewport, opacity in views:
                     drawing.see(camera, opacity)
                     if self.road is not None:
@@ -221,14 +222,14 @@ class Shot:
             speed += f" (faster than {highest:g} Hz averages out)"
         road, exaggerated = [], "motion"
         if self.road is not None:
-            road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long; tyres "]
-            road[0] += "roll" if run.car.model.vehicle.driving.rolling else "stand"
+            road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
             exaggerated = "motion and road"
         return [
-            f"{Path(run.signal.source).name}: {level} under the {wheel_words(run.wheel, self.wheels)}",
+            f"{Path(run.signal.source).name}: {level} under the {run.car.model.vehicle.wheel_text(run.wheel)}",
             f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
             *road,
-            f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
+            f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s; tyres "
+            f"{self.vehicle.driving.words}",
         ]
 
     def _traces(self) -> list[Trace]:

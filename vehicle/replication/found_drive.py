@@ -10,6 +10,7 @@ from vehicle.car import Car, Run
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import CORNERS, in_order
+from vehicle.parameters.vehicle import Vehicle
 from vehicle.records.choice import Choice
 from vehicle.records.reader import read_record
 from vehicle.replication.driven_car import DrivenCar
@@ -82,7 +83,8 @@ def replicate_drive(
         channels: channel of the car to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}; or channels of the
             car that the file has under their own names, or that are its only one. At least as many as plates.
         choice: units, rate and excerpt of the file.
-        wheels: wheels whose plates are driven, as ("fr",); by default those in the names of the channels, or fr.
+        wheels: wheels whose plates are driven, as ("fr",); by default those in the names of the channels, or
+            that of the shaker.
         band: frequencies in which the response is replicated [Hz]; begin above the noise of the sensor.
         iterations: maximum number of runs.
         gain: share of the correction that a step makes [-], above 0 and up to 1.
@@ -103,7 +105,7 @@ def replicate_drive(
     names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, asked)
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
     wanted = read_target(path, names, asked, band, car.vehicle.solver.record_rate)
-    plant = DrivenCar(car, driven_wheels(wheels, wanted), wanted, engine)
+    plant = DrivenCar(car, driven_wheels(wheels, wanted, car.vehicle), wanted, engine)
     found = replicate(
         plant,
         wanted.values,
@@ -159,18 +161,19 @@ def named_channels(file: Path, names: Sequence[str], choice: Choice) -> dict[str
     return {name: name for name in names}
 
 
-def driven_wheels(asked: Sequence[str] | None, target: Target) -> tuple[str, ...]:
+def driven_wheels(asked: Sequence[str] | None, target: Target, vehicle: Vehicle) -> tuple[str, ...]:
     """Return the wheels whose plates are driven.
 
     Args:
-        asked: names of wheels; None for those in the names of the channels, or fr.
+        asked: names of wheels; None for those in the names of the channels, or that of the shaker.
         target: what is to be replicated.
+        vehicle: the car.
 
     Raises:
         ConfigurationError: more plates than channels.
     """
     named = {part for name in target.channels for part in name.split("_") if part in CORNERS.values()}
-    found = in_order(set(asked) if asked else named or {"fr"})
+    found = in_order(set(asked) if asked else named or {vehicle.shaker_wheel})
     if len(found) > len(target.channels):
         raise ConfigurationError(
             f"{len(found)} plates ({', '.join(found)}) and {len(target.channels)} channel: give at least as many "

@@ -16,8 +16,8 @@ from vehicle.analysis.motion_response import MotionResponse
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.parameters.vehicle import load_vehicle
-from vehicle.records.formats import read_columns
 from vehicle.records.frf import read_frf
+from vehicle.records.reader import read_columns
 from vehicle.simulation.recording import Recording, Statistics
 
 
@@ -88,7 +88,7 @@ class FinishedRun:
         estimator = f"; estimator: {self.response.estimator}" if self.response is not None else ""
         return (
             f"{Path(given['file']).name}, RMS {1e3 * given['rms_m']:.3g} mm at wheel {given['wheel']}, "
-            f"{given['duration_s']:g} s{estimator}; engine: {solver['engine']}"
+            f"{given['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: {solver['engine']}"
         )
 
 

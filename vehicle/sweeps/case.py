@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -13,6 +13,9 @@ from typing import Protocol
 from vehicle.errors import ConfigurationError
 from vehicle.excitation.signal import Signal
 from vehicle.excitation.signal_file import read_signal
+from vehicle.parameters.driving import Driving, driving_of, tyre_words
+from vehicle.parameters.shipped import FOCUS_FILE
+from vehicle.parameters.vehicle import overridden
 
 
 class Input(Protocol):
@@ -74,7 +77,7 @@ class Case:
         source: the input; a `Signal` is one.
         overrides: texts "path=value" as `Car.load` takes them, applied in this order.
         engine: as of `Car.run`.
-        vehicle: vehicle file; the car of source 1 by default.
+        vehicle: vehicle file; the car of Bommer 2006 by default.
         shared: how many of the overrides, from the first, the whole study has: its cars are varied from the one with
             these, which is quick where only laws and masses vary. The numbers may move in the ninth digit.
     """
@@ -141,6 +144,28 @@ def overrides_of(source: Input) -> tuple[str, ...]:
     """What an input asks of the car: tyres that roll at the speed of a road."""
     asked: tuple[str, ...] = getattr(source, "overrides", ())
     return asked
+
+
+def drivings(cases: Sequence[Case]) -> Mapping[str, tuple[Driving, ...]]:
+    """Return how the cars of cases drive, by the names of their inputs; cars that cannot be made are left out."""
+    # Thousands of cases share a few speeds; all else in their overrides leaves the speed as it is.
+    asked: dict[tuple[str, Path | None, tuple[str, ...]], None] = {}
+    for case in cases:
+        speeds = tuple(text for text in case.overrides if text.partition("=")[0].strip().endswith("speed"))
+        asked[case.source.name, case.vehicle, speeds] = None
+    found: dict[str, tuple[Driving, ...]] = {}
+    for name, vehicle, speeds in asked:
+        try:
+            driving = driving_of(overridden(vehicle or FOCUS_FILE, speeds))
+        except ConfigurationError:
+            continue  # the row of the case says why
+        found[name] = (*found.get(name, ()), driving)
+    return found
+
+
+def all_tyre_words(cases: Sequence[Case]) -> str:
+    """Return what the tyres do in all cases, see `tyre_words`."""
+    return tyre_words(car for cars in drivings(cases).values() for car in cars)
 
 
 def digest(parts: object) -> str:

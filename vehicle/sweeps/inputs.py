@@ -45,7 +45,7 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
         if isinstance(source, Road):
             found.append(source.under(car.vehicle, car.overrides))
         elif isinstance(source, str | Path):
-            found.append(SignalFile(path=find_input(source).resolve()))
+            found.append(SignalFile(path=find_input(source).resolve(), wheel=car.vehicle.shaker_wheel))
         else:
             found.append(source)
     for one in found:

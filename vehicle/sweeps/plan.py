@@ -15,7 +15,7 @@ from vehicle.parameters.paths import assignments
 from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.parameters.vehicle import overridden
 from vehicle.parameters.whole_body import body_rules
-from vehicle.sweeps.case import Case, varied_cases
+from vehicle.sweeps.case import Case, all_tyre_words, varied_cases
 from vehicle.sweeps.inputs import Source, common_start, file_of, inputs_of
 from vehicle.sweeps.measure import ComfortMeasure, Measure
 from vehicle.sweeps.sweep import Progress, sweep
@@ -40,6 +40,11 @@ class SweepPlan:
     measure: Measure
     skip: float
     notes: tuple[str, ...]
+
+    @property
+    def tyres(self) -> str:
+        """What the tyres do in all runs."""
+        return all_tyre_words(self.cases)
 
     def run(
         self,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from vehicle.analysis.slip import slip_shares
 from vehicle.car import SATURATED_VELOCITY, Run
 from vehicle.excitation.exact_road import RATE_HZ, road
 from vehicle.excitation.signal import Signal
+from vehicle.names import across
 from vehicle.sweeps.measure import of_one
 from vehicle.sweeps.runs import Runs, Vector
 
@@ -21,7 +22,7 @@ SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadInput:
-    """A record of road as the input of a sweep; arguments as of `exact_road.road`."""
+    """A record of road as the input of a sweep; `wheel` drives on it, the other arguments are those of `road`."""
 
     name: str
     rms: float
@@ -29,16 +30,19 @@ class RoadInput:
     duration: float
     lead: float
     lower_band_edge: float
+    wheel: str = "fr"
 
     def signal(self) -> Signal:
         """Generate the road."""
-        return road(
+        made = road(
             rms=self.rms, seed=self.seed, duration=self.duration, lead=self.lead, lower_band_edge=self.lower_band_edge
         )
+        (plate,) = made.displacement.values()
+        return replace(made, displacement={self.wheel: plate})
 
     def identity(self) -> dict[str, object]:
         """What the runs depend on."""
-        return {"sha256": hashlib.sha256(self.signal().displacement["fr"].tobytes()).hexdigest(), **asdict(self)}
+        return {"sha256": hashlib.sha256(self.signal().displacement[self.wheel].tobytes()).hexdigest(), **asdict(self)}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,21 +51,27 @@ class RoadMeasure:
 
     `comfort` is sqrt(RMSx^2 + RMSy^2 + RMSz^2) of the seat rail, unfiltered, 2 to 50 Hz; `gaussian_error` its standard
     error over Gaussian roads of this spectrum, see `vehicle.analysis.comfort_error`; `slip` and `slip_left` are shares
-    of the time above the slip velocity, right and left damper; `saturated` is the share above 1 mm/s, right damper;
-    `lowest_load` that of the tyre on the shaker; `pulling` the share of the time with a negative load there.
+    of the time above the slip velocity, damper over the shaker and its counterpart; `saturated` is the share above
+    1 mm/s over the shaker; `lowest_load` that of the tyre on it; `pulling` the share of the time with a negative load.
 
     Attributes:
         lead: seconds at the beginning that are left out.
+        wheel: that the road drives.
         timestep: longest step of the reduced engine [s].
     """
 
     lead: float
+    wheel: str = "fr"
     timestep: float = 5e-4
 
     @property
     def channels(self) -> tuple[str, ...]:
         """Channels that are needed."""
-        return (*SEAT_RAIL, "damper_fr_velocity", "damper_fl_velocity", "tyre_fr_force_z")
+        return (*SEAT_RAIL, *self._dampers, f"tyre_{self.wheel}_force_z")
+
+    @property
+    def _dampers(self) -> tuple[str, str]:
+        return f"damper_{self.wheel}_velocity", f"damper_{across(self.wheel)}_velocity"
 
     @property
     def units(self) -> Mapping[str, str]:
@@ -85,8 +95,8 @@ class RoadMeasure:
         # The record ends with the sample that begins its next period.
         record = slice(round(self.lead * RATE_HZ) + 1, None)
         found = comfort_values(runs.timestep, runs.stacked(*SEAT_RAIL)[:, :, record])
-        right, left = (runs[f"damper_{wheel}_velocity"][:, record] for wheel in ("fr", "fl"))
-        load = runs["tyre_fr_force_z"][:, record]
+        right, left = (runs[name][:, record] for name in self._dampers)
+        load = runs[f"tyre_{self.wheel}_force_z"][:, record]
         limit = runs.slip_velocity
         return {
             "comfort": found.overall,

@@ -13,10 +13,11 @@ from typing import Any
 
 from vehicle.flexbody.library import PACKAGE_FOLDER
 from vehicle.output.folder import folder_lock, write_text
+from vehicle.parameters.driving import tyre_words
 from vehicle.parameters.shipped import FOCUS_FILE
 from vehicle.parameters.template import SHIPPED as TEMPLATES
 from vehicle.parameters.vehicle import load_vehicle
-from vehicle.sweeps.case import Case, digest
+from vehicle.sweeps.case import Case, digest, drivings
 from vehicle.sweeps.crew import Crew
 from vehicle.sweeps.differences import DIFFERENCES, differences_text
 from vehicle.sweeps.executors import process_pool
@@ -140,6 +141,7 @@ def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
         "vehicles": sorted({"focus" if case.vehicle is None else case.vehicle.name for case in cases}),
         "engines_asked": sorted({case.engine for case in cases}),
         "inputs": {source.name: source.identity() for source in sources.values()},
+        "tyre": {name: tyre_words(cars) for name, cars in drivings(cases).items()},
         "measure": repr(measure),
         "evaluated_from_s": getattr(measure, "skip", None),
         "program": program_digest(),

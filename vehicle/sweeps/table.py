@@ -16,7 +16,7 @@ import numpy.typing as npt
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.notebook.frames import table_frame
 from vehicle.output.folder import write_json, write_text
-from vehicle.records.reader import recognise
+from vehicle.records.formats import recognised_format
 from vehicle.records.sheet_format import read_sheet_texts
 from vehicle.records.text_format import read_texts
 from vehicle.sweeps.case import Case
@@ -111,7 +111,7 @@ def read_variations(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     if not path.is_file():
         raise DataError(f"--table {path}: cannot be read: no such file, or not a file")
     try:
-        header, *rows = (read_sheet_texts(path) if recognise(path) == "xlsx" else read_texts(path)) or [[]]
+        header, *rows = (read_sheet_texts(path) if recognised_format(path).name == "xlsx" else read_texts(path)) or [[]]
     except DataError as error:
         raise DataError(f"--table {error}") from None
     if not rows:

@@ -85,8 +85,10 @@ def measured_responses(
     data = found.select(tuple(fitted) or found.channels, band=band, spacing=spacing)
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
-    given = _signal(signal)
-    target = FrfTarget(name=path.stem, data=data, signal=None if stuck else given, window=window)
+    given = _signal(signal, car)
+    target = FrfTarget(name=path.stem, data=data, signal=given, window=window, wheel=given.wheels[0])
+    if stuck:
+        target = replace(target, signal=None)
     return MeasuredTarget(target=target, signal=given, notices=_notices(path, measured, []))
 
 
@@ -127,7 +129,7 @@ def measured_histories(
         DataError: bad data, no time history, or nothing in common with the signal.
     """
     path, source = Path(file), signal
-    measured, signal = _read(car, path, channels, choice, turned, window), _signal(source)
+    measured, signal = _read(car, path, channels, choice, turned, window), _signal(source, car)
     held = None if measured.record is None else measured.record
     names = [] if held is None else [one for one in held.channels if not one.startswith("plate_")]
     if held is None or not names:
@@ -183,11 +185,11 @@ def _read(
     return read_measured(file, known, asked, turned=turned, window=window)
 
 
-def _signal(source: Signal | Path | str) -> Signal:
-    """Return a signal; a name without an ending is that of a shipped file."""
+def _signal(source: Signal | Path | str, car: Car) -> Signal:
+    """Return a signal, a file of one plate under the shaker wheel; a name without an ending is a shipped file."""
     if isinstance(source, Signal):
         return source
-    return read_signal(find_input(source if "." in str(source) else f"{source}.csv"))
+    return read_signal(find_input(source if "." in str(source) else f"{source}.csv"), wheel=car.vehicle.shaker_wheel)
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:

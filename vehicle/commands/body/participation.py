@@ -87,6 +87,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         raise ConfigurationError(f"--mode {options.mode}: the body has modes 1 to {modes}")
     mode = int(found.shares[6:, 0].argmax()) if options.mode is None else options.mode - 1
     about = f"{vehicle.name}: {options.response} per displacement of the plate {wheel}, dampers {options.damper}"
+    about += f", tyres {vehicle.driving.words}"
     if options.output is not None:
         _write(options, over, found, mode, about)
     if options.json:

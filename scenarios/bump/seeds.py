@@ -1,0 +1,187 @@
+"""The bumps with many seeds of their noise, which is not published, and the same with a part of the model changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.bump.runs import SHOWN_S, SIZES, Record, damper_velocity, relative_acceleration
+from scenarios.car_runs import CarRuns
+from scenarios.comfort_runs import changes
+from vehicle.car import SATURATED_VELOCITY, Car
+from vehicle.excitation.band import SHAKER_EDGE_HZ
+from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, Reading, bump
+from vehicle.excitation.signal import Signal
+from vehicle.names import AXES
+from vehicle.reduced.march import has_compiler
+
+Vector = npt.NDArray[np.float64]
+
+SEEDS = 8
+"""Seeds of the noise of each row: the standard deviation is known to a quarter."""
+
+RECORD = Record(start=3.0, noisy=3.0 + SHOWN_S + 0.5, quiet=0.0, film=0.0)
+"""Noise for about two time constants of the slowest rigid body mode, what the figures show, and the taper."""
+
+EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
+    "body rigid": ("body.flexible=false",),
+    "Ixx 1200": ("body.inertia.ixx=1200",),
+    "tyre z -20 %": ("bushings.tyre.stiffness.z=200000.0",),
+    "D +33 %": ("damper.viscous=3000",),
+}
+"""What is changed to find the reason of a row that disagrees; beside it the other reading, no noise, another band."""
+
+LOW_EDGE_HZ = 1.5
+"""Lower edge of the noise where it is another one: the level is printed, the band is not."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class BumpSeeds:
+    """What is read off the bumps of all seeds.
+
+    Attributes:
+        extremes: A of the bump [m] and key of the point to lowest and highest acceleration [m/s2], (n, 2).
+        fastest: A of the bump to the largest velocity of the damper over the plate [m/s], (n,).
+        stick_end: friction limit [N] to the end of sticking after the high bump, as if that began at 5 s [s], (n,);
+            infinite where it sticks.
+        engine: that of the runs.
+    """
+
+    extremes: Mapping[tuple[float, str], Vector]
+    fastest: Mapping[float, Vector]
+    stick_end: Mapping[float, Vector]
+    engine: str
+
+    @property
+    def count(self) -> int:
+        """Number of seeds."""
+        return len(self.fastest[SIZES[0]])
+
+    def data(self) -> dict[str, Any]:
+        """For `results.json`."""
+        return {
+            "extremes_over_seeds": {
+                row_key(size, point, word): values[:, column].tolist()
+                for (size, point), values in self.extremes.items()
+                for column, word in enumerate(("lowest", "highest"))
+            },
+            "stick_end_over_seeds_s": {f"{limit:g} N": times.tolist() for limit, times in self.stick_end.items()},
+        }
+
+
+def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], count: int = SEEDS) -> BumpSeeds:
+    """Run both bumps with many seeds of the noise, and the high one with other friction limits.
+
+    Args:
+        runs: the car. The reduced engine runs it, where there is a compiler: the parts turn by less than what it
+            vouches for, and one of its runs is beside that of MuJoCo in the notes.
+        reading: of the printed amplitude.
+        frictions: limits Fd [N].
+        count: seeds.
+    """
+    engine = "reduced" if has_compiler() else "mujoco"
+    ends: dict[float, list[float]] = {friction: [] for friction in frictions}
+    kept: dict[tuple[float, str], list[tuple[float, float]]] = {}
+    fastest: dict[float, list[float]] = {size: [] for size in SIZES}
+    nominal = runs.car()
+    cars = {limit: runs.car(changes(nominal.vehicle, "damper.coulomb_friction", limit)) for limit in frictions}
+    for seed in range(count):
+        for size in SIZES:
+            signal = _signal(nominal, size, reading, seed)
+            found = motions(nominal, signal, engine)
+            fastest[size].append(float(np.max(np.abs(found["velocity"]))))
+            for point, values in found.items():
+                kept.setdefault((size, point), []).append((float(np.min(values)), float(np.max(values))))
+        for friction, car in cars.items():  # `found` is that of the high bump
+            speed = np.abs((found if car is nominal else motions(car, signal, engine))["velocity"])
+            above = np.flatnonzero(speed > SATURATED_VELOCITY)
+            ends[friction].append(BUMP_START_S + above[0] * signal.timestep if above.size else np.inf)
+    return BumpSeeds(
+        extremes={key: np.array(values) for key, values in kept.items()},
+        fastest={size: np.array(values) for size, values in fastest.items()},
+        stick_end={friction: np.array(values) for friction, values in ends.items()},
+        engine=engine,
+    )
+
+
+def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeeds) -> dict[str, Mapping[str, float]]:
+    """Means of the extremes with a part of the model changed: label to "A in mm, key of the point, word" to value.
+
+    Args:
+        runs: the car.
+        reading: of the printed amplitude.
+        other: the other reading of it.
+        seeds: names the points, and the engine.
+    """
+    changed = {label: runs.car(changes) for label, changes in EXPERIMENTS.items()}
+    trials: dict[str, tuple[Car, Reading, float, float]] = {
+        f"{other} reading": (runs.car(), other, NOISE_RMS, SHAKER_EDGE_HZ),
+        "no noise": (runs.car(), reading, 0.0, SHAKER_EDGE_HZ),
+        f"noise from {LOW_EDGE_HZ:g} Hz on": (runs.car(), reading, NOISE_RMS, LOW_EDGE_HZ),
+        **{label: (car, reading, NOISE_RMS, SHAKER_EDGE_HZ) for label, car in changed.items()},
+    }
+    found: dict[str, Mapping[str, float]] = {}
+    for label, (car, kind, noise, edge) in trials.items():
+        values: dict[str, list[float]] = {}
+        for size in SIZES:
+            for seed in range(seeds.count if noise else 1):
+                for point, motion in motions(car, _signal(car, size, kind, seed, noise, edge), seeds.engine).items():
+                    values.setdefault(row_key(size, point, "lowest"), []).append(float(np.min(motion)))
+                    values.setdefault(row_key(size, point, "highest"), []).append(float(np.max(motion)))
+        found[label] = {key: float(np.mean(one)) for key, one in values.items()}
+    return found
+
+
+def row_key(size: float, point: str, word: str) -> str:
+    """Key of `scenarios.evidence` of an end of a panel.
+
+    Args:
+        size: A of the bump [m].
+        point: its key.
+        word: "lowest" or "highest".
+    """
+    return f"bump_{'7p5' if size == SIZES[1] else '1p5'}_{point}_{word}"
+
+
+def motions(car: Car, signal: Signal, engine: str) -> dict[str, Vector]:
+    """Accelerations [m/s2] by key of the point and the velocity of the damper over the plate [m/s], 3 s from the bump.
+
+    Args:
+        car: the car.
+        signal: of `RECORD`.
+        engine: of the run.
+    """
+    (wheel,) = signal.displacement
+    channels = {
+        "seat_rail_x": "seat_rail_acc_x",
+        "seat_rail_y": "seat_rail_acc_y",
+        "seat_rail_z": "seat_rail_acc_z",
+        "seat_z": "seat_acc_z",
+        "knuckle_z": f"knuckle_{wheel}_acc_z",
+        "engine_z": "engine_acc_z",
+        "roof_z": "roof_right_rear_acc_z",
+    }
+    strut = [f"{place}_{wheel}_acc_{axis}" for place in ("damper_top", "knuckle") for axis in AXES]
+    run = car.run(signal, engine=engine, channels=[*channels.values(), *strut, f"damper_{wheel}_velocity"])
+    shown = (run.time >= RECORD.start) & (run.time <= RECORD.start + SHOWN_S)
+    found = {point: run[channel][shown] for point, channel in channels.items()}
+    return {**found, "relative": relative_acceleration(run)[shown], "velocity": damper_velocity(run)[shown]}
+
+
+def _signal(
+    car: Car, size: float, reading: Reading, seed: int, noise: float = NOISE_RMS, edge: float = SHAKER_EDGE_HZ
+) -> Signal:
+    return bump(
+        amplitude=size,
+        reading=reading,
+        duration=RECORD.noisy,
+        start=RECORD.start,
+        noise_rms=noise,
+        noise_edge=edge,
+        seed=seed,
+        wheel=car.vehicle.shaker_wheel,
+    )

@@ -1,0 +1,314 @@
+"""Statements of chapter 4 about the histories: their level, which car moves less, and what the wheel does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim
+from scenarios.comfort_runs import Changes, ComfortRuns, Point, Variation
+from scenarios.comfort_sensitivity.claims import MOUNT_STIFFNESS, SOURCE, TITLES
+from scenarios.evidence import LEVELS, evidence_of
+from scenarios.evidence_claims import evidence_claim, reason
+from vehicle.analysis.peaks import phase_resonance
+from vehicle.analysis.segments import window_extremes
+from vehicle.analysis.spectra import power_spectral_density
+from vehicle.excitation.exact_road import RATE_HZ, ROAD_RMS
+from vehicle.sweeps.case import signal_of
+from vehicle.sweeps.evaluation import recordings_of
+
+Vector = npt.NDArray[np.float64]
+
+WINDOW_S = 0.5
+"""The figures show 27 to 27.5 s."""
+
+SWING_S = 30.0
+"""Length of the road in figure 2.6 [s]."""
+
+SWING_RMS = 0.05
+"""RMS of the road in figure 2.6 [m] (section 2.3.1)."""
+
+WHEEL_BAND = (8.0, 35.0)
+"""The peak of the wheel is looked for here [Hz]."""
+
+SPECTRUM_WINDOW_S = 1.0
+"""Windows of the spectra of the wheel [s]: lines 1 Hz apart, for a peak that is several times as wide."""
+
+
+MEASURED_PEAKS = {"asphalt": 20.0, "cobbles": 13.0}
+"""Largest line of the wheel's acceleration, measured on a car and roads that are not described (figure 2.1) [Hz]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoadLevels:
+    """Histories of one road, over all records.
+
+    Attributes:
+        largest: figure to the largest |vertical acceleration of the seat rail| over all its cars in each 0.5 s
+            [m/s2], (w,).
+        seat_rail: name of the parameter and its value to the RMS of the vertical acceleration of each record [m/s2],
+            (records,).
+        apart: the same to the RMS of the difference to the nominal car [m/s2], (records,).
+        swing: highest less lowest displacement of the road in each 30 s [m], (s,).
+        frequency, wheel: lines [Hz] and mean PSD of the vertical acceleration of the knuckle [(m/s2)2/Hz], (n,).
+    """
+
+    largest: Mapping[str, Vector]
+    seat_rail: Mapping[tuple[str, float], Vector]
+    apart: Mapping[tuple[str, float], Vector]
+    swing: Vector
+    frequency: Vector
+    wheel: Vector
+
+
+def ends_of(comfort: ComfortRuns, variation: Variation, base: Changes = ()) -> dict[float, Changes]:
+    """Cars at both ends of a variation, and the nominal one, by the value of the parameter.
+
+    Args:
+        comfort: what runs them.
+        variation: the parameter.
+        base: changes that all have.
+    """
+    cars = comfort.cars(variation, base)
+    kept = {variation.values[0], variation.values[-1]}
+    return {value: car for value, car in cars.items() if value in kept or car == base}
+
+
+def road_levels(comfort: ComfortRuns) -> dict[str, RoadLevels]:
+    """Histories of both roads, the lead left out."""
+    return {road: _levels_of(comfort, road) for road in ROAD_RMS}
+
+
+def _levels_of(comfort: ComfortRuns, road: str) -> RoadLevels:
+    record = slice(round(comfort.records.lead * RATE_HZ) + 1, None)
+    variations = {variation.name: ends_of(comfort, variation) for variation in SOURCE}
+    largest: dict[str, list[Vector]] = {}
+    sizes: dict[tuple[str, float], list[float]] = {}
+    apart: dict[tuple[str, float], list[float]] = {}
+    swings, spectra, frequency = [], [], np.empty(0)
+    for number in range(comfort.records.count):
+        cars = list(dict.fromkeys(car for ends in variations.values() for car in ends.values()))
+        rails = dict(zip(cars, comfort.histories(cars, road, record=number), strict=True))
+        nominal = rails[()][record]
+        for name, ends in variations.items():
+            together = [rails[car][record] for car in ends.values()]
+            for value, rail in zip(ends, together, strict=True):
+                sizes.setdefault((name, value), []).append(float(np.std(rail)))
+                apart.setdefault((name, value), []).append(float(np.std(rail - nominal)))
+            for figure, *_ in (one for one in LEVELS if one[1:3] == (name, road)):
+                found = [window_extremes(1.0 / RATE_HZ, rail, WINDOW_S) for rail in together]
+                largest.setdefault(figure, []).append(np.max(found, axis=0))
+        case = comfort.cases((), road)[number]
+        signal = signal_of(case.source)
+        ((wheel, plate),) = signal.displacement.items()
+        samples = min(round(SWING_S * RATE_HZ), plate[record].size)
+        swings.append(np.ptp(plate[record][: plate[record].size // samples * samples].reshape(-1, samples), axis=1))
+        channel = f"knuckle_{wheel}_acc_z"
+        (recording,) = recordings_of([case], [channel])
+        spectrum = power_spectral_density(1.0 / RATE_HZ, recording[channel][record], window_s=SPECTRUM_WINDOW_S)
+        frequency = spectrum.frequency
+        spectra.append(spectrum.density[0])
+    return RoadLevels(
+        largest={figure: np.concatenate(found) for figure, found in largest.items()},
+        seat_rail={key: np.array(found) for key, found in sizes.items()},
+        apart={key: np.array(found) for key, found in apart.items()},
+        swing=np.concatenate(swings),
+        frequency=frequency,
+        wheel=np.mean(spectra, axis=0),
+    )
+
+
+def level_claims(levels: Mapping[str, RoadLevels], trials: Mapping[str, Mapping[str, float]]) -> list[Claim]:
+    """Level of the seat rail on both roads, swing of the road.
+
+    Args:
+        levels: of both roads.
+        trials: label of a change to the mean of each figure with it, as evidence for the reason of a disagreement.
+    """
+    rows = []
+    for figure, name, road, *_ in LEVELS:
+        key, ours = f"level_{figure.replace('.', '_')}", levels[road].largest[figure]
+        row = f"largest |seat rail, vertical| in {WINDOW_S:g} s of all curves of figure {figure}, {road} road [m/s2]"
+        why = f"nominal car and both ends of {TITLES[name]}; the label is that of an axis that holds all curves"
+        claim = evidence_claim(key, row, ours, why, picture=f"{name}.png")
+        if not claim.within and trials:
+            means = {label: found[figure] for label, found in trials.items()}
+            why += f"; means of {reason(evidence_of(key).interval, means)}"
+            claim = evidence_claim(key, row, ours, why, picture=f"{name}.png")
+        rows.append(claim)
+    rough = levels["rough"].swing * SWING_RMS / ROAD_RMS["rough"]
+    smooth = 1e3 * np.median(levels["smooth"].swing)
+    rows.append(
+        evidence_claim(
+            "swing_2_6",
+            f"swing of a road over {SWING_S:g} s, figure 2.6 [m]",
+            rough,
+            f"stretches of the rough road, brought to the {1e3 * SWING_RMS:g} mm RMS of its caption; the smooth road "
+            f"of {1e3 * ROAD_RMS['smooth']:g} mm RMS swings by {smooth:.0f} mm and cannot be meant",
+        )
+    )
+    return rows
+
+
+def history_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
+    """Which car moves less, as the histories of figures 4.1 to 4.10 show it."""
+    friction, damping, stiffness = SOURCE
+    return [
+        _lower(levels, friction, "4.1", rising=True),
+        _lower(levels, stiffness, "4.9", rising=False),
+        _clearer(levels, friction, "4.2"),
+        _clearer(levels, stiffness, "4.10"),
+        _small(levels, damping, (friction, stiffness)),
+    ]
+
+
+def _lower(levels: Mapping[str, RoadLevels], variation: Variation, figure: str, *, rising: bool) -> Claim:
+    values = sorted(value for name, value in levels["smooth"].seat_rail if name == variation.name)
+    rows = np.array([levels["smooth"].seat_rail[variation.name, value] for value in values])
+    steps = np.diff(rows, axis=0)
+    return PREDICTED.statement(
+        f"accelerations of the seat rail against {TITLES[variation.name]}, smooth road",
+        "lower for a smaller value" if rising else "lower for a larger value",
+        ", ".join(f"{value:g}: {np.mean(row):.3f}" for value, row in zip(values, rows, strict=True)) + " m/s2",
+        bool(np.all(steps > 0.0) if rising else np.all(steps < 0.0)),
+        "RMS of the vertical acceleration alone, unfiltered; in every record",
+        place=f"figure {figure}",
+        picture=f"{variation.name}.png",
+    )
+
+
+def _share(level: RoadLevels, name: str) -> float:
+    """Largest RMS of the difference to the nominal car over the RMS of that, over the values of a parameter [-]."""
+    ratios = [np.mean(found) / np.mean(_nominal(level, name)) for (one, _), found in level.apart.items() if one == name]
+    return float(np.max(ratios))
+
+
+def _nominal(level: RoadLevels, name: str) -> Vector:
+    return next(level.seat_rail[key] for key, found in level.apart.items() if key[0] == name and not found.any())
+
+
+def _clearer(levels: Mapping[str, RoadLevels], variation: Variation, figure: str) -> Claim:
+    smooth, rough = (_share(levels[road], variation.name) for road in ("smooth", "rough"))
+    return PREDICTED.statement(
+        f"differences of the seat rail's histories with {TITLES[variation.name]}, rough road",
+        "cannot be observed that well as on the smooth road",
+        f"{100.0 * rough:.0f} % of the nominal motion, {100.0 * smooth:.0f} % on the smooth road",
+        rough < smooth,
+        "RMS of the largest difference to the nominal car over its RMS",
+        place=f"figure {figure}",
+        picture=f"{variation.name}.png",
+    )
+
+
+def _small(levels: Mapping[str, RoadLevels], variation: Variation, others: Sequence[Variation]) -> Claim:
+    found = {road: _share(level, variation.name) for road, level in levels.items()}
+    least = min(_share(level, other.name) for level in levels.values() for other in others)
+    texts = ", ".join(f"{100.0 * value:.0f} % of the nominal motion ({road})" for road, value in found.items())
+    return PREDICTED.statement(
+        f"differences of the seat rail's histories with {TITLES[variation.name]}",
+        "very small",
+        texts,
+        max(found.values()) < least,
+        f"RMS as above; smaller on both roads than every difference with Fd or mount stiffness (at least "
+        f"{100.0 * least:.0f} %)",
+        place="figures 4.5 and 4.6",
+        picture=f"{variation.name}.png",
+    )
+
+
+def wheel_modes(comfort: ComfortRuns) -> dict[float, float]:
+    """Vertical wheel mode of the matrices, dampers stuck [Hz], by the stiffness of the suspension mount [N/m]."""
+    lines, wheel = np.arange(10.0, 50.0, 0.02), comfort.runs.car().vehicle.shaker_wheel
+    return {
+        value: phase_resonance(
+            lines, comfort.runs.car(car).matrix_frf([f"knuckle_{wheel}_acc_z"], lines, wheel=wheel)[0]
+        )
+        for value, car in comfort.cars(MOUNT_STIFFNESS).items()
+    }
+
+
+def amplification_claim(nominal: Mapping[str, Point]) -> Claim:
+    """Comfort value over the RMS of the road, nominal car on both roads."""
+    found = {road: one.comfort / (1e3 * ROAD_RMS[road]) for road, one in nominal.items()}
+    return PREDICTED.statement(
+        "amplification from road to seat rail, smooth road against rough",
+        "higher for a low level than for a high one",
+        ", ".join(f"{road} {value:.4f} m/s2 per mm" for road, value in found.items()),
+        found["smooth"] > found["rough"],
+        "comfort value of the nominal car over the RMS of the road; one road at two levels",
+        place="chapter 4",
+    )
+
+
+def stiffness_claim(wheel_mode: Mapping[float, float]) -> Claim:
+    """Frequency of the vertical wheel mode, dampers stuck, against the stiffness of the suspension mount."""
+    values = sorted(wheel_mode)
+    return PREDICTED.statement(
+        "vertical wheel mode against mount stiffness",
+        "higher for a larger value",
+        ", ".join(f"{value:g} N/m: {wheel_mode[value]:.1f} Hz" for value in values),
+        bool(np.all(np.diff([wheel_mode[value] for value in values]) > 0.0)),
+        "matrices, dampers stuck: phase of the knuckle FRF through 90 degrees",
+        place="section 4.3",
+    )
+
+
+def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
+    """Statements about a car measured on roads that nobody describes, beside ours on the roads of chapter 4."""
+    peaks = {road: wheel_peak(level) for road, level in levels.items()}
+    sizes = {road: _rms(level) for road, level in levels.items()}
+    unknown = (
+        "neither the car nor its roads nor the speed are told; ours stands on one plate, and its road falls as 1/f2"
+    )
+    rows = [
+        NOT_TESTABLE.number(
+            f"peak of the wheel's vertical acceleration, measured on {kind} [Hz]",
+            printed,
+            peaks[road][0],
+            1.0,
+            f"{unknown} (the {road} road of chapter 4)",
+            place="figure 2.1",
+            picture="wheel.png",
+        )
+        for (kind, printed), road in zip(MEASURED_PEAKS.items(), ROAD_RMS, strict=True)
+    ]
+    (low, narrow), (high, wide) = peaks["smooth"], peaks["rough"]
+    rows.append(
+        PREDICTED.statement(
+            "peak of the wheel's vertical acceleration, rough road against smooth",
+            "lower and more damped",
+            f"{high:.1f} Hz, {wide:.1f} Hz wide at half its power against {low:.1f} Hz, {narrow:.1f} Hz wide",
+            high < low and wide / high > narrow / low,
+            "the trend of figure 2.1 and its reason, the friction of the damper, on the roads of chapter 4; more "
+            "damped: a larger width over frequency",
+            place="figure 2.1",
+            picture="wheel.png",
+        )
+    )
+    rows.append(
+        NOT_TESTABLE.statement(
+            "RMS of the knuckle on the measured roads fixes the level of ours",
+            "7.5 and 43 mm RMS give the measured values",
+            ", ".join(f"{road} {value:.1f} m/s2" for road, value in sizes.items()),
+            False,
+            "the measured values are not printed",
+            place="chapter 4",
+            picture="wheel.png",
+        )
+    )
+    return rows
+
+
+def wheel_peak(level: RoadLevels) -> tuple[float, float]:
+    """Frequency of the largest line of the wheel's PSD and its width at half the power [Hz]."""
+    inside = (level.frequency >= WHEEL_BAND[0]) & (level.frequency <= WHEEL_BAND[1])
+    frequency, density = level.frequency[inside], level.wheel[inside]
+    above = frequency[density >= 0.5 * np.max(density)]
+    return float(frequency[np.argmax(density)]), float(above[-1] - above[0])
+
+
+def _rms(level: RoadLevels) -> float:
+    return float(np.sqrt(np.sum(level.wheel) * level.frequency[1]))

@@ -1,0 +1,80 @@
+"""Rows whose published interval, place and status stand in `scenarios.evidence`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.claims import Claim, Interval, Source, interval_claim
+from scenarios.evidence import Evidence, evidence_of, status_of
+from scenarios.interval_probability import AGREES_ABOVE, interval_probability
+
+
+def evidence_claim(
+    key: str, name: str, ours: npt.ArrayLike, why: str, *, printed: float | None = None, picture: str = ""
+) -> Claim:
+    """Return the row of an evidence: it agrees where the probability of its interval is above 5 %.
+
+    The probability takes the scatter of ours over its seeds and the error that the evidence states.
+
+    Args:
+        key: of the evidence.
+        name: what is compared, with its unit.
+        ours: own value, or one for each seed, (n,); infinite where what is timed never happens.
+        why: reason of a disagreement, and how ours was found.
+        printed: the number itself where the source prints one, shown instead of the interval.
+        picture: file name of the figure of the study that shows the row.
+    """
+    evidence, values = evidence_of(key), np.atleast_1d(np.asarray(ours, dtype=float))
+    row = interval_claim(name, evidence.interval, float(np.mean(values)), why, status=status_of(key))
+    row = replace(row, place=evidence.place, picture=picture, source=_source(evidence, printed))
+    if printed is not None:
+        deviation = (float(np.mean(values)) - printed) / printed if printed else None
+        row = replace(row, published=printed, deviation=deviation)
+    if not np.all(np.isfinite(values)):
+        never = f"never in {np.sum(~np.isfinite(values))} of {values.size}"
+        return replace(row, ours=never, deviation=None, within=False)
+    if values.size > 1:
+        row = replace(row, ours=f"{np.mean(values):.4g} +- {np.std(values, ddof=1):.2g} ({values.size} values)")
+    elif not evidence.error:
+        return row
+    probability = interval_probability(values, evidence.interval, error=evidence.error)
+    rule = f"{100.0 * probability:.3g} % is the probability of {_words(evidence)}, needed {100.0 * AGREES_ABOVE:g} %"
+    return replace(row, within=probability > AGREES_ABOVE, probability=probability, why=f"{rule}; {why}")
+
+
+def reason(interval: Interval, trials: Mapping[str, float]) -> str:
+    """What experiments say about a row that disagrees: ours with each change, those that reach the interval first.
+
+    Args:
+        interval: the published one.
+        trials: label of a change of the model to ours with it.
+    """
+    low, high = interval
+    texts = {label: f"{label} {value:.3g}" for label, value in trials.items()}
+    inside = [texts[label] for label, value in trials.items() if low <= value <= high]
+    outside = [text for text in texts.values() if text not in inside]
+    if not inside:
+        return f"experiments: reached with none of the changes tried ({', '.join(outside)})"
+    rest = f"; not with {', '.join(outside)}" if outside else ""
+    return f"experiments: reached with {', '.join(inside)}{rest}"
+
+
+def _words(evidence: Evidence) -> str:
+    error = f" with a model error of {evidence.error:.3g} {evidence.unit}" if evidence.error else ""
+    unit = "" if evidence.unit == "-" else f" {evidence.unit}"
+    low, high = evidence.interval
+    words = (
+        f"at most {high:g}" if math.isinf(low) else f"at least {low:g}" if math.isinf(high) else f"{low:g} to {high:g}"
+    )
+    return f"{words}{unit}{error}"
+
+
+def _source(evidence: Evidence, printed: float | None) -> Source:
+    if evidence.place.startswith("table"):
+        return "table"
+    return "axis interval" if printed is None and evidence.place.startswith("figure") else "text"

@@ -1,0 +1,22 @@
+"""Place and picture of rows that share them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from scenarios.claims import Claim
+
+
+def placed(rows: Iterable[Claim], place: str, picture: str = "") -> list[Claim]:
+    """Give rows their place in the source and their picture, where they do not name their own.
+
+    Args:
+        rows: of one place.
+        place: figure, table or section of the source.
+        picture: file name of the figure of the study that shows them.
+
+    Returns:
+        The rows with both.
+    """
+    return [replace(row, place=row.place or place, picture=row.picture or picture) for row in rows]

@@ -1,0 +1,139 @@
+"""All published results beside ours: runs the studies, or reads finished ones, and writes one table and one page.
+
+python -m scenarios.published [--output DIR] [--quick] [--jobs N] [--reuse]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time as clock
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from scenarios.claims import headline
+from scenarios.published.page import page
+from scenarios.published.pictures import write_copy
+from scenarios.published.sources import SOURCES
+from scenarios.published.table import collect
+from scenarios.study import main_of
+from vehicle.commands.command_line import parse_and_run
+from vehicle.commands.destination import prepared_folder_of
+from vehicle.commands.options import jobs_option, message_options, output_options
+from vehicle.commands.parser import Parser
+from vehicle.errors import DataError, SimulationError
+from vehicle.output.folder import write_text
+
+HOME = Path("renders/published")
+"""The table and the pictures of the full studies are kept under version control."""
+
+PAGE = Path("docs/published-results.md")
+"""The page of the full studies."""
+
+QUICK_HOME = Path("runs/published/quick_table")
+
+CHOICE = "source_choice"
+"""Study whose notes are the last section of the page."""
+
+STUDIES = tuple(study for source in SOURCES for study in source.studies)
+
+
+def parser() -> Parser:
+    """Return the options of the command."""
+    result = Parser(
+        prog="python -m scenarios.published", description="Every published result of the three sources beside ours."
+    )
+    output_options(result, None, default=f"{HOME} with the page {PAGE}, or {QUICK_HOME} with --quick,")
+    result.add_argument(
+        "--runs", type=Path, default=Path("runs/published"), metavar="DIR", help="folder of the studies' own results"
+    )
+    result.add_argument("--reuse", action="store_true", help="read studies that are finished there, run the others")
+    result.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
+    jobs_option(result)
+    message_options(result)
+    return result
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return parse_and_run(parser(), _job, arguments)
+
+
+def _job(options: argparse.Namespace) -> None:
+    folder = prepared_folder_of(options, QUICK_HOME if options.quick else HOME)
+    started = clock.perf_counter()
+    results, seconds = {}, {}
+    for number, name in enumerate(STUDIES, start=1):
+        print(f"{number}/{len(STUDIES)} {name}", flush=True)
+        began = clock.perf_counter()
+        results[name] = study_results(name, options)
+        seconds[name] = clock.perf_counter() - began
+    rows = collect(results)
+    notes = results.get(CHOICE, {}).get("notes", [])
+    write_text(folder / "results.json", json.dumps({"rows": rows, "choice": notes}, indent=1, allow_nan=False) + "\n")
+    copied = copy_pictures(results, options.runs, folder / "figures")
+    left_open = [f"{name}: {row}" for name, content in results.items() for row in content.get("not_judged", {})]
+    file, link = (PAGE, f"../{HOME}/figures") if folder == HOME else (folder / PAGE.name, "figures")
+    write_text(file, page(rows, notes, link, copied, quick=options.quick, left_open=left_open))
+    times = ", ".join(f"{name} {value:.0f}" for name, value in seconds.items())
+    print(f"{folder}: {headline(rows)}; see {file}; {clock.perf_counter() - started:.0f} s ({times})")
+
+
+def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: Path) -> list[str]:
+    """Copy the pictures that rows name, smaller; report on standard error which ones are missing; remove old ones.
+
+    Args:
+        results: study to the content of its `results.json`.
+        runs: folder of the studies' own results.
+        folder: where the copies go.
+
+    Returns:
+        Names of the copies.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    copies = []
+    for study, content in results.items():
+        for name in dict.fromkeys(row["picture"] for row in content["rows"] if row["picture"]):
+            figure = runs / study / name
+            if figure.is_file():
+                write_copy(figure, folder / f"{study}_{name}")
+                copies.append(f"{study}_{name}")
+            else:
+                print(f"{figure}: picture of a row, but the study did not write it", file=sys.stderr)
+    for path in folder.glob("*.png"):
+        if path.name not in copies:
+            path.unlink()
+    return copies
+
+
+def study_results(name: str, options: argparse.Namespace) -> dict[str, Any]:
+    """Return the content of `results.json` of a study, run now unless a finished one may be read.
+
+    Args:
+        name: of the study.
+        options: as of `parser`.
+
+    Raises:
+        SimulationError: the study failed; its own message is printed above.
+        DataError: its file cannot be read.
+    """
+    folder = options.runs / name
+    path = folder / "results.json"
+    if not (options.reuse and path.exists()):
+        arguments = ["--output", str(folder), "--force", "--jobs", str(options.jobs)]
+        if options.quick:
+            arguments.append("--quick")
+        code = main_of(name)(arguments)
+        if code:
+            raise SimulationError(f"scenarios.{name}: ended with exit code {code}; its message is above")
+    try:
+        content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise DataError(f"{path}: cannot be read ({error}); run without --reuse") from None
+    return content
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,343 @@
+"""Joint choice of what Bommer 2006 does not print, on half of its statements; the other half is held out.
+
+python -m scenarios.source_choice [--output DIR] [--quick] [--jobs N]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
+from scenarios.evidence import EVIDENCE, HALF_SEED, USED
+from scenarios.interval_probability import AGREES_ABOVE
+from scenarios.source_choice.candidates import BRACKETS, DAMPING, IXX, PLATES, SLIP_VELOCITIES, TODAY, Rig, all_sides
+from scenarios.source_choice.figures import side_figure
+from scenarios.source_choice.likelihood import (
+    BARE_MENTION,
+    MISREADING,
+    NUMBERS,
+    Candidate,
+    agreement,
+    best,
+    jackknife,
+    probabilities,
+    shipped_numbers,
+    table,
+    values_of,
+)
+from scenarios.source_choice.runs import Plan, Readings, Vector, readings
+from scenarios.study import QUICK_NOTE, Study, study_parser
+from vehicle.sweeps.executors import process_pool
+
+EVERY = frozenset(row.key for row in EVIDENCE)
+HELD = EVERY - USED
+
+FULL = Plan()
+
+QUICK = Plan(seeds=2, shaker_edges=(2.5, 6.0), road_edges=(0.017, 0.029), shaker_s=8.0, road_s=8.0)
+
+BEFORE = {"velocity": 0.012, "shaker": 6.0, "road": 0.029}
+"""Slip velocity [m/s] and edges [Hz] that were fitted to the eight slip shares alone."""
+
+SHOWN = 10
+"""Rigs in the table of runners-up."""
+
+POINTS = 0.10
+"""Largest difference of the shares of rows that agree in both halves."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Judged:
+    """All candidates with one plan of inputs.
+
+    Attributes:
+        plan: the inputs.
+        found: rig with the roof point at -y to its readings, which hold both points.
+        used, held: rig to log-likelihoods of the half that chooses and of the other one, axes as `NUMBERS`.
+    """
+
+    plan: Plan
+    found: Mapping[Rig, Readings]
+    used: Mapping[Rig, Vector]
+    held: Mapping[Rig, Vector]
+
+    def of(self, one: Candidate) -> Readings:
+        """Readings of a candidate."""
+        return self.found[replace(one.rig, roof="-y")]
+
+    def numbers(self, one: Candidate) -> tuple[float, float, float, float]:
+        """Log-likelihoods of both halves, and the shares of their rows that agree."""
+        at = tuple(getattr(one, name) for name in NUMBERS)
+        given = probabilities(self.of(one), one, self.plan)
+        first, second = (float(half[one.rig][at]) for half in (self.used, self.held))
+        return first, second, agreement(given, sorted(USED)), agreement(given, sorted(HELD))
+
+
+def rigs(quick: bool) -> list[list[Rig]]:
+    """All sides with the body as designed, those with the plate on one side together; the roof point is in each."""
+    groups = [[rig for rig in all_sides(TODAY) if rig.plate == plate and rig.roof == "-y"] for plate in PLATES]
+    return [group[:1] for group in groups] if quick else groups
+
+
+def bodies(rig: Rig) -> list[Rig]:
+    """The same sides with the body's numbers changed one by one."""
+    same = replace(rig, roof="-y")
+    found = [replace(same, ixx=value) for value in IXX]
+    found += [replace(same, damping=value) for value in DAMPING] + [replace(same, brackets=name) for name in BRACKETS]
+    return [one for one in found if one != same]
+
+
+def judged(plan: Plan, groups: Sequence[Sequence[Rig]], folder: Path, jobs: int) -> Judged:
+    """Run rigs and judge all candidates with them.
+
+    Args:
+        plan: the inputs.
+        groups: rigs with the plate on one side, each.
+        folder: for the vehicle files.
+        jobs: worker processes.
+    """
+    folder.mkdir(exist_ok=True)
+    pool = process_pool(min(jobs, len(groups))) if jobs > 1 and len(groups) > 1 else ThreadPoolExecutor(1)
+    with pool as workers:
+        done = list(workers.map(readings, groups, [plan] * len(groups), [folder] * len(groups)))
+    found = {rig: one for group, some in zip(groups, done, strict=True) for rig, one in zip(group, some, strict=True)}
+    both = {replace(rig, roof=roof): one for rig, one in found.items() for roof in ("-y", "+y")}
+    used, held = ({rig: table(one, rig, plan, keys) for rig, one in both.items()} for keys in (USED, HELD))
+    return Judged(plan=plan, found=found, used=used, held=held)
+
+
+def joined(first: Judged, second: Judged) -> Judged:
+    """Candidates of two runs together."""
+    return Judged(
+        plan=first.plan,
+        found={**first.found, **second.found},
+        used={**first.used, **second.used},
+        held={**first.held, **second.held},
+    )
+
+
+def before(plan: Plan) -> Candidate:
+    """What was shipped before the choice."""
+    edges = {"shaker": plan.shaker_edges, "road": plan.road_edges}
+    return Candidate(
+        rig=TODAY,
+        velocity=SLIP_VELOCITIES.index(BEFORE["velocity"]),
+        noise=plan.shaker_edges.index(BEFORE["shaker"]),
+        level=0,
+        **{name: values.index(BEFORE[name]) for name, values in edges.items()},
+    )
+
+
+def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
+    """Judge all candidates, draw the likelihoods by side into the folder, and compare the winner with what was."""
+    plan = QUICK if options.quick else FULL
+    found = judged(plan, rigs(options.quick), folder / "cars", options.jobs)
+    if not options.quick:
+        more = bodies(best(found.used)[0][1].rig)
+        # Two halves: a worker for each.
+        found = joined(found, judged(plan, [more[::2], more[1::2]], folder / "cars", options.jobs))
+    ranking = best(found.used)
+    winner = chosen(ranking)
+    winner = shipped_numbers(found.of(winner), winner.rig, plan, found.used[winner.rig])
+    other = {name: best(half)[0] for name, half in (("held-out", found.held), ("all", _sum(found)))}
+    side_figure(folder / "sides.png", found.used, found.held, winner)
+    claims = [*half_claims(found, winner), *side_claims(winner, other)]
+    return Findings(
+        title="Joint choice of what Bommer 2006 does not print",
+        claims=claims,
+        unjudged={claim.name: "short records of two seeds cannot choose" for claim in claims} if options.quick else {},
+        notes=[
+            f"{'Most likely here' if options.quick else 'Winner'}: {winner.rig.sides()}; {winner.rig.body()}; "
+            f"{_words(winner, plan)}. {len(USED)} rows chose, "
+            f"{len(HELD)} are held out, drawn with seed {HALF_SEED}. Log-likelihood: sum over rows of weight times "
+            f"ln(m + (1 - m) P), m = {MISREADING:g} for a row that we misread, P the probability of the printed "
+            f"interval over {plan.seeds} seeds of each input; a row agrees above {100 * AGREES_ABOVE:g} %. "
+            f"Rigs within {BARE_MENTION:g} of the most likely are tied (odds of e to 1 are not worth more than a bare "
+            "mention: Kass and Raftery 1995); of these the one with the fewest changes is the winner. Its numbers are, "
+            f"of the sets within {BARE_MENTION:g} of its best ones, those with the median slip velocity, and of these "
+            "the one whose eight slip shares deviate least from the printed ones.",
+            side_table(found),
+            rank_table(found, ranking[:SHOWN], f"The {SHOWN} most likely rigs, each with its best numbers:"),
+            margin_table(found, ranking),
+            own_noise(found, ranking),
+            velocity_table(found, winner.rig),
+            rank_table(found, [other["held-out"], other["all"]], "Chosen on the held-out half, and on all rows:"),
+            row_table(found, before(plan), winner),
+            *([QUICK_NOTE] if options.quick else []),
+        ],
+        data={
+            "winner": {"sides": winner.rig.sides(), "body": winner.rig.body(), "numbers": winner.text(plan)},
+            "before": found.numbers(before(plan)),
+            "ranking": [(one.rig.sides(), one.rig.body(), one.text(plan), *found.numbers(one)) for _, one in ranking],
+        },
+    )
+
+
+def chosen(ranking: Sequence[tuple[float, Candidate]]) -> Candidate:
+    """The candidate to ship: of those that are not worth more than a bare mention apart, that with the fewest changes.
+
+    Args:
+        ranking: the best of every rig, the most likely first.
+
+    Source: Kass and Raftery, Bayes factors, J. Am. Stat. Assoc. 90 (1995), section 3.2.
+    """
+    tied = [one for value, one in ranking if value > ranking[0][0] - BARE_MENTION]
+    return min(
+        tied, key=lambda one: sum(ours != was for ours, was in zip(_fields(one.rig), _fields(TODAY), strict=True))
+    )
+
+
+def _fields(rig: Rig) -> tuple[object, ...]:
+    return tuple(asdict(rig).values())
+
+
+def _sum(found: Judged) -> dict[Rig, Vector]:
+    return {rig: found.used[rig] + found.held[rig] for rig in found.used}
+
+
+def _words(one: Candidate, plan: Plan) -> str:
+    velocity, shaker, noise, road, level = one.text(plan)
+    return (
+        f"slip above {velocity} mm/s, lower edges {shaker} Hz (shaker), {noise} Hz (noise of the bump), {road} Hz "
+        f"(road); noise {level}"
+    )
+
+
+def half_claims(found: Judged, winner: Candidate) -> list[Claim]:
+    """Whether the half that did not choose agrees as the other does."""
+    _, _, used, held = found.numbers(winner)
+    _, _, was_used, was_held = found.numbers(before(found.plan))
+    return [
+        OWN_CHECK.statement(
+            "rows that agree, held-out half against the half that chose",
+            f"within {100 * POINTS:g} points",
+            f"{100 * held:.0f} % against {100 * used:.0f} %",
+            abs(used - held) <= POINTS,
+            f"the car before, which neither half chose, has {100 * was_held:.0f} % and {100 * was_used:.0f} %: the "
+            f"draw made the halves unlike. The standard error of a difference of two such shares is "
+            f"{100 * np.sqrt(used * (1 - used) / len(USED) + held * (1 - held) / len(HELD)):.0f} points",
+        )
+    ]
+
+
+def side_claims(winner: Candidate, other: Mapping[str, tuple[float, Candidate]]) -> list[Claim]:
+    """Whether other rows choose the same side of the plate."""
+    return [
+        OWN_CHECK.statement(
+            f"side of the plate chosen on {name} rows",
+            f"plate {winner.rig.plate}",
+            f"plate {one.rig.plate}",
+            one.rig.plate == winner.rig.plate,
+            "the seat is at -y by definition",
+        )
+        for name, (_, one) in other.items()
+    ]
+
+
+def side_table(found: Judged) -> str:
+    """Best candidate of every combination of sides, with the body as designed."""
+    plain = {rig: one for rig, one in found.used.items() if rig.body() == TODAY.body()}
+    return rank_table(found, best(plain), "Evidence by side (seat at -y), body as designed, best numbers of each:")
+
+
+COLUMNS = (
+    *("sides", "body", "slip [mm/s]", "shaker [Hz]", "bump noise [Hz]", "road [Hz]", "noise, 1.5 mm bump"),
+    *("ln L, chose", "ln L, held out", "agree, chose", "agree, held out"),
+)
+
+
+def rank_table(found: Judged, ranking: Sequence[tuple[float, Candidate]], head: str) -> str:
+    """Candidates with their likelihoods as a table.
+
+    Args:
+        found: all of them.
+        ranking: those of the table.
+        head: what stands above it.
+    """
+    rows = []
+    for _, one in ranking:
+        used, held, *shares = found.numbers(one)
+        ends = (f"{used:.1f}", f"{held:.1f}", *(f"{100 * share:.0f} %" for share in shares))
+        rows.append((one.rig.sides(), one.rig.body(), *one.text(found.plan), *ends))
+    return f"{head}\n\n{markdown(COLUMNS, rows)}"
+
+
+def velocity_table(found: Judged, rig: Rig) -> str:
+    """Best edges at every slip velocity, and how much less likely they are.
+
+    Args:
+        found: all candidates.
+        rig: that of the winner.
+    """
+    rows, whole = [], found.used[rig]
+    for place, velocity in enumerate(SLIP_VELOCITIES):
+        only = np.full_like(whole, -np.inf)
+        only[place] = whole[place]
+        value, one = best({rig: only})[0]
+        _, shaker, _, road, level = one.text(found.plan)
+        rows.append((f"{1e3 * velocity:g}", shaker, road, level, f"{value:.2f}", f"{found.numbers(one)[1]:.2f}"))
+    columns = ("slip [mm/s]", "shaker [Hz]", "road [Hz]", "noise, 1.5 mm bump", "ln L, chose", "ln L, held out")
+    return f"Slip velocity and the edges that go with it, sides and body of the winner:\n\n{markdown(columns, rows)}"
+
+
+def margin_table(found: Judged, ranking: Sequence[tuple[float, Candidate]]) -> str:
+    """Differences to the most likely rig, with their standard errors over the seeds.
+
+    Args:
+        found: all of them.
+        ranking: the most likely first.
+    """
+    winner = ranking[0][1]
+    rows = []
+    for value, one in ranking[1:SHOWN]:
+        error = jackknife([(found.of(which), which) for which in (winner, one)], found.plan)
+        rows.append((one.rig.sides(), one.rig.body(), f"{ranking[0][0] - value:.2f} ± {error:.2f}"))
+    columns = ("sides", "body", "less likely by [ln], standard error over the seeds")
+    return f"Differences to the most likely rig:\n\n{markdown(columns, rows)}"
+
+
+def own_noise(found: Judged, ranking: Sequence[tuple[float, Candidate]]) -> str:
+    """What an edge of its own for the noise of the bump would gain."""
+    value, one = best(found.used, own_noise=True)[0]
+    cost = 0.5 * np.log(len(USED))
+    return (
+        f"One shaker makes the random inputs and the noise of the bump, so both have one edge. Two edges would gain "
+        f"{value - ranking[0][0]:.2f} ({_words(one, found.plan)}); a further number has to gain more than "
+        f"1/2 ln {len(USED)} = {cost:.2f} (Schwarz, Annals of Statistics 6, 1978)."
+    )
+
+
+def row_table(found: Judged, was: Candidate, winner: Candidate) -> str:
+    """Every row of the evidence: printed, before and now, with probabilities."""
+    values = [values_of(found.of(one), one, found.plan) for one in (was, winner)]
+    given = [probabilities(found.of(one), one, found.plan) for one in (was, winner)]
+    rows = []
+    for row in EVIDENCE:
+        low, high = (f"{end:g}" if np.isfinite(end) else "" for end in row.interval)
+        cells = []
+        for ours, chance in zip(values, given, strict=True):
+            cells += [f"{np.mean(ours[row.key]):.3g}", f"{chance[row.key]:.3f}"]
+        first, second = (one[row.key] for one in given)
+        change = "worse" if second < first - 0.1 else "better" if second > first + 0.1 else ""
+        half = "chose" if row.key in USED else "held out"
+        rows.append((row.name, row.place, half, f"{low} to {high} {row.unit}", *cells, change))
+    columns = ("row", "place", "half", "printed", "before", "P", "now", "P", "")
+    return f"All rows, before and now (P above {AGREES_ABOVE:g} agrees):\n\n{markdown(columns, rows)}"
+
+
+main = Study(
+    parser=study_parser("source_choice", quick="two rigs, short records", jobs="; one for each group of rigs"),
+    load=lambda _: None,
+    study=study,
+)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

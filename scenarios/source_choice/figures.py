@@ -1,0 +1,49 @@
+"""Picture of the joint choice: log-likelihoods of both halves by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from scenarios.charts import figure_file
+from scenarios.source_choice.candidates import Rig
+from scenarios.source_choice.likelihood import Candidate, best
+from vehicle.rendering.figure import COLOURS
+
+Vector = npt.NDArray[np.float64]
+
+
+def side_figure(path: Path, used: Mapping[Rig, Vector], held: Mapping[Rig, Vector], winner: Candidate) -> None:
+    """Write the best log-likelihood of every combination of sides, and that of the half held out beside it.
+
+    Args:
+        path: PNG file.
+        used, held: rig to log-likelihoods of the half that chose and of the other one.
+        winner: its body is that of all rigs shown.
+    """
+    body = (winner.rig.ixx, winner.rig.damping, winner.rig.brackets)
+    shown = best({rig: one for rig, one in used.items() if (rig.ixx, rig.damping, rig.brackets) == body})[::-1]
+    outside = [float(held[one.rig][tuple(_numbers(one))]) for _, one in shown]
+    caption = (
+        "Sum over rows of weight times ln of the probability of the printed interval, each combination of sides with "
+        f"its own best slip velocity, band edges and noise; seat at -y, {winner.rig.body()}. The held-out half chose "
+        "nothing; its sum has other rows, so only differences within a colour say something"
+    )
+    with figure_file(path, (10.5, 1.6 + 0.36 * len(shown)), "Evidence by side", caption) as figure:
+        axis = figure.subplots()
+        place = np.arange(len(shown))
+        for shift, label, values, colour in (
+            (0.2, "half that chose", [value for value, _ in shown], COLOURS[0]),
+            (-0.2, "half held out", outside, COLOURS[3]),
+        ):
+            axis.barh(place + shift, values, 0.38, label=label, color=colour)
+        axis.set_yticks(place, [one.rig.sides() for _, one in shown], fontsize=8)
+        axis.set_xlabel("log-likelihood")
+        axis.legend(loc="lower left")
+
+
+def _numbers(one: Candidate) -> tuple[int, ...]:
+    return one.velocity, one.shaker, one.noise, one.level, one.road

@@ -1,0 +1,102 @@
+"""Numbers that README.md and the page quote from the table of published results are those of the table."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scenarios.published.__main__ import HOME, PAGE
+from scenarios.published.page import page
+from vehicle.excitation.slip_set import CHOSEN
+
+ROOT = Path(__file__).parents[2]
+
+TABLE: dict[str, Any] = json.loads((ROOT / HOME / "results.json").read_text(encoding="utf-8"))
+
+ROWS: list[dict[str, Any]] = TABLE["rows"]
+
+README = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+
+
+def named(pattern: str) -> dict[str, Any]:
+    """The only row of the table whose "study: name" matches a pattern."""
+    (row,) = [row for row in ROWS if fnmatchcase(row["name"], pattern)]
+    return row
+
+
+def ours(pattern: str) -> list[float]:
+    """All numbers of our side of a row, the mean first where there are several values."""
+    return [float(text) for text in re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", str(named(pattern)["ours"]))]
+
+
+def predicted() -> list[str]:
+    verdicts = [row["within"] for row in ROWS if row["status"] == "predicted"]
+    return [f"{sum(verdicts)}", f"{len(verdicts)}"]
+
+
+def number_of(status: str) -> list[str]:
+    return [f"{sum(row['status'] == status for row in ROWS)}"]
+
+
+def shares(wheel: str) -> list[str]:
+    patterns = [f"levels: slip share of the {wheel} damper, {level} *" for level in ("low", "mid", "high")]
+    published = [f"{float(named(pattern)['published']):g}" for pattern in patterns]
+    return [*published, *(f"{ours(pattern)[0]:.1f}" for pattern in patterns)]
+
+
+def first(pattern: str, digits: int) -> list[str]:
+    return [f"{ours(pattern)[0]:.{digits}f}"]
+
+
+N = r"(-?[\d.]+)"
+
+QUOTES: dict[str, Callable[[], list[str]]] = {
+    rf"{N} of {N} predicted rows agree": predicted,
+    rf"in addition {N} rows are fitted": lambda: number_of("fitted"),
+    rf"rows are fitted, {N} chosen": lambda: number_of("chosen"),
+    rf"slip share[^|]*, right damper[^|]*\| {N} / {N} / {N} % \| {N} / {N} / {N} % \|": lambda: shares("right"),
+    rf"slip share[^|]*, left damper[^|]*\| {N} / {N} / {N} % \| {N} / {N} / {N} % \|": lambda: shares("left"),
+    rf"above {N} mm/s; the share above 1 mm/s": lambda: [f"{1e3 * CHOSEN.slip_velocity:g}"],
+    rf"constant velocity PSD from {N} Hz": lambda: [f"{CHOSEN.shaker_edge_hz:g}"],
+    rf"to 50 Hz, roads from {N} Hz": lambda: [f"{CHOSEN.road_edge_hz:g}"],
+    rf"vertical wheel mode[^|]*\| 28 Hz \| {N} Hz": lambda: first("levels: vertical wheel mode, low *", 1),
+    rf"body roll, Ixx 1000[^|]*\| 6.5 Hz \| {N} Hz": lambda: first("inertia: roll peak*, Ixx 1000 [[]Hz]", 2),
+    rf"body roll, Ixx 1200[^|]*\| [^|]*\| {N} Hz, {N} % lower": lambda: [
+        f"{value:g}" for value in ours("inertia: roll peak*, Ixx 1200 against 1000")
+    ],
+    rf"first slip \(end of sticking[^|]*\| 5.035 s \| {N} s": lambda: first("bump: *end of stick* with Fd 125 N*", 3),
+}
+"""What README.md says, and the numbers of the table, or of the chosen set, that belong there."""
+
+
+@pytest.mark.parametrize("sentence", QUOTES)
+def test_a_number_of_the_readme_is_that_of_the_table(sentence):
+    found = re.search(sentence, README)
+    assert found, f"README.md has no sentence like {sentence}; change QUOTES with it"
+    assert list(found.groups()) == QUOTES[sentence]()
+
+
+def test_the_page_is_that_of_the_table():
+    figures = ROOT / HOME / "figures"
+    written = (ROOT / PAGE).read_text(encoding="utf-8")
+    assert written == page(ROWS, TABLE["choice"], f"../{HOME}/figures", [path.name for path in figures.glob("*.png")])
+
+
+def test_every_link_of_the_page_has_its_target():
+    text = (ROOT / PAGE).read_text(encoding="utf-8")
+    assert set(re.findall(r"\]\(#([^)]*)\)", text)) <= set(re.findall(r'<a id="([^"]*)"></a>', text))
+    pictures = re.findall(r"!\[[^]]*\]\(([^)]*)\)", text)
+    assert all((ROOT / PAGE).parent.joinpath(picture).is_file() for picture in pictures)
+
+
+def test_kept_pictures_are_small_and_all_are_on_the_page():
+    text = (ROOT / PAGE).read_text(encoding="utf-8")
+    for picture in (ROOT / HOME / "figures").glob("*.png"):
+        assert picture.stat().st_size <= 120_000, picture.name
+        assert f"figures/{picture.name})" in text, picture.name

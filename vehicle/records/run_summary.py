@@ -1,0 +1,16 @@
+"""The summary beside the time histories of a run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+
+def run_summary(folder: Path) -> dict[str, Any]:
+    """Return the content of `summary.json` in the folder of a run; empty where there is none that can be read."""
+    try:
+        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
