@@ -42,10 +42,8 @@ def axis_claims(
         for frequency, magnitude in zip(found.frequency, row, strict=True)
         if np.isfinite(magnitude)
     ]
-    below, above = (
-        100.0 * float(np.mean([outside(value) for value, _ in lines]))
-        for outside in (lambda value: value < FRF_AXIS[0], lambda value: value > FRF_AXIS[1])
-    )
+    sizes = np.array([value for value, _ in lines])
+    below, above = (100.0 * float(np.mean(outside)) for outside in (sizes < FRF_AXIS[0], sizes > FRF_AXIS[1]))
     reasons = {"largest": f"{above:.1f} % of all lines above the axis", "smallest": f"{below:.1f} % below it"}
     if rigid is not None:
         low = [f"{one} {value:.1f}" for one, value in zip(names, rigid, strict=True) if value < FRF_AXIS[0]]

@@ -57,7 +57,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     smallest = [moment_about_cog(car) for car in cars]
     seen = roll_claims(peaks, frequencies, smallest, between)
     return Findings(
-        title="Moment of inertia Ixx of the body (Bommer 2006, sections 3.2.1 and 3.4)",
+        title="Moment of inertia Ixx of the body (source 1, sections 3.2.1 and 3.4)",
         claims=[*mode_claims(cars), *seen],
         unjudged={claim.name: TOO_SHORT for claim in seen} if options.quick else {},
         notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, found[0], options.quick)],
@@ -126,7 +126,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             published,
             ROUND * ROLL,
             "dampers stuck; 5 %. The source shows roll as a peak of its FRFs: that row is below",
-            place="section 3.2.1",
+            place="section 3.2.1.1",
         ),
         Kind(status_of("rigid_modes"), "text").statement(
             "six rigid body modes",
@@ -134,7 +134,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             f"{len(rigid)}: {_list(rigid)} Hz",
             len(rigid) == 6 and max(rigid) < 10.0,
             "modes with the largest share of energy in the body, dampers stuck, Ixx 1000",
-            place="section 3.2.1",
+            place="table 3.1",
         ),
         FITTED.statement(
             "engine modes",
@@ -143,7 +143,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             len(engine) == 6 and min(engine) >= lowest and max(engine) <= highest,
             "modes with the largest share of energy in the engine, dampers stuck; 5 % beyond the round limits. The "
             "engine brackets were fitted to it",
-            place="section 3.2.1",
+            place="section 3.2.1.3",
         ),
         TABLE.number(
             "hydromount, loss angle at 7 Hz [deg]",
@@ -206,7 +206,7 @@ def roll_claims(
             f"{improved:.2f} Hz, {100 * (1 - improved / published):.0f} % lower",
             improved < LARGEST_SHARE * published,
             f"the matrices have it at {matrices} Hz: {roll_text(moments)}",
-            place="section 3.4, figure 3.37",
+            place="figure 3.37",
             picture="seat_rail.png",
         ),
         INFERRED.statement(
@@ -216,7 +216,7 @@ def roll_claims(
             off[1] < off[0],
             f"the source only says that the fit will improve, and that the decrease is larger than the 10 % it wanted; "
             f"{roll_text(moments)}{f'; experiment, matrices: Ixx {trials}' if trials else ''}",
-            place="section 3.4",
+            place="figure 3.37",
             picture="seat_rail.png",
         ),
     ]
