@@ -239,7 +239,7 @@ OUTPUTS = {
     "seat_acc_z": ("seat_z", "Seat, vertical (figures 3.4, 3.23, 3.24)"),
     "knuckle_{wheel}_acc_z": ("knuckle_z", "Right knuckle, vertical (figures 3.5, 3.25, 3.26, 3.29, 3.30)"),
     "engine_acc_z": ("engine_z", "Engine, vertical (figures 3.7, 3.31, 3.32)"),
-    "roof_left_rear_acc_z": ("roof_left_rear_z", "Roof left rear, vertical (figures 3.8, 3.33, 3.34)"),
+    "roof_right_rear_acc_z": ("roof_rear_z", "Roof rear, driver's right, vertical (figures 3.8, 3.33, 3.34)"),
     "body_front_acc_z": ("body_front_z", "Body front, vertical (figure 3.9)"),
     "seat_rail_acc_x": ("seat_rail_x", "Seat rail, longitudinal (figures 3.11, 3.35)"),
     "seat_rail_acc_y": ("seat_rail_y", "Seat rail, lateral (figures 3.10, 3.36)"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -80,39 +80,51 @@ Reader = Callable[[Readings, Candidate, Plan], Vector]
 def _readers() -> Iterator[tuple[str, Reader]]:
     for place, level in enumerate(LEVEL_NAMES):
         for side, word in enumerate(("right", "left")):
-            yield f"slip_{word}_{level}", lambda r, c, _, p=place, s=side: 100 * r.shaker[c.shaker, p, :, s, c.velocity]
+            yield f"slip_{word}_{level}", partial(_shaker_share, place, side)
     for place, name in enumerate(ROAD_RMS):
-        yield f"slip_{name}", lambda r, c, _, p=place: 100 * r.road[c.road, p, :, c.velocity]
-    yield "bump_7p5_end_of_stick", lambda r, c, _: np.minimum(r.stick_end[c.noise], 6.0)
-    yield (
-        "bump_1p5_no_slip",
-        lambda r, c, _: r.fastest[c.noise, :, _bump("1p5", c)] / SLIP_VELOCITIES[c.velocity],
-    )
+        yield f"slip_{name}", partial(_road_share, place)
+    yield "bump_7p5_end_of_stick", lambda found, one, _: np.minimum(found.stick_end[one.noise], 6.0)
+    yield "bump_1p5_no_slip", _fastest
     for size in ("7p5", "1p5"):
-        for point in (
-            "seat_rail_x",
-            "seat_rail_y",
-            "seat_rail_z",
-            "seat_z",
-            "knuckle_z",
-            "relative",
-            "engine_z",
-            "roof_z",
-        ):
+        for point in (*(name for name in POINTS if not name.startswith("roof")), "roof_z"):
             for end, word in enumerate(("lowest", "highest")):
-                yield (
-                    f"bump_{size}_{point}_{word}",
-                    lambda r, c, _, s=size, p=point, e=end: r.extremes[c.noise, :, _bump(s, c), _point(p, c), e],
-                )
+                yield f"bump_{size}_{point}_{word}", partial(_extreme, size, point, end)
     keys = [row.key for row in EVIDENCE if row.topic == "comfort"]
     for key, (name, _, kind, _, value, _) in zip(keys, COMFORT_ENDS, strict=True):
-        at = (list(ROAD_RMS).index(kind), ENDS.index((name, value)))
-        yield key, lambda r, c, _, a=at: 100 * r.comfort[c.road, a[0], :, a[1]]
+        yield key, partial(_comfort, list(ROAD_RMS).index(kind), ENDS.index((name, value)))
     for place, (figure, *_) in enumerate(LEVELS):
-        yield f"level_{figure.replace('.', '_')}", lambda r, c, _, p=place: r.levels[c.road, p]
-    yield "swing_2_6", lambda _, c, plan: _swings(plan, c.road)
+        yield f"level_{figure.replace('.', '_')}", partial(_level, place)
+    yield "swing_2_6", lambda _, one, plan: _swings(plan, one.road)
     for place, name in enumerate(MODES):
-        yield name, lambda r, *_, p=place: r.modes[p : p + 1]
+        yield name, partial(_mode, place)
+
+
+def _shaker_share(level: int, side: int, found: Readings, one: Candidate, _: Plan) -> Vector:
+    return np.asarray(100.0 * found.shaker[one.shaker, level, :, side, one.velocity])
+
+
+def _road_share(road: int, found: Readings, one: Candidate, _: Plan) -> Vector:
+    return np.asarray(100.0 * found.road[one.road, road, :, one.velocity])
+
+
+def _fastest(found: Readings, one: Candidate, _: Plan) -> Vector:
+    return np.asarray(found.fastest[one.noise, :, _bump("1p5", one)] / SLIP_VELOCITIES[one.velocity])
+
+
+def _extreme(size: str, point: str, end: int, found: Readings, one: Candidate, _: Plan) -> Vector:
+    return np.asarray(found.extremes[one.noise, :, _bump(size, one), _point(point, one), end])
+
+
+def _comfort(road: int, end: int, found: Readings, one: Candidate, _: Plan) -> Vector:
+    return np.asarray(100.0 * found.comfort[one.road, road, :, end])
+
+
+def _level(figure: int, found: Readings, one: Candidate, _: Plan) -> Vector:
+    return np.asarray(found.levels[one.road, figure])
+
+
+def _mode(place: int, found: Readings, one: Candidate, _: Plan) -> Vector:
+    return found.modes[place : place + 1]
 
 
 @lru_cache(maxsize=32)
@@ -200,6 +212,41 @@ def best(tables: Mapping[Rig, Vector], *, own_noise: bool = False) -> list[tuple
         numbers = dict(zip(NUMBERS, (int(place) for place in at), strict=True))
         found.append((float(one[at]), Candidate(rig=rig, **numbers)))
     return sorted(found, key=lambda pair: -pair[0])
+
+
+BARE_MENTION = 1.0
+"""Difference of log-likelihoods that is not worth more than a bare mention: Kass and Raftery, Bayes factors, J. Am.
+Stat. Assoc. 90 (1995), section 3.2."""
+
+PRINTED_SHARES = {"slip_right_low": 0.0, "slip_right_mid": 3.9, "slip_right_high": 21.8, "slip_left_low": 0.0,
+                  "slip_left_mid": 0.0, "slip_left_high": 0.0, "slip_smooth": 31.3, "slip_rough": 79.4}  # fmt: skip
+"""Slip shares [%] of table 3.2, section 3.3.1 and chapter 4."""
+
+
+def shipped_numbers(found: Readings, rig: Rig, plan: Plan, whole: Vector) -> Candidate:
+    """The numbers of a rig to ship among those that are tied with its best ones.
+
+    Slip velocity and edges are tied along a line. Of the tied sets those with the median slip velocity are taken, and
+    of these that whose eight slip shares deviate least (RMS) from the printed ones.
+
+    Args:
+        found: what was read off the runs of the rig.
+        rig: its sides and body.
+        plan: the inputs.
+        whole: its log-likelihoods, axes as `NUMBERS`.
+    """
+    tied = np.eye(whole.shape[1], dtype=bool)[None, :, :, None, None] & (
+        whole > best({rig: whole})[0][0] - BARE_MENTION
+    )
+    places = np.argwhere(tied)
+    velocity = sorted(set(places[:, 0]))[(len(set(places[:, 0])) - 1) // 2]
+    sets = [Candidate(rig=rig, **dict(zip(NUMBERS, map(int, at), strict=True))) for at in places if at[0] == velocity]
+
+    def deviation(one: Candidate) -> float:
+        values = values_of(found, one, plan)
+        return float(np.sqrt(np.mean([(np.mean(values[key]) - share) ** 2 for key, share in PRINTED_SHARES.items()])))
+
+    return min(sets, key=deviation)
 
 
 def probabilities(found: Readings, one: Candidate, plan: Plan) -> dict[str, float]:

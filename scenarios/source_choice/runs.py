@@ -221,7 +221,7 @@ def _above(velocity: Vector) -> Vector:
     """Share of the samples above each slip velocity, (..., velocities)."""
     speed = np.sort(np.abs(velocity), axis=-1)
     below = [np.searchsorted(row, SLIP_VELOCITIES, side="right") for row in speed.reshape(-1, speed.shape[-1])]
-    return 1.0 - np.array(below).reshape(*speed.shape[:-1], -1) / speed.shape[-1]
+    return np.asarray(1.0 - np.array(below).reshape(*speed.shape[:-1], -1) / speed.shape[-1])
 
 
 def _shares(cars: Sequence[Car], signal: Signal, wheel: str) -> Vector:
@@ -315,14 +315,14 @@ def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[V
                 largest[i, seed, cut] = np.max(vertical.reshape(len(kept), -1, WINDOW), axis=2)
                 shares[i, seed, cut] = _above(found[speed][:, record])
     number = len(every) // count
-    comfort = comfort.reshape(*shape[:2], number, count)
+    by_car = comfort.reshape(*shape[:2], number, count)
     largest = largest.reshape(*shape[:2], number, count, -1)
     figures = []
     for _, name, kind, _, _ in LEVELS:
         members = [0, *(1 + n for n, (parameter, _) in enumerate(ENDS) if parameter == name)]
         one = np.max(largest[list(ROAD_RMS).index(kind)][:, :, members], axis=2)
         figures.append(np.swapaxes(one, 0, 1).reshape(number, -1))
-    ratios = comfort[..., 1:] / comfort[..., :1]
+    ratios = by_car[..., 1:] / by_car[..., :1]
     return ratios, shares.reshape(*shape[:2], number, count, -1)[..., 0, :], np.array(figures)
 
 

@@ -21,7 +21,8 @@ def measured(car, high_piece, tmp_path_factory):
     time = np.arange(int(4.0 * 1600) + 1) / 1600
     path = tmp_path_factory.mktemp("drive") / "logger.csv"
     values = np.interp(time, run.time, run[CHANNEL])
-    write_table(path, ["time [s]", "Dof 12 +Z [g]", "Dof 13 +Z [g]"], [time + 3.0, values / 9.80665, 0.0 * values], [])
+    heads = ["time [s]", "Dof 12 +Z [g]", "Dof 13 +Z [g]", "Dof 14 +Z [g]"]
+    write_table(path, heads, [time + 3.0, values / 9.80665, 0.0 * values, 5.0 * values / 9.80665], [])
     return path
 
 
@@ -53,7 +54,7 @@ BAD = {
     ),
     "a sensor that is dead": (["--channel", f"{CHANNEL}=2"], 3, "needed is at least 1e-06 m/s2"),
     "unit": (["--channel", f"{CHANNEL}=1", "--unit", "kg"], 2, "--unit kg: not known"),
-    "beyond a shaker": (["--channel", "seat_rail_acc_x=1", "--wheel", "front_right"], 4, "would have to be"),
+    "beyond a shaker": (["--channel", "seat_rail_acc_x=3", "--wheel", "front_right"], 4, "would have to be"),
 }  # fmt: skip
 
 

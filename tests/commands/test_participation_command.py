@@ -38,7 +38,7 @@ def test_tables_and_files_say_the_same(tmp_path, capsys):
     assert "give --force to replace it" in capsys.readouterr().err
     assert main([*command[:5]]) == 0
     printed = capsys.readouterr().out
-    assert "+120.4 %      595.5    -8 deg  mode 2 (torsion), 25.48 Hz" in printed
+    assert "+120.5 %      595.4    -8 deg  mode 2 (torsion), 25.48 Hz" in printed
     assert (
         "what drives mode 2 (torsion), 25.48 Hz: share of the force on the mode\n  +73.0 %  suspension_mou" in printed
     )

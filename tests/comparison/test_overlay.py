@@ -73,6 +73,8 @@ def run(tmp_path_factory, measured):
     arguments = [
         "--input",
         str(folder / "short.csv"),
+        "--wheel",
+        "front_right",
         "--engine",
         "reduced",
         "--output",

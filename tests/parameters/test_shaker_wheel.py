@@ -1,5 +1,7 @@
 """The wheel that a shaker drives: a key of the vehicle file."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,7 @@ def test_the_source_s_right_wheel_is_the_driver_s_left():
 
 
 def test_the_key_has_a_default_and_is_checked():
-    vehicle = load_vehicle("focus_road")
+    vehicle = load_vehicle(Path("focus_road"))
     assert vehicle.shaker_wheel == "fr" and vehicle.wheel_text("rr") == "rear right wheel (rr)"
     with pytest.raises(ConfigurationError, match=r"rr \(rear_right\): focus does not have it"):
         load_vehicle(None, ["shaker_wheel=rr"])

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import re
 import subprocess
 from types import SimpleNamespace
 
@@ -45,12 +46,13 @@ def test_first_slips_and_what_is_not_judged(results):
     # Two seeds: the probability is that of Student's t with one degree of freedom.
     assert rows[FIRST_SLIP]["ours"].endswith("(2 values)") and 0.05 < rows[FIRST_SLIP]["probability"] < 1.0
     slip, end = (content[key]["125 N"] for key in ("first_slip_s", "first_saturated_s"))
-    assert slip > end
+    assert slip > end + 0.001
     ends = sum(2 * len(panels) for panels in PANELS.values())
     assert len(content["not_judged"]) == ends + 5
     assert len(content["extremes_over_seeds"]["bump_1p5_seat_rail_x_highest"]) == 2
     # The literal reading is twice as high, so it slips sooner; the source says later.
-    assert "(literal): first slip 5.0" in (results / "results.md").read_text(encoding="utf-8")
+    literal = re.search(r"\(literal\): first slip (5\.\d+) s", (results / "results.md").read_text(encoding="utf-8"))
+    assert literal is not None and 5.0 < float(literal[1]) < slip - 0.005
     names = {path.name for path in results.glob("*.png")}
     assert {"histories_vertical.png", "histories_horizontal.png", "friction.png", "ring_down.png"} < names
 

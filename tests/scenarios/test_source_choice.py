@@ -17,6 +17,7 @@ from scenarios.source_choice.likelihood import (
     jackknife,
     log_likelihood,
     probabilities,
+    shipped_numbers,
     table,
     values_of,
 )
@@ -94,6 +95,19 @@ def test_the_table_is_the_sum_over_the_rows_of_each_candidate():
     given = probabilities(found, one, PLAN)
     assert 0.0 <= agreement(given, sorted(USED)) <= 1.0
     assert jackknife([(found, one), (found, one)], PLAN) == 0.0
+
+
+def test_tied_numbers_take_the_median_velocity_and_the_printed_shares():
+    found, rig = made(np.random.default_rng(4)), Rig()
+    whole = np.full(table(found, rig, PLAN).shape, -50.0)
+    for velocity, shaker in ((3, 0), (4, 0), (4, 1), (9, 1)):
+        whole[velocity, shaker, shaker, 0, 1] = -19.5
+    whole[12, 0, 1, 0, 1] = -10.0  # an edge of its own for the noise: not of one shaker
+    # With the second edge the share of the high level is the printed one.
+    found.shaker[1, 2, :, 0, 4], found.shaker[0, 2, :, 0, 4] = 0.218, 0.5
+    found.shaker[:, 0], found.shaker[:, 1], found.shaker[:, 2, :, 1] = 0.0, 0.0, 0.0
+    taken = shipped_numbers(found, rig, PLAN, whole)
+    assert (taken.velocity, taken.shaker, taken.noise, taken.road) == (4, 1, 1, 1)
 
 
 def test_ties_keep_what_was_and_evidence_does_not():

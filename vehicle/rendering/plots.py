@@ -83,7 +83,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
     with saved_figure(
         path,
         (13.0, 8.6),
-        title or f"FRFs to the plate under the {run.car.vehicle.wheel_text(wheel)}",
+        title or f"FRFs to the plate under the {run.car.model.vehicle.wheel_text(wheel)}",
         f"{caption}; {FADED}",
         placed=True,
     ) as figure:

@@ -225,7 +225,7 @@ class Shot:
             road[0] += "roll" if run.car.model.vehicle.driving.rolling else "stand"
             exaggerated = "motion and road"
         return [
-            f"{Path(run.signal.source).name}: {level} under the {run.car.vehicle.wheel_text(run.wheel)}",
+            f"{Path(run.signal.source).name}: {level} under the {run.car.model.vehicle.wheel_text(run.wheel)}",
             f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s",
