@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scenarios.tuning.data import CHANNELS, Measurement
+from scenarios.tuning.data import CHANNELS, Measurement, driven_channels
 from vehicle.car import Car
 from vehicle.commands.compare import clock_of, measured_choice
 from vehicle.errors import ConfigurationError, DataError
@@ -68,8 +68,8 @@ def _read(options: argparse.Namespace, car: Car, file: Path) -> Measured:
     return read_measured(file, known, measured_choice(options), turned=options.turned, window=options.window)
 
 
-def _signal(name: str) -> Signal:
-    return read_signal(find_input(name if "." in name else f"{name}.csv"))
+def _signal(car: Car, name: str) -> Signal:
+    return read_signal(find_input(name if "." in name else f"{name}.csv"), wheel=car.vehicle.shaker_wheel)
 
 
 def _responses(options: argparse.Namespace, car: Car, file: Path, level: str, band: tuple[float, float]) -> Measurement:
@@ -81,18 +81,26 @@ def _responses(options: argparse.Namespace, car: Car, file: Path, level: str, ba
             f"{file}: holds no FRFs, and no plate beside accelerations to estimate them from; for time histories give "
             "--record FILE --signal FILE"
         )
-    asked = tuple(options.channel) or (found.channels if options.mapping else CHANNELS)
+    asked = tuple(options.channel) or (
+        found.channels if options.mapping else driven_channels(CHANNELS, car.vehicle.shaker_wheel)
+    )
     data = found.select(asked, band=band, spacing=options.spacing)
     untold = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(untold, 1.0, data.coherence)
-    signal = _signal(level)
-    target = FrfTarget(name=file.stem, data=data, signal=None if level == STUCK else signal, window=options.window)
+    signal = _signal(car, level)
+    target = FrfTarget(
+        name=file.stem,
+        data=data,
+        signal=None if level == STUCK else signal,
+        wheel=car.vehicle.shaker_wheel,
+        window=options.window,
+    )
     return Measurement(target=target, signal=signal, notices=_notices(file, measured, []))
 
 
 def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Measurement:
     """Time histories of one signal at the times of a run; what counts is what both have."""
-    measured, signal = _read(options, car, file), _signal(name)
+    measured, signal = _read(options, car, file), _signal(car, name)
     held = None if measured.record is None else measured.record
     names = [] if held is None else [one for one in held.channels if not one.startswith("plate_")]
     if held is None or not names:

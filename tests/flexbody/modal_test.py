@@ -12,7 +12,7 @@ from vehicle.records.geometry import Geometry, ModeShape
 from vehicle.records.uff_writer import write
 
 POINTS = load_vehicle(None).composition.attachments()
-"""All points of the car on the body, and a corner of the roof."""
+"""All points of the car on the body."""
 
 
 @lru_cache(maxsize=1)
