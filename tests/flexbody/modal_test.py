@@ -11,7 +11,7 @@ from vehicle.parameters.vehicle import load_vehicle
 from vehicle.records.geometry import Geometry, ModeShape
 from vehicle.records.uff_writer import write
 
-POINTS = load_vehicle(None).composition.attachments()
+POINTS = tuple(load_vehicle(None).composition.attachments())
 """All points of the car on the body."""
 
 
