@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import numpy.typing as npt
 
 from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim
+from scenarios.damper_choice.experiments import rear_experiment, wheel_experiments
 from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
-from scenarios.damper_choice.runs import (
-    HALF_DAMPING,
-    QUARTER_DAMPING,
-    START_REAR,
-    RoadHolding,
-    half_car_measure,
-    half_responses,
-)
+from scenarios.damper_choice.response_features import crossing, last_peak, local_peaks, spread_of
+from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
 from scenarios.places import placed
 from vehicle.lumped.half_car_rider import ENDS
 from vehicle.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
@@ -35,12 +28,6 @@ SAME = 0.15
 
 CROSSING = 1.5
 """Reading of the 6 Hz at which the order of the curves changes, a third of a tick interval [Hz]."""
-
-STIFFER = 1.1
-"""Stiffer front tyre for the row on the crossing at the front [-]."""
-
-MATCHED = 1.04
-"""Stiffer rear tyre for the row on the printed R of the rear [-]."""
 
 PICTURES = {2: "figure_02_03_quarter_car.png", 5: "figure_05_to_08_half_car.png", 9: "figure_09_10_highway.png"}
 """First figure of the source that a picture shows -> its file."""
@@ -80,7 +67,7 @@ def quarter_response_claims(
     wheel = np.array([responses[c][0] for c in QUARTER_DAMPING])
     body = np.array([responses[c][1] for c in QUARTER_DAMPING])
     rows = _regions("quarter car wheel", lines, wheel, 2.0, "2 to 3 Hz")
-    peaks = [_local_peaks(lines, curve) for curve in wheel]
+    peaks = [local_peaks(lines, curve) for curve in wheel]
     rows.append(
         FITTED.statement(
             "low damping adds a second local maximum at about 7 Hz",
@@ -108,9 +95,9 @@ def quarter_response_claims(
         FITTED.statement(
             "one sprung peak for every damping, lower with more damping",
             "one peak, falling",
-            f"{[len(_local_peaks(lines, curve)) for curve in body]} maxima, heights "
+            f"{[len(local_peaks(lines, curve)) for curve in body]} maxima, heights "
             + ", ".join(f"{value:.2f}" for value in body.max(axis=1)),
-            all(len(_local_peaks(lines, curve)) == 1 for curve in body)
+            all(len(local_peaks(lines, curve)) == 1 for curve in body)
             and bool(np.all(np.diff(body.max(axis=1)) < 0.0)),
             "counted on lines 0.01 Hz apart up to 15 Hz",
         )
@@ -123,7 +110,7 @@ def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
     dampings, heights = (4000.0, 3000.0, 2500.0), []
     for c in dampings:
         curve = np.abs(quarter_car_model(parameters.quarter_car, c).response(lines))[0]
-        heights.append(float(curve[np.searchsorted(lines, _last_peak(lines, curve))]))
+        heights.append(float(curve[np.searchsorted(lines, last_peak(lines, curve))]))
     return PREDICTED.statement(
         "the second maximum of the wheel grows as the damping falls",
         "grows",
@@ -140,10 +127,10 @@ def half_response_claims(
     stack = np.array([responses[c] for c in HALF_DAMPING])  # (damping, coordinate, line)
     rows = []
     for end, (name, figure) in enumerate((("front", 5), ("rear", 6))):
-        why = _why_half(parameters, lines, end)
+        why = wheel_experiments(parameters, lines, end)
         regions = _regions(f"half car {name} wheel", lines, stack[:, end], 2.0, "2 Hz", why)
         rows += placed(regions, f"figure {figure}", PICTURES[5])
-    hop = [_last_peak(lines, curves[0]) for curves in (stack[:, 0], stack[:, 1])]
+    hop = [last_peak(lines, curves[0]) for curves in (stack[:, 0], stack[:, 1])]
     masses = [axle.unsprung_mass for axle in (parameters.half_car.front, parameters.half_car.rear)]
     rows.append(
         FITTED.statement(
@@ -322,7 +309,7 @@ def rate_claims(parameters: DamperChoiceParameters, found: RoadHolding, at_front
                 float(ours),
                 RATE_READING if "front" in name else 2.0 * RATE_READING,
                 "two digits read from a figure whose axis ends at 9 (front) or 10 (rear): 0.05 and 0.1"
-                + (f"; {_why_rear(parameters)}" if name.startswith("rear, equal") else ""),
+                + (f"; {rear_experiment(parameters)}" if name.startswith("rear, equal") else ""),
             )
         )
     fronts = [float(at_front[0]), first.fluctuation[0], second.fluctuation[0]]
@@ -339,41 +326,6 @@ def rate_claims(parameters: DamperChoiceParameters, found: RoadHolding, at_front
     return placed(rows, "section 4.2, figures 10 to 13", ITERATION)
 
 
-def _why_rear(parameters: DamperChoiceParameters) -> str:
-    """What raising R of the rear by its tyre does to the R after step 1."""
-    rear = parameters.half_car.rear
-    stiffer = replace(rear, tyre_stiffness=MATCHED * rear.tyre_stiffness)
-    other = replace(parameters, half_car=replace(parameters.half_car, rear=stiffer))
-    measure = half_car_measure(other, "printed", parameters.highway)
-    equal, improved = measure(START_REAR, START_REAR)[1], measure(4250.0, START_REAR)[1]
-    return (
-        f"the fit balances it against the R after step 1: with a rear tyre {MATCHED - 1.0:.0%} stiffer they are "
-        f"{equal:.2f} and {improved:.2f}, printed 3.9 and 3.55"
-    )
-
-
-def _why_half(parameters: DamperChoiceParameters, lines: Array, end: int) -> tuple[str, str]:
-    """Experiments for the two rows on a wheel of the half car.
-
-    Args:
-        parameters: the half car.
-        lines: [Hz], (m,).
-        end: 0 front, 1 rear.
-    """
-    ratios = (FRONT_RATIOS, REAR_RATIOS)[end]
-    scale = np.mean([c / ratio for c, ratio in ratios.items()])
-    damped = half_responses(parameters, lines, [float(scale * ratio) for ratio in QUARTER_RATIOS.values()])
-    spread = _spread(np.array([curves[end] for curves in damped.values()]))[lines < 2.0].max()
-    no_effect = f"with the damping ratios of the quarter car, 0.62 to 1.09, they would differ by {spread:.2f} m/m"
-    front = parameters.half_car.front
-    stiffer = replace(front, tyre_stiffness=STIFFER * front.tyre_stiffness)
-    other = half_responses(
-        replace(parameters, half_car=replace(parameters.half_car, front=stiffer)), lines, HALF_DAMPING
-    )
-    crossing = _crossing(lines, other[HALF_DAMPING[0]][end], other[HALF_DAMPING[-1]][end])
-    return no_effect, f"with a front tyre {STIFFER - 1.0:.0%} stiffer they would cross at {crossing:.1f} Hz"
-
-
 def _regions(
     name: str,
     lines: Array,
@@ -385,11 +337,11 @@ def _regions(
     """Rows on the three frequency regions of a wheel response; `why` holds an experiment for each of both rows."""
     softest, firmest = curves[0], curves[-1]
     middle, high = (lines > 3.0) & (lines < 5.0), lines > 8.0
-    apart = _spread(curves)
+    apart = spread_of(curves)
     spread = float(apart[lines < low_edge].max())
     beyond = float(lines[np.flatnonzero(apart > SAME)[0]])
     above = firmest > softest
-    crossing = _crossing(lines, softest, firmest)
+    change = crossing(lines, softest, firmest)
     extra = [f"; {one}" if one else "" for one in why]
     return [
         PREDICTED.statement(
@@ -403,32 +355,12 @@ def _regions(
         PREDICTED.statement(
             f"{name}: 2 to 6 Hz less with low damping, beyond less with high damping",
             "change of order at 6 Hz",
-            f"the curves of lowest and highest damping cross at {crossing:.1f} Hz",
-            bool(np.all(above[middle]) and not np.any(above[high]) and abs(crossing - 6.0) < CROSSING),
+            f"the curves of lowest and highest damping cross at {change:.1f} Hz",
+            bool(np.all(above[middle]) and not np.any(above[high]) and abs(change - 6.0) < CROSSING),
             f"rule: in order from 3 to 5 Hz and above 8 Hz, crossing within {CROSSING} Hz of 6 Hz, a third of a tick "
             f"interval{extra[1]}",
         ),
     ]
-
-
-def _spread(curves: Array) -> Array:
-    """Largest difference of curves at each line."""
-    return np.asarray(curves.max(axis=0) - curves.min(axis=0))
-
-
-def _crossing(lines: Array, softest: Array, firmest: Array) -> float:
-    """Highest line up to 12 Hz at which the firmest damper moves the wheel more than the softest [Hz]."""
-    return float(lines[np.flatnonzero((firmest > softest) & (lines < 12.0))[-1]])
-
-
-def _last_peak(lines: Array, curve: Array) -> float:
-    """Frequency of the last local maximum [Hz]."""
-    return _local_peaks(lines, curve)[-1]
-
-
-def _local_peaks(lines: Array, curve: Array) -> list[float]:
-    inner = curve[1:-1]
-    return [float(lines[i + 1]) for i in np.flatnonzero((inner > curve[:-2]) & (inner > curve[2:]))]
 
 
 def _hz(values: list[float]) -> str:

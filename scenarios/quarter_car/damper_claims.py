@@ -53,7 +53,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
     _, constant = runs.spectrum(CONSTANT[0], HIGH, CONSTANT[1])
     above = frequency > 5.0
     ratio = float(np.sqrt(density[above].sum() / constant[above].sum()))
-    shown = {"place": "figure C.3", "picture": "figure_c_3.png"}
+    place, picture = "figure C.3", "figure_c_3.png"
     roads = f"{runs.roads} roads of {runs.duration:g} s"
     rows = [
         PREDICTED.statement(
@@ -70,7 +70,8 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             f"{1e3 * largest[1].max():.2g} mm/s",
             rms(bent) < rms(straight),
             roads,
-            **shown,
+            place=place,
+            picture=picture,
         ),
         PREDICTED.statement(
             "degressive damper, low road: share of sticking",
@@ -78,7 +79,8 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             f"{stuck[0]:.1f} against {stuck[1]:.1f} % of the time",
             stuck[0] > stuck[1],
             f"sticks: below 100 / eps = {1e3 * SLIPS:g} mm/s; the source does not say what it counts: {slow}; {roads}",
-            **shown,
+            place=place,
+            picture=picture,
         ),
         PREDICTED.statement(
             "low road: relative velocity of the damper stays below the knee",
@@ -87,21 +89,24 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             bool(largest[1].max() < reach),
             f"an assumption of the source; the level in 1 to 50 Hz hangs on the band of the road, which is not told: "
             f"velocities go with the square root of its lower edge, here 1/30 Hz; {roads}",
-            **shown,
+            place=place,
+            picture=picture,
         ),
         spread_claim(
             "low road: largest relative velocity of the damper [m/s]",
             (0.01, 0.02),
             np.maximum(*largest),
             f"axis from -0.02 to 0.02 m/s with labels 0.01 apart; larger of both dampers; {roads}",
-            **shown,
+            place=place,
+            picture=picture,
         ),
         spread_claim(
             "high road: largest relative velocity of the damper [m/s]",
             (0.5, 1.0),
             np.maximum(*high),
             f"axis to -1 m/s with labels 0.5 apart; larger of both dampers; {roads}",
-            **shown,
+            place=place,
+            picture=picture,
         ),
         PREDICTED.statement(
             "degressive damper, high road: first resonance",

@@ -132,7 +132,8 @@ def _high_claims(runs: Runs) -> list[Claim]:
 
 def engine_sine_claims(runs: Runs) -> list[Claim]:
     """Sines with the engine on its linear mount against those without engine."""
-    alone, loaded = ({a: runs.sine(a, **parts) for a in (LOW, HIGH)} for parts in ({}, {"engine": "linear"}))
+    alone = {a: runs.sine(a) for a in (LOW, HIGH)}
+    loaded = {a: runs.sine(a, engine="linear") for a in (LOW, HIGH)}
     peaks = {a: [_largest(late(one[a])) for one in (alone, loaded)] for a in (LOW, HIGH)}
     low = loaded[LOW]
     body = late(low)

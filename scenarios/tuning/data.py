@@ -28,10 +28,10 @@ from vehicle.tuning.frf_target import FrfTarget
 from vehicle.tuning.measured_targets import BAND, SPACING, MeasuredTarget
 from vehicle.tuning.record_target import RecordTarget
 
-CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z", "suspension_mount_fr_acc_z", "seat_rail_acc_z")
+CHANNELS = ("knuckle_{wheel}_acc_z", "engine_acc_z", "suspension_mount_{wheel}_acc_z", "seat_rail_acc_z")
 """The four places that the authors compared (section 3.2.1): wheel, engine and body modes."""
 
-RECORDED = ("knuckle_fr_acc_z", "damper_top_fr_acc_z", "damper_fr_velocity")
+RECORDED = ("knuckle_{wheel}_acc_z", "damper_top_{wheel}_acc_z", "damper_{wheel}_velocity")
 """Of the bump records."""
 
 NOISE = 0.03
@@ -64,15 +64,17 @@ def make_measurements(
         fitted: paths that take their hidden values; the others keep those of the vehicle.
         levels: inputs with a FRF; "low" is compared with the stuck linear car.
         bumps: inputs with time histories.
-        channels: of the FRFs.
+        channels: of the FRFs; `{wheel}` stands for the wheel on the shaker.
         spacing: of the frequencies [Hz].
         engine: that makes the data; that of the command line by default.
 
     Returns:
         One for each level and bump.
     """
-    changes = overrides_of(runs.car().vehicle, {path: HIDDEN[path] for path in fitted})
-    signals = [read_signal(find_input(f"{name}.csv")) for name in (*levels, *bumps)]
+    vehicle = runs.car().vehicle
+    changes = overrides_of(vehicle, {path: HIDDEN[path] for path in fitted})
+    channels = driven_channels(channels, vehicle.shaker_wheel)
+    signals = [read_signal(find_input(f"{name}.csv"), wheel=vehicle.shaker_wheel) for name in (*levels, *bumps)]
     done = runs([runs.case(signal, changes, engine=engine) for signal in signals])
     found = []
     for name, signal, run in zip((*levels, *bumps), signals, done, strict=True):
@@ -87,6 +89,7 @@ def make_measurements(
             name=name,
             data=read_frf(file).select(channels, band=BAND, spacing=spacing),
             signal=None if name == "low" else signal,
+            wheel=vehicle.shaker_wheel,
             averages=float(np.nanmedian(response.averages)),
         )
         found.append(MeasuredTarget(target=target, signal=signal))
@@ -105,15 +108,25 @@ def _noisy(clean: FrequencyResponse, noise: np.random.Generator) -> FrequencyRes
     )
 
 
+def driven_channels(channels: Sequence[str], wheel: str) -> tuple[str, ...]:
+    """Return the names of channels with the wheel on the shaker.
+
+    Args:
+        channels: names with `{wheel}` in its place.
+        wheel: name of the wheel, as "fl".
+    """
+    return tuple(name.format(wheel=wheel) for name in channels)
+
+
 def _record(name: str, run: Run, noise: np.random.Generator) -> RecordTarget:
     """Time histories with white noise of NOISE times their RMS in the window."""
     inside = (run.time >= BUMP_WINDOW[0]) & (run.time <= BUMP_WINDOW[1])
-    histories = {}
-    for channel in RECORDED:
+    histories, recorded = {}, driven_channels(RECORDED, run.car.vehicle.shaker_wheel)
+    for channel in recorded:
         values = run[channel]
         level = NOISE * float(np.sqrt(np.mean(values[inside] ** 2)))
         histories[channel] = values + level * noise.standard_normal(values.size)
-    record = Record(time=run.time, channels=histories, units=channel_units(RECORDED))
+    record = Record(time=run.time, channels=histories, units=channel_units(recorded))
     return RecordTarget(name=name, signal=run.signal, record=record, window=BUMP_WINDOW)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from scenarios.tuning.data import CHANNELS
+from scenarios.tuning.data import CHANNELS, driven_channels
 from vehicle.car import Car
 from vehicle.commands.compare import clock_of, measured_choice
 from vehicle.errors import ConfigurationError
@@ -54,7 +54,8 @@ def _responses(
         stuck=level == STUCK,
         choice=measured_choice(options),
         turned=options.turned,
-        fitted=tuple(options.channel) or (() if options.mapping else CHANNELS),
+        fitted=tuple(options.channel)
+        or (() if options.mapping else driven_channels(CHANNELS, car.vehicle.shaker_wheel)),
         band=band,
         spacing=options.spacing,
         window=options.window,

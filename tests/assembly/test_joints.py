@@ -103,7 +103,7 @@ def test_number_of_coordinates_and_rows(car):
 def test_the_constants_of_the_elements_are_in_the_model(car):
     model = car.model.model
     names = {model.numeric(index).name for index in range(model.nnumeric)}
-    assert len(names) == 18 + 2 + 15 + 2 + 6  # laws, main springs; shapes of connections, springs, places
+    assert len(names) == 18 + 2 + 15 + 2 + 7  # laws, main springs; shapes of connections, springs, places
     for index in range(model.neq):
         name = model.equality(index).name
         if name.startswith("bushing/"):

@@ -46,7 +46,9 @@ def test_words_of_several_runs() -> None:
     rolling = {name: tyre_words(cars) for name, cars in drivings(cases).items()}
     assert rolling == {"road_A_80": "rolling at 80 km/h", "road_A_50": "rolling at 50 km/h"}
     assert all_tyre_words(cases) == "rolling at 50 and 80 km/h"
-    varied = table_cases(["speed"], [(0,), (20,)], [SignalFile(path=Path("low.csv"))], vehicle=cases[0].vehicle)
+    varied = table_cases(
+        ["speed"], [(0,), (20,)], [SignalFile(path=Path("low.csv"), wheel="fr")], vehicle=cases[0].vehicle
+    )
     assert all_tyre_words(varied) == "standing or rolling at 72 km/h"
 
 

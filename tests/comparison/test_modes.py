@@ -56,11 +56,11 @@ def test_the_file_holds_places_and_modes(file, car, capsys):
 def test_the_command_inspect_lists_modes(file, car, capsys):
     assert inspect([str(file)]) == 0
     said = capsys.readouterr().out
-    assert "no channels; 13 nodes, " in said and f"{car.modes()[0].frequency:.4f}" in said and "complex  body" in said
+    assert "no channels; 14 nodes, " in said and f"{car.modes()[0].frequency:.4f}" in said and "complex  body" in said
     assert inspect([str(file), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["modes"][0]["damping_ratio"] == pytest.approx(car.modes()[0].damping_ratio, rel=1e-4)
-    assert len(found["points"]) == 13 and found["modes"][0]["modal_mass"] is None
+    assert len(found["points"]) == 14 and found["modes"][0]["modal_mass"] is None
 
 
 def test_pairs_and_their_frequencies(file, tmp_path, car, capsys):

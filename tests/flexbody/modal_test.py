@@ -11,8 +11,8 @@ from vehicle.parameters.vehicle import load_vehicle
 from vehicle.records.geometry import Geometry, ModeShape
 from vehicle.records.uff_writer import write
 
-POINTS = (*load_vehicle(None).composition.attachments(), "roof_right_rear")
-"""All points of the car on the body, and a corner of the roof."""
+POINTS = tuple(load_vehicle(None).composition.attachments())
+"""All points of the car on the body."""
 
 
 @lru_cache(maxsize=1)

@@ -41,7 +41,7 @@ def test_interface_and_output_points_are_those_of_the_vehicle_alone():
     placed = design.placed(points)
     nodes = {node: place for made in placed.values() for node, place in made.items()}
     attached = load_vehicle().composition.attachments()
-    assert len(attached) == 19 and attached == {name: nodes[name] for name in attached}
+    assert len(attached) == 20 and attached == {name: nodes[name] for name in attached}
     typed = {tuple(abs(x) for x in node.place) for node in design.nodes.values() if node.place is not None}
     assert len(typed) == 11
     assert not typed & {tuple(abs(x) for x in place) for place in points.values()}

@@ -54,7 +54,7 @@ def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
     """One parameter: between the best damper for comfort and the best for the tyre each is a compromise."""
     damping = np.linspace(1000.0, 3000.0, 11)
     measure = ride_measure(load_vehicle(), ("comfort", "tyre_load"), SKIP)
-    cases = table_cases(["damper.viscous"], [(c,) for c in damping], [SignalFile(path=road)], fixed=[LOOSE])
+    cases = table_cases(["damper.viscous"], [(c,) for c in damping], [SignalFile(path=road, wheel="fl")], fixed=[LOOSE])
     results = evaluate(cases, measure)
     best = {}
     for name in measure.numbers:
@@ -85,7 +85,7 @@ def test_files_of_a_search(road, searched):
     # A colleague takes the file of the knee, or its overrides, and gets its numbers.
     knee = summary["points"]["knee"]
     (alone,) = evaluate(
-        table_cases([], [()], [SignalFile(path=road)], vehicle=searched / knee["vehicle"]),
+        table_cases([], [()], [SignalFile(path=road, wheel="fl")], vehicle=searched / knee["vehicle"]),
         ride_measure(load_vehicle(), ("comfort",), SKIP),
     )
     assert alone.values["comfort"] == pytest.approx(knee["numbers"]["comfort"], rel=1e-9)

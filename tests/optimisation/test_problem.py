@@ -18,7 +18,7 @@ from vehicle.sweeps.measure import ComfortMeasure
 from vehicle.sweeps.result import Result
 
 ROADS = ("smooth", "rough")
-ROAD, MEASURE = SignalFile(path=Path("road.csv")), ComfortMeasure()
+ROAD, MEASURE = SignalFile(path=Path("road.csv"), wheel="fl"), ComfortMeasure()
 
 
 def test_wishes_over_inputs():

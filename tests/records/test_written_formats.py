@@ -115,8 +115,8 @@ def test_a_run_is_written_in_all_formats(tmp_path, capsys):
             np.testing.assert_allclose(found[name].si_values, values, rtol=digits, atol=1e-12, err_msg=name)
             assert found[name].unit == held.units[name] and found[name].rate == pytest.approx(1.0 / held.step, rel=1e-6)
         if form in ("mat", "uff"):
-            one = found["knuckle_fr_acc_z / plate_fr"]
-            row = response.response[response.channels.index("knuckle_fr_acc_z")]
+            one = found["knuckle_fl_acc_z / plate_fl"]
+            row = response.response[response.channels.index("knuckle_fl_acc_z")]
             defined = np.isfinite(row)
             np.testing.assert_allclose(one.values[np.isfinite(one.values)], row[defined], rtol=1e-7)
             assert one.axis is not None

@@ -48,7 +48,7 @@ def with_idle_poles(model, pairs, reals):
         model,
         poles=np.insert(model.poles, at, [-5.0 + 3.0j] * pairs + [-7.0] * reals),
         pairs=model.pairs + pairs,
-        **{name: np.insert(getattr(model, name), at, 0.0, axis=0) for name in ("height", "velocity", "force")},
+        **{name: np.insert(getattr(model, name), at, 0.0, axis=0) for name in ("height", "velocity", "force", "slope")},
         **{name: np.insert(getattr(model, name), at, 0.0, axis=1) for name in ("slip", "modal", "branch")},
     )
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from scenarios.inputs.make_inputs import LEVELS, SEED
 from vehicle.car import Car
-from vehicle.excitation.input_files import find_input
+from vehicle.excitation.random_road import random_road
 from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import read_signal
 from vehicle.linear.first_order import first_order
 from vehicle.linear.response import frequency_response
 from vehicle.reduced.equivalent import equivalent_damping, linearised_response
@@ -32,10 +32,11 @@ def target_of(car: Car, signal: Signal, path) -> Target:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "iterations", "asked"), [("low.csv", 5, 0.01), ("high.csv", 7, 0.05)])
+@pytest.mark.parametrize(("name", "iterations", "asked"), [("low", 5, 0.01), ("high", 7, 0.05)])
 def test_a_known_plate_is_found_from_the_knuckle_alone(car, tmp_path, name, iterations, asked):
     """Where the dampers stick, and where they slip."""
-    signal = read_signal(find_input(name))
+    # From 6 Hz on: below, a plate moves the knuckle too little for its displacement to be found within a percent.
+    signal = random_road(rms=LEVELS[name], seed=SEED, lower_band_edge=6.0, roll_off_order=2)
     target = target_of(car, signal, tmp_path)
     plant = DrivenCar(car, ("fr",), target, "reduced")
     found = replicate(

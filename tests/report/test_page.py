@@ -72,8 +72,8 @@ def test_the_page_says_the_numbers_of_the_summary(reported, outline):
     words = " ".join(outline.words)
     total = summary["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"]
     assert f"{total:.3g} m/s²" in words and reactions(total)[0] in words
-    assert f"{100 * summary['slip_share']['fr']:.2f} %" in words
-    top = max(summary["peaks"]["knuckle_fr_acc_z"], key=lambda peak: peak["magnitude"])
+    assert f"{100 * summary['slip_share']['fl']:.2f} %" in words
+    top = max(summary["peaks"]["knuckle_fl_acc_z"], key=lambda peak: peak["magnitude"])
     assert f"The highest vertical resonance at the knuckle lies at {top['frequency_hz']:.1f} Hz" in words
     assert "front.damper.coulomb_friction" in words and "a<b>&c.csv" in words
     assert all(notice in words for notice in summary["notices"])

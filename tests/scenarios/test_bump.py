@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -68,7 +69,8 @@ def test_seeds_differ_by_their_noise_and_a_stuck_damper_is_told():
     assert high.shape == (2, 2) and 0.001 < np.ptp(high[:, 0]) < 0.2
     assert np.all(found.fastest[SIZES[0]] < found.fastest[SIZES[1]])
     # A damper that never slips is a row that disagrees, not an error.
-    row = slip_claims(SimpleNamespace(slip_velocity=0.01, noisy=[Silent()]), swapped(found, 125.0, stuck))[0]
+    bumps: Any = SimpleNamespace(slip_velocity=0.01, noisy=[Silent()])
+    row = slip_claims(bumps, swapped(found, 125.0, stuck))[0]
     assert row.ours == "never in 2 of 2" and row.within is False
 
 

@@ -75,7 +75,7 @@ def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, cap
     text = (folder / "results.md").read_text(encoding="utf-8")
     assert "Not judged here: another: too short." in text
     assert "a note" in text
-    assert "1 of 1 predicted rows agree; beside them 0 fitted (0 agree)" in capsys.readouterr().out
+    assert "1 of 1 predicted rows agree, 1 not judged" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw
 
 import scenarios.published.__main__ as published
 from scenarios.published.pictures import LARGEST, write_copy
@@ -246,3 +246,16 @@ def test_a_simple_picture_keeps_its_width(tmp_path):
     write_copy(tmp_path / "a.png", tmp_path / "b.png")
     with Image.open(tmp_path / "b.png") as copy:
         assert copy.size == (800, 400)
+
+
+def test_a_short_red_line_keeps_its_colour_beside_blue_ones(tmp_path):
+    picture = Image.new("RGB", (1200, 500), "white")
+    draw = ImageDraw.Draw(picture)
+    for height in range(20, 480, 23):
+        draw.line([(20, height), (1180, height + 9)], fill=(26, 115, 196), width=2)
+    draw.line([(900, 250), (960, 230)], fill=(179, 38, 30), width=2)
+    picture.save(tmp_path / "a.png")
+    write_copy(tmp_path / "a.png", tmp_path / "b.png")
+    with Image.open(tmp_path / "b.png") as copy:
+        red, _, blue = np.moveaxis(np.asarray(copy.convert("RGB"), dtype=int), -1, 0)
+    assert np.sum(red > blue + 60) > 20

@@ -100,4 +100,4 @@ def test_force_error_sees_another_law(car):
     # One seed of three as printed is no rare one.
     rows = peak_claims({"Stribeck": bent, "Coulomb": bent}, phases, {"Stribeck": [0, 2], "Coulomb": [1, 0]})
     assert [row.within for row in rows] == [True, True, False]
-    assert rows[0].ours.startswith("present with 1 of 3 seeds of the noise; pictured run: 0,")
+    assert str(rows[0].ours).startswith("present with 1 of 3 seeds of the noise; pictured run: 0,")

@@ -19,7 +19,7 @@ from vehicle.tuning.fit import fit
 from vehicle.tuning.full_steps import FullSteps
 
 MOUNT = "bushings.suspension_mount.stiffness.z"
-CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")
+CHANNELS = ("knuckle_fl_acc_z", "seat_rail_acc_z")
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_options_of_own_files_are_checked(tmp_path, capsys):
     noise = np.random.default_rng(4).standard_normal((2, len(CHANNELS), frequency.size))
     measured = FrequencyResponse(
         frequency=frequency,
-        response=hidden.matrix_frf(CHANNELS, frequency, wheel="fr") * np.exp(0.03 * (noise[0] + 1j * noise[1])),
+        response=hidden.matrix_frf(CHANNELS, frequency, wheel="fl") * np.exp(0.03 * (noise[0] + 1j * noise[1])),
         coherence=np.full((len(CHANNELS), frequency.size), 0.98),
         random_error=np.full((len(CHANNELS), frequency.size), np.nan),
         averages=np.full((len(CHANNELS), frequency.size), 8.0),

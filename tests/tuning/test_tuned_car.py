@@ -45,7 +45,9 @@ def frf_data(response, seed):
 
 def target_of(car, signal, seed=1):
     """What the car does on a signal (None: stuck), with noise, as a target."""
-    blank = FrfTarget(name="made", data=frf_data(np.ones((2, FREQUENCY.size)), 0), signal=signal, averages=8.0)
+    blank = FrfTarget(
+        name="made", data=frf_data(np.ones((2, FREQUENCY.size)), 0), signal=signal, wheel="fr", averages=8.0
+    )
     return dataclasses.replace(blank, data=frf_data(blank.model_response(car), seed))
 
 
@@ -130,7 +132,7 @@ def test_a_run_and_its_target_have_the_same_residuals(build, car, high_piece):
 def test_bad_targets_are_refused(car, high_piece):
     data = frf_data(np.ones((2, FREQUENCY.size)), 0)
     with pytest.raises(ConfigurationError, match="low: found 0 averages"):
-        FrfTarget(name="low", data=data, signal=None, averages=0.0)
+        FrfTarget(name="low", data=data, signal=None, wheel="fr", averages=0.0)
     with pytest.raises(ConfigurationError, match="low: found wheel 'zz'"):
         FrfTarget(name="low", data=data, signal=None, wheel="zz")
     with pytest.raises(ConfigurationError, match=r"wheel rl \(rear_left\): focus does not have it"):
@@ -138,7 +140,7 @@ def test_bad_targets_are_refused(car, high_piece):
     with pytest.raises(ConfigurationError, match="the signal must drive the plate fl alone"):
         FrfTarget(name="low", data=data, signal=high_piece, wheel="fl")
     with pytest.raises(DataError, match="low: no FRF value with a coherence that counts"):
-        FrfTarget(name="low", data=dataclasses.replace(data, coherence=0.01 * data.coherence), signal=None)
+        FrfTarget(name="low", data=dataclasses.replace(data, coherence=0.01 * data.coherence), signal=None, wheel="fr")
     time: np.ndarray = np.arange(4001) * 1e-3
     good = {"name": "bump", "signal": high_piece, "window": (1.0, 2.0)}
     ones = np.ones(4001)

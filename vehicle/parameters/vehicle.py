@@ -123,13 +123,18 @@ class Vehicle:
         dampers = [damper.name for damper in self.composition.dampers]
         return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
 
-    def wheel_text(self, wheel: str) -> str:
-        """A wheel for captions, by side, by channel, as its source calls it: "driver's left front wheel (fl)"."""
+    def wheel_text(self, wheel: str, *, source: bool = True) -> str:
+        """A wheel for captions, by side and by channel, as "driver's left front wheel (fl)".
+
+        Args:
+            wheel: its name.
+            source: whether to add what the source calls it.
+        """
         words = wheel_words(wheel, self.wheels)
-        said = self.shaker_wheel_in_source if wheel == self.shaker_wheel else "unsaid"
-        source = "" if said == "unsaid" else f"'{said} wheel' in the words of the source"
+        said = self.shaker_wheel_in_source if source and wheel == self.shaker_wheel else "unsaid"
+        note = "" if said == "unsaid" else f"'{said} wheel' in the words of the source"
         side = "driver's " if words.split()[0] in SIDE_SIGN else ""
-        return f"{side}{words} ({'; '.join(filter(None, (wheel, source)))})"
+        return f"{side}{words} ({'; '.join(filter(None, (wheel, note)))})"
 
     def require_wheels(self, wheels: Iterable[str]) -> None:
         """Refuse wheels that the car does not have.

@@ -216,6 +216,7 @@ class Shot:
         """Input and level; factors and excerpt."""
         cut = self.cut
         level = level_words(run.recording, run.wheel, run.signal.rms(run.wheel))
+        wheel = run.car.model.vehicle.wheel_text(run.wheel, source=False)
         speed = "real time" if slow == 1.0 else f"slow motion 1 : {slow:g}"
         highest = 0.5 / cut.interval
         if highest < FASTEST_MOTION:
@@ -225,7 +226,7 @@ class Shot:
             road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
             exaggerated = "motion and road"
         return [
-            f"{Path(run.signal.source).name}: {level} under the {run.car.model.vehicle.wheel_text(run.wheel)}",
+            f"{Path(run.signal.source).name}: {level} under the {wheel}",
             f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s; tyres "

@@ -10,7 +10,6 @@ from vehicle.car import Car, Run
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.excitation.signal import Signal
 from vehicle.names import CORNERS, in_order
-from vehicle.parameters.vehicle import Vehicle
 from vehicle.records.choice import Choice
 from vehicle.records.reader import read_record
 from vehicle.replication.driven_car import DrivenCar
@@ -105,7 +104,7 @@ def replicate_drive(
     names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, asked)
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
     wanted = read_target(path, names, asked, band, car.vehicle.solver.record_rate)
-    plant = DrivenCar(car, driven_wheels(wheels, wanted, car.vehicle), wanted, engine)
+    plant = DrivenCar(car, driven_wheels(wheels, wanted, car.vehicle.shaker_wheel), wanted, engine)
     found = replicate(
         plant,
         wanted.values,
@@ -161,19 +160,19 @@ def named_channels(file: Path, names: Sequence[str], choice: Choice) -> dict[str
     return {name: name for name in names}
 
 
-def driven_wheels(asked: Sequence[str] | None, target: Target, vehicle: Vehicle) -> tuple[str, ...]:
+def driven_wheels(asked: Sequence[str] | None, target: Target, shaker_wheel: str) -> tuple[str, ...]:
     """Return the wheels whose plates are driven.
 
     Args:
         asked: names of wheels; None for those in the names of the channels, or that of the shaker.
         target: what is to be replicated.
-        vehicle: the car.
+        shaker_wheel: wheel on the shaker of the car.
 
     Raises:
         ConfigurationError: more plates than channels.
     """
     named = {part for name in target.channels for part in name.split("_") if part in CORNERS.values()}
-    found = in_order(set(asked) if asked else named or {vehicle.shaker_wheel})
+    found = in_order(set(asked) if asked else named or {shaker_wheel})
     if len(found) > len(target.channels):
         raise ConfigurationError(
             f"{len(found)} plates ({', '.join(found)}) and {len(target.channels)} channel: give at least as many "

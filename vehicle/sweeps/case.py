@@ -37,10 +37,16 @@ class Input(Protocol):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SignalFile:
-    """A signal file as an input; its path is resolved where the sweep is started."""
+    """Signal file as an input.
+
+    Attributes:
+        path: the file, resolved where the sweep is started.
+        wheel: driven by a signal that names no wheel; `Vehicle.shaker_wheel` is that of a car.
+        accept_implausible: accept levels that no shaker has.
+    """
 
     path: Path
-    wheel: str = "fr"
+    wheel: str
     accept_implausible: bool = False
 
     @property

@@ -49,9 +49,9 @@ class FrfTarget:
     name: str
     data: FrfData
     signal: Signal | None
+    wheel: str
     averages: float = 1.0
     window: float | None = None
-    wheel: str = "fr"
 
     def __post_init__(self) -> None:
         if self.averages <= 0.0:

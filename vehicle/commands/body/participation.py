@@ -45,7 +45,7 @@ def add(tasks: Any) -> None:
     )
     asked.former("--place", "--place: the acceleration is named by --response CHANNEL, as --response seat_rail_acc_z")
     asked.add_argument(
-        "--wheel", metavar="NAME", help="wheel whose plate moves, as fr or front_right; the first of the car by default"
+        "--wheel", metavar="NAME", help="wheel whose plate moves, as fr or front_right; that on the shaker by default"
     )
     asked.add_argument(
         "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
     if options.at is not None and not 0.0 < options.at < math.inf:
         raise ConfigurationError(f"--at {options.at:g}: must be a frequency above 0 Hz, as --at 26")
-    wheel = CORNERS.get(options.wheel, options.wheel) or next(iter(vehicle.wheels), "")
+    wheel = CORNERS.get(options.wheel, options.wheel) or vehicle.shaker_wheel
     vehicle.require_wheels((wheel,))
     if options.output is not None:
         output_folder_of(options, options.output)
