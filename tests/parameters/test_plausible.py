@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -188,6 +189,10 @@ def test_parameters_without_effect_are_said():
     changes = ["damper.stribeck_velocity=0.05", "damper.viscous=2000", "body.frequency_scale=1.1"]
     assert idle_parameters(load_vehicle(None, changes), changes) == (
         "damper.stribeck_velocity=0.05: without effect; it belongs to front.damper.friction_law = stribeck",
+    )
+    changes = ["front.damper.viscous=2000"]
+    assert idle_parameters(load_vehicle(Path("sedan"), changes), changes) == (
+        "front.damper.viscous=2000: without effect; it belongs to front.damper.viscous_law = linear or degressive",
     )
     # Attachments of a rigid body give way too.
     changes = ["body.flexible=false", "body.frequency_scale=1.1", "body.attachment_flexibility=false"]

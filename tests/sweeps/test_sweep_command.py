@@ -6,7 +6,9 @@ import csv
 
 import pytest
 
+from vehicle import Car, Road
 from vehicle.commands.sweep import every_combination, main
+from vehicle.sweeps.plan import plan_sweep
 from vehicle.sweeps.table import read_variations
 
 
@@ -141,3 +143,10 @@ def test_an_executor_that_cannot_be_made(signal, tmp_path, capsys):
     arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
     assert main([*arguments, "--executor", "json:loads"]) == 2
     assert "--executor json:loads: TypeError" in capsys.readouterr().err
+
+
+def test_a_varied_parameter_without_effect_is_noted():
+    car, road = Car.load("sedan"), Road("B", speed=80, duration=6)
+    (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000]}, road).notes
+    assert note.startswith("front.damper.viscous=1000: without effect; it belongs to front.damper.viscous_law")
+    assert not plan_sweep(car, {"front.damper.coulomb_friction": [40, 80]}, road).notes

@@ -25,6 +25,8 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
         off[f"{path}.stribeck_"] = (law.friction_law == "coulomb", f"{path}.friction_law = stribeck")
         passive = law.controlled is None
         off[f"{path}.viscous"] = (not passive, f"{path}.control.law = passive")
+        if passive and law.viscous_law == "table":
+            off[f"{path}.viscous"] = (True, f"{path}.viscous_law = linear or degressive")
         for name in (one.name for one in dataclasses.fields(SemiActiveDamper) if one.name != "law"):
             off[f"{path}.control.{name}"] = (passive, f"{path}.control.law = skyhook or another law")
         off[f"{path}.degressive_"] = (law.viscous_law != "degressive", f"{path}.viscous_law = degressive")
@@ -37,5 +39,5 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
         f"{override.strip()}: without effect; it belongs to {needed}"
         for override, places in said.items()
         for path, (idle, needed) in off.items()
-        if idle and any(whole.startswith(path) for whole in places)
+        if idle and any(whole.startswith(path) and not whole.endswith(".viscous_law") for whole in places)
     )

@@ -11,9 +11,10 @@ from typing import Any
 
 from vehicle.car import Car
 from vehicle.errors import ConfigurationError
+from vehicle.parameters.idle import idle_parameters
 from vehicle.parameters.paths import assignments
 from vehicle.parameters.shipped import FOCUS_FILE, vehicle_file
-from vehicle.parameters.vehicle import overridden
+from vehicle.parameters.vehicle import load_vehicle, overridden
 from vehicle.parameters.whole_body import body_rules
 from vehicle.sweeps.case import Case, all_tyre_words, varied_cases
 from vehicle.sweeps.inputs import Source, common_start, file_of, inputs_of
@@ -88,7 +89,7 @@ def plan_sweep(
         cases=cases,
         measure=ComfortMeasure(skip=start, seat=car.vehicle.seated) if measure is None else measure,
         skip=start,
-        notes=tuple(body_rules(car.vehicle, paths)),
+        notes=(*body_rules(car.vehicle, paths), *_idle_notes(vehicle, car.overrides, changes)),
     )
 
 
@@ -166,3 +167,15 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
         overridden(file, [*overrides, *changes])
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--set ", "varied parameter ", 1)) from None
+
+
+def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """Return a message for each varied parameter without effect; none where laws vary, which may turn it on."""
+    for column in zip(*changes, strict=True):
+        values = {text.partition("=")[2].strip() for text in column}
+        if len(values) > 1 and any(value[:1].isalpha() for value in values):
+            return ()
+    try:
+        return idle_parameters(load_vehicle(file, [*overrides, *changes[0]]), changes[0])
+    except ConfigurationError:
+        return ()  # the row says why
