@@ -57,7 +57,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     smallest = [moment_about_cog(car) for car in cars]
     seen = roll_claims(peaks, frequencies, smallest, between)
     return Findings(
-        title="Moment of inertia Ixx of the body (source 1, sections 3.2.1 and 3.4)",
+        title="Moment of inertia Ixx of the body (Bommer 2006, sections 3.2.1 and 3.4)",
         claims=[*mode_claims(cars), *seen],
         unjudged={claim.name: TOO_SHORT for claim in seen} if options.quick else {},
         notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, found[0], options.quick)],

@@ -1,4 +1,4 @@
-"""Coulomb against Stribeck friction over the 7.5 mm bump: the extra peak after stick ends (section 3.4 of source 1).
+"""Coulomb against Stribeck friction over the 7.5 mm bump: the extra peak after stick ends (section 3.4 of Bommer 2006).
 
 python -m scenarios.stribeck [--output DIR] [--quick] [--jobs N] [--engine mujoco|reduced|auto] [--vehicle FILE.toml]
 """
@@ -62,7 +62,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     peak_figure(folder / "relative_acceleration.png", found, phases, record.start)
     force_figure(folder / "force_velocity.png", found)
     return Findings(
-        title="Coulomb and Stribeck friction over the 7.5 mm bump (source 1, section 3.4)",
+        title="Coulomb and Stribeck friction over the 7.5 mm bump (Bommer 2006, section 3.4)",
         claims=peak_claims(found, phases, counts),
         tyres=runs.car().vehicle.driving.words,
         notes=[peak_table(phases, record.start), *setting(runs, found["Coulomb"], options.quick)],

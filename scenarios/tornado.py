@@ -43,7 +43,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         bar_table(bars),
     ]
     return Findings(
-        title="Comfort against all parameters of the suspension and the stiffness of the body (beyond source 1)",
+        title="Comfort against all parameters of the suspension and the stiffness of the body (beyond Bommer 2006)",
         claims=tornado_claims(bars),
         tyres=comfort.tyres,
         notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
@@ -90,7 +90,7 @@ PARAMETERS = (
         label="suspension mount damping, z [N s/m]",
         path="bushings.suspension_mount.damping.z",
         ends=(0.0, 500.0),
-        reason="nominal 0, so from there to the first step of source 1",
+        reason="nominal 0, so from there to the first step of Bommer 2006",
     ),
     Parameter(label="main spring [N/m]", path="main_spring.stiffness"),
     Parameter(label="tyre stiffness, z [N/m]", path="bushings.tyre.stiffness.z"),
@@ -216,7 +216,7 @@ def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
     )
     height = np.arange(len(bars))[::-1]
     with figure_file(
-        path, (11.0, 1.8 + 0.62 * len(bars)), "Comfort sensitivities of the car (beyond source 1)", caption
+        path, (11.0, 1.8 + 0.62 * len(bars)), "Comfort sensitivities of the car (beyond Bommer 2006)", caption
     ) as figure:
         axes = figure.subplots(1, len(ROAD_RMS), sharex=True, sharey=True)
         for axis, road in zip(axes, ROAD_RMS, strict=True):
