@@ -15,8 +15,8 @@ def record(signal):
 
 
 def test_velocity_density_is_flat_at_the_level_that_the_band_gives():
-    # Several lines below the edge of the window's main lobe: 0.05 Hz are three of 1/60 Hz. At 0.017 Hz, one line, the
-    # sum over lines is 7 % below the integral over the band, and the exact RMS takes the density up.
+    # An edge of three lines: at 0.017 Hz, of one line of 1/60 Hz, the sum over lines is 7 % below the integral over the
+    # band, and the exact RMS takes the density up.
     edge = 0.05
     signal = road(rms=0.0075, seed=3, duration=60.0, lead=LEAD, lower_band_edge=edge)
     # At half a line off the grid a record of T = 60 s holds broken periods: differences show the velocity, a Hann
