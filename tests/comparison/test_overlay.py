@@ -224,6 +224,7 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
         for word in ("--fit", f"{path}={bounds}")
     ]
     arguments = ["--frf", str(measured), "--level", "low", *MAP, *fits, "--spacing", "1", "--quick"]
+    arguments += ["--set", "shaker_wheel='fr'"]  # the wheel of the measurement
     assert tuning([*arguments, "--output", str(tmp_path / "fit")]) == 0
     content = json.loads((tmp_path / "fit" / "results.json").read_text())
     for path, value in HIDDEN.items():

@@ -52,7 +52,7 @@ DAMPING, COMFORT, LOAD = "damper.viscous [N s/m]", "comfort [m/s2]", "tyre_load 
 
 def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
     """One parameter: between the best damper for comfort and the best for the tyre each is a compromise."""
-    damping = np.linspace(1000.0, 3000.0, 11)
+    damping = np.linspace(500.0, 2500.0, 11)
     measure = ride_measure(load_vehicle(), ("comfort", "tyre_load"), SKIP)
     cases = table_cases(["damper.viscous"], [(c,) for c in damping], [SignalFile(path=road, wheel="fl")], fixed=[LOOSE])
     results = evaluate(cases, measure)

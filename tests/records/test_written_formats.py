@@ -124,5 +124,5 @@ def test_a_run_is_written_in_all_formats(tmp_path, capsys):
             assert one.si_unit == "(m/s2)/(m)" and f"{one.name} coherence" in found
     # What a run writes drives the next one.
     again = read_signal(output / "time.uff")
-    assert again.wheels == ("fr",)
+    assert again.wheels == ("fl",)
     assert inspect([str(output / "frf.csv")]) == 0 and "(m/s2)/m" in capsys.readouterr().out

@@ -86,7 +86,7 @@ def test_options_of_own_files_are_checked(tmp_path, capsys):
             ],
             "the friction at rest must stay at or above that of sliding",
         ),
-        (["--channel", "engine_acc_z"], "no channel engine_acc_z; there are knuckle_fr_acc_z, seat_rail_acc_z"),
+        (["--channel", "engine_acc_z"], "no channel engine_acc_z; there are knuckle_fl_acc_z, seat_rail_acc_z"),
     ):
         assert main([*options, *extra, "--output", str(tmp_path / "refused")]) in (2, 3)
         assert message in capsys.readouterr().err
