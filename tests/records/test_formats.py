@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-import vehicle.records
+from vehicle.records import formats
 from vehicle.records.formats import FORMATS, TABLES, WRITTEN
 
-FOLDER = Path(vehicle.records.__file__).parent
+FOLDER = Path(formats.__file__).parent
 
 
 def test_every_module_of_a_format_is_registered():
@@ -21,7 +21,7 @@ def test_every_module_of_a_format_is_registered():
 def test_a_format_reads_and_writes_what_its_entry_states(entry):
     for module, names in ((entry.reader, ("read",)), (entry.table, ("read", "write")), (entry.writer, ("write",))):
         if module:
-            assert all(callable(getattr(import_module(f"vehicle.records.{module}"), name)) for name in names)
+            assert all(callable(getattr(import_module(f"{formats.__package__}.{module}"), name)) for name in names)
     assert (entry.name in TABLES) == bool(entry.table)
     assert (entry.name in WRITTEN) == bool(entry.table or entry.writer)
 
