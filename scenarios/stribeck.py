@@ -124,7 +124,7 @@ def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64
 
 
 def force_error(run: Run) -> float:
-    """Largest |simulated force - law| over the largest force, where the right damper is faster than 1 mm/s [-]."""
+    """Largest |simulated force - law| over the largest force, above 1 mm/s of the driven damper [-]."""
     velocity, force = damper_velocity(run), run[f"damper_{run.wheel}_force"]
     fast = np.abs(velocity) > SATURATED_VELOCITY
     if not fast.any():
@@ -190,8 +190,8 @@ def peak_table(phases: Mapping[str, list[SlipPhase]], start: float) -> str:
     columns = ("law", "stick ends [s]", "sliding lasts [ms]", "largest velocity [mm/s]", "break-away jump [m/s2]")
     peak = "most prominent later extremum: delay [ms], height, prominence [m/s2]"
     return (
-        f"Slides of the right damper from the end of stick, above {1e3 * SATURATED_VELOCITY:g} mm/s, where friction "
-        f"is saturated (bump begins at 5 s):\n\n{markdown((*columns, peak), rows)}"
+        f"Slides of the damper over the shaker from the end of stick, above {1e3 * SATURATED_VELOCITY:g} mm/s, where "
+        f"friction is saturated (bump begins at 5 s):\n\n{markdown((*columns, peak), rows)}"
     )
 
 

@@ -1,4 +1,4 @@
-"""Bumps of 1.5 and 7.5 mm under the right front wheel: first slip, extremes, ring-down (chapter 3 of Bommer 2006).
+"""Bumps of 1.5 and 7.5 mm under the wheel on the shaker: first slip, extremes, ring-down (chapter 3 of Bommer 2006).
 
 python -m scenarios.bump [--output DIR] [--reading height|literal] [--video [FILE.mp4]] [--quick] [--jobs N] ...
 """

@@ -190,9 +190,10 @@ def ring_down_figure(path: Path, bumps: Bumps) -> None:
 
 
 def _caption(bumps: Bumps, what: str) -> str:
+    run = bumps.noisy[0]
+    wheel = run.car.vehicle.wheel_text(run.wheel)
     return (
-        f"{what}. Bump under the right front wheel from t = {BUMP_START_S:g} s; time histories, no averages; "
-        f"{computed_by(bumps.noisy[0])}"
+        f"{what}. Bump under the {wheel} from t = {BUMP_START_S:g} s; time histories, no averages; {computed_by(run)}"
     )
 
 

@@ -110,8 +110,8 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
     """Write the figure of the slip shares over the band edge of the roads; `value` of the points is the edge [Hz]."""
     slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
     caption = (
-        f"Share of the time with the right damper above {1e3 * slip_velocity:g} mm/s (full) and above 1 mm/s (dotted), "
-        f"nominal car, {comfort.text()}; bars: two standard errors over the records; "
+        f"Share of the time with the damper over the shaker above {1e3 * slip_velocity:g} mm/s (full) and above 1 mm/s "
+        f"(dotted), nominal car, {comfort.text()}; bars: two standard errors over the records; "
         "dashed: published"
     )
     with figure_file(
@@ -227,8 +227,8 @@ def setting(comfort: ComfortRuns) -> list[str]:
         f"Standard error of the comfort value of the nominal car: {errors} (1/2 sqrt(int S² df / T) / int S df, which "
         "would hold if the amplitudes of the lines were random too). ± behind a number is one standard error over the "
         "records; that of a ratio is over the ratios of the single records.",
-        f"Slip shares: time with the right damper above {1e3 * slip_velocity:g} mm/s, above 1 mm/s, and "
-        "the left one. Lowest load: of the tyre on the shaker.",
+        f"Slip shares: time with the damper over the shaker above {1e3 * slip_velocity:g} mm/s, above 1 mm/s, "
+        "and the other one. Lowest load: of the tyre on the shaker.",
         sets_text(),
         "The tyre is a linear spring, as in the source: where its load is negative it pulls.",
     ]
