@@ -11,7 +11,7 @@ export OMP_NUM_THREADS ?= 1
 .PHONY: shaker test check setup mjcf benchmark clean
 
 shaker: setup
-	@if $(BIN)/python -m vehicle.rendering.backend; then \
+	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
 	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --video --report --force; \
 	else \
 	  echo "no film: the run goes on without it"; \

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle.car import Car, Run
-from vehicle.simulation.recording import Recording
-from vehicle.sweeps.case import Case, Input, digest, signal_of
-from vehicle.sweeps.evaluation import run_of
-from vehicle.sweeps.executors import process_pool
+from vehicle.engines.simulation.recording import Recording
+from vehicle.runs.car import Car, Run
+from vehicle.studies.sweeps.case import Case, Input, digest, signal_of
+from vehicle.studies.sweeps.evaluation import run_of
+from vehicle.studies.sweeps.executors import process_pool
 
 
 class CarRuns:

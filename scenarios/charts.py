@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.analysis.frf import FrequencyResponse
-from vehicle.output.folder import write_whole
-from vehicle.rendering.figure import COLOURS, FADED, fading, frf_axes, saved_figure, wrapped_phase
+from vehicle.drawing.rendering.figure import COLOURS, FADED, fading, frf_axes, saved_figure, wrapped_phase
+from vehicle.runs.output.folder import write_whole
+from vehicle.signals.analysis.frf import FrequencyResponse
 
 Vector = npt.NDArray[np.float64]
 

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
-from vehicle.output.folder import write_text
+from vehicle.runs.output.folder import write_text
 
 Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate", "not testable"]
 """`predicted`: nothing was adjusted to it. `fitted`: what the source leaves open was fitted to it. `chosen`: one of

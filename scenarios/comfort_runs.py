@@ -13,15 +13,15 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
+from vehicle.engines.reduced.march import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.parameters.paths import value_of
-from vehicle.parameters.vehicle import Vehicle
-from vehicle.reduced.march import has_compiler
-from vehicle.sweeps.case import Case
-from vehicle.sweeps.evaluation import recordings_of, run_of
-from vehicle.sweeps.road import RoadInput, RoadMeasure
-from vehicle.sweeps.sweep import sweep
+from vehicle.model.parameters.paths import value_of
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.studies.sweeps.case import Case
+from vehicle.studies.sweeps.evaluation import recordings_of, run_of
+from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.sweep import sweep
 
 Vector = npt.NDArray[np.float64]
 

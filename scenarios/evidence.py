@@ -101,7 +101,8 @@ def _share(key: str, name: str, place: str, percent: float, how: str, weight: fl
         how=how,
         error=SLIP_ERROR,
         weight=weight,
-        # All eight chose among slip velocities that the half leaves equally likely (`vehicle.excitation.slip_set`).
+        # All eight chose among slip velocities that the half leaves equally likely
+        # (`vehicle.signals.excitation.slip_set`).
         before="chosen",
     )
 

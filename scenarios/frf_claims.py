@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.claims import PREDICTED, Claim, interval_claim
-from vehicle.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.frf import FrequencyResponse
 
 Vector = npt.NDArray[np.float64]
 

@@ -22,21 +22,21 @@ from vehicle.commands.command_line import ProgressLine, parse_and_run
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.options import VEHICLE_HELP, engine_option, resume_options
 from vehicle.commands.parser import Parser
+from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.output.folder import write_json, write_text
-from vehicle.parameters.paths import unit_of
-from vehicle.parameters.ranges import Range
-from vehicle.parameters.shipped import vehicle_file
-from vehicle.parameters.vehicle import load_vehicle
-from vehicle.rendering.figure import COLOURS
-from vehicle.sweeps.case import all_tyre_words, table_cases
-from vehicle.sweeps.executors import executor_factory
-from vehicle.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
-from vehicle.sweeps.road import RoadInput, RoadMeasure
-from vehicle.sweeps.store import ROWS
-from vehicle.sweeps.sweep import sweep
-from vehicle.sweeps.table import SweepTable
+from vehicle.model.parameters.paths import unit_of
+from vehicle.model.parameters.ranges import Range
+from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.output.folder import write_json, write_text
+from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.studies.sweeps.case import all_tyre_words, table_cases
+from vehicle.studies.sweeps.executors import executor_factory
+from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
+from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.store import ROWS
+from vehicle.studies.sweeps.sweep import sweep
+from vehicle.studies.sweeps.table import SweepTable
 
 Matrix = npt.NDArray[np.float64]
 

@@ -21,11 +21,11 @@ from scenarios.evidence_claims import evidence_claim
 from scenarios.inputs.make_inputs import level_signal
 from scenarios.levels import TOO_SHORT
 from scenarios.study import car_study, computed_by, estimator_text, setting
-from vehicle.analysis.frf import FrequencyResponse
-from vehicle.analysis.peaks import resonance_peaks
-from vehicle.car import Car, Run
-from vehicle.linear.modes import Mode
-from vehicle.parameters.elements import Hydromount
+from vehicle.engines.linear.modes import Mode
+from vehicle.model.parameters.elements import Hydromount
+from vehicle.runs.car import Car, Run
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.peaks import resonance_peaks
 
 VARIANTS = {"Ixx 1000 kg m²": "published", "Ixx 1200 kg m²": "improved"}
 """Label of a variant and its name in the results."""

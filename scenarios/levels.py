@@ -21,12 +21,12 @@ from scenarios.evidence_claims import evidence_claim
 from scenarios.frf_claims import axis_claims, coherence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
 from scenarios.study import car_study, computed_by, estimator_text, setting
-from vehicle.analysis.frf import FrequencyResponse
-from vehicle.analysis.peaks import phase_resonance
-from vehicle.car import Run
-from vehicle.excitation.slip_set import sets_text
+from vehicle.engines.reduced.march import has_compiler
 from vehicle.names import across
-from vehicle.reduced.march import has_compiler
+from vehicle.runs.car import Run
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.peaks import phase_resonance
+from vehicle.signals.excitation.slip_set import sets_text
 
 QUICK_OUTPUTS = ("seat_rail_acc_z",)
 """Outputs drawn with --quick."""

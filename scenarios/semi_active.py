@@ -20,21 +20,21 @@ from scenarios.charts import chart
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
 from scenarios.comfort_runs import chosen_engine
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.analysis.comfort import comfort_values
-from vehicle.analysis.seat_value import weighted_rms_of
-from vehicle.analysis.spectra import band_rms
-from vehicle.car import Run
 from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
+from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.semi_active import LAWS, PASSIVE
-from vehicle.parameters.shipped import vehicle_file
-from vehicle.parameters.vehicle import Vehicle
-from vehicle.rendering.figure import COLOURS
-from vehicle.sweeps.case import Case, all_tyre_words, overrides_of
-from vehicle.sweeps.measure import of_one
-from vehicle.sweeps.runs import Runs, Vector
-from vehicle.sweeps.sweep import sweep
+from vehicle.model.parameters.semi_active import LAWS, PASSIVE
+from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.runs.car import Run
+from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.signals.analysis.seat_value import weighted_rms_of
+from vehicle.signals.analysis.spectra import band_rms
+from vehicle.studies.sweeps.case import Case, all_tyre_words, overrides_of
+from vehicle.studies.sweeps.measure import of_one
+from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.sweep import sweep
 
 CAR = "focus_road"
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in "xyz")

@@ -21,14 +21,14 @@ from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.study import car_study, computed_by, setting
-from vehicle.analysis.slip import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
-from vehicle.car import SATURATED_VELOCITY, Run
-from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, bump
-from vehicle.laws.damper import damper_law
+from vehicle.drawing.rendering.figure import COLOURS
+from vehicle.engines.reduced.march import has_compiler
+from vehicle.model.laws.damper import damper_law
+from vehicle.model.parameters.elements import Damper
 from vehicle.names import AXES
-from vehicle.parameters.elements import Damper
-from vehicle.reduced.march import has_compiler
-from vehicle.rendering.figure import COLOURS
+from vehicle.runs.car import SATURATED_VELOCITY, Run
+from vehicle.signals.analysis.slip import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
+from vehicle.signals.excitation.bump import BUMP_DURATION_S, BUMP_START_S, bump
 
 LAWS = {
     "Coulomb": ("damper.friction_law=coulomb", "damper.coulomb_friction=125"),

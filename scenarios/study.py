@@ -14,12 +14,12 @@ import numpy as np
 
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
-from vehicle.analysis.frf import FrequencyResponse
-from vehicle.car import Run
 from vehicle.commands.command_line import parse_and_run
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.options import engine_option, jobs_option, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
+from vehicle.runs.car import Run
+from vehicle.signals.analysis.frf import FrequencyResponse
 
 STUDIES = {
     "levels": "Low, mid and high random input: FRFs, slip shares, wheel mode.",

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from vehicle.car import Car, Run
-from vehicle.excitation.input_files import find_input
-from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import read_signal
+from vehicle.runs.car import Car, Run
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal_file import read_signal
 
 
 @pytest.fixture(scope="session")

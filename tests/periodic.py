@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vehicle.excitation.band import lines_in_band, period_of
-from vehicle.excitation.rest import half_cosine
-from vehicle.excitation.signal import Signal, uniform_time
+from vehicle.signals.excitation.band import lines_in_band, period_of
+from vehicle.signals.excitation.rest import half_cosine
+from vehicle.signals.excitation.signal import Signal, uniform_time
 
 RATE = 1000.0
 

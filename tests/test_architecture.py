@@ -17,6 +17,23 @@ PACKAGE = ROOT / "vehicle"
 EVERYWHERE = {"errors", "names"}
 """May be used by every room."""
 
+WINGS = {
+    "signals": ("analysis", "records", "excitation", "inputs"),
+    "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
+    "engines": ("simulation", "linear", "reduced", "lumped"),
+    "drawing": ("rendering", "notebook"),
+    "runs": ("car", "comparison", "output", "report"),
+    "studies": ("replication", "sweeps", "tuning", "optimisation"),
+    "commands": (),
+}
+"""Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
+
+DATA = {"inputs", "templates", "vehicles"}
+"""Rooms that hold no modules."""
+
+BELOW = EVERYWHERE | {"compiler", "threads"}
+"""Modules that stand below all wings."""
+
 ROOMS: dict[str, set[str]] = {
     "parameters": {"records"},
     "laws": {"compiler", "parameters"},
@@ -35,13 +52,12 @@ ROOMS: dict[str, set[str]] = {
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
-    | {"replication"},
+    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
     | {"reduced", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
-    "replication": {"car", "excitation", "records", "reduced"},
+    "replication": {"car", "excitation", "output", "records", "reduced", "rendering"},
     "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation"},
     "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "linear", "optimisation"}
     | {"output", "parameters", "records", "rendering", "replication", "report", "simulation", "sweeps"},
@@ -85,7 +101,7 @@ MAKERS = {
 }
 """Methods of MjSpec that make elements of a model of the car."""
 
-SCENERY = {("rendering/stage.py", "add_geom")}
+SCENERY = {("drawing/rendering/stage.py", "add_geom")}
 """The floor under the car in a film: no part of the car, and not in its model files."""
 
 
@@ -96,8 +112,14 @@ def modules():
 
 
 def unit_of(path):
-    """Room or top-level module that a file belongs to."""
-    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+    """Room or top-level module that a file belongs to; a wing for the file of the wing itself."""
+    return unit_named(".".join(["vehicle", *path.relative_to(PACKAGE).with_suffix("").parts]))
+
+
+def unit_named(name):
+    """Room, or top-level module, of the dotted name of a module of the package."""
+    parts = [part for part in name.split(".")[1:] if part != "__init__"] or ["__init__"]
+    return parts[1] if WINGS.get(parts[0]) and len(parts) > 1 else parts[0]
 
 
 def imported(path):
@@ -111,8 +133,8 @@ def imported(path):
         elif isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else []
             name = ".".join([*base, *([node.module] if node.module else [])])
-            if name == "vehicle":
-                found += [(f"vehicle.{alias.name}", node.lineno) for alias in node.names]
+            if name == "vehicle" or name.removeprefix("vehicle.") in WINGS:
+                found += [(f"{name}.{alias.name}", node.lineno) for alias in node.names]
             else:
                 found.append((name, node.lineno))
     return found
@@ -121,8 +143,9 @@ def imported(path):
 def test_imports_are_those_of_the_table():
     found: dict[str, set[str]] = {}
     for path in modules():
-        targets = {name.split(".")[1] for name, _ in imported(path) if name.startswith("vehicle.")}
+        targets = {unit_named(name) for name, _ in imported(path) if name.startswith("vehicle.")}
         found.setdefault(unit_of(path), set()).update(targets - {unit_of(path)} - EVERYWHERE)
+    assert all(not found.pop(wing) for wing, rooms in WINGS.items() if rooms), "a wing itself imports nothing"
     assert set(found) == set(ROOMS), "a new room needs its line in this table and in design"
     for unit, targets in found.items():
         assert targets == ROOMS[unit], f"{unit}: new {targets - ROOMS[unit]}, unused {ROOMS[unit] - targets}"
@@ -131,7 +154,7 @@ def test_imports_are_those_of_the_table():
 def test_studies_stand_above_the_package():
     studies = [path for path in sorted((ROOT / "scenarios").rglob("*.py")) if path.name != "__main__.py"]
     assert len(studies) > 20, "the studies were not found"
-    found = {name.split(".")[1] for path in studies for name in modules_of(path) if name.startswith("vehicle.")}
+    found = {unit_named(name) for path in studies for name in modules_of(path) if name.startswith("vehicle.")}
     assert found - EVERYWHERE == STUDIES, f"new {found - EVERYWHERE - STUDIES}, unused {STUDIES - found}"
     below = {path for path in modules() if any(name.split(".")[0] == "scenarios" for name, _ in imported(path))}
     assert not below
@@ -144,12 +167,31 @@ def modules_of(path):
     return [*named, *(one.name for node in ast.walk(tree) if isinstance(node, ast.Import) for one in node.names)]
 
 
-def test_the_table_has_no_cycle():
-    done: set[str] = set()
-    while len(done) < len(ROOMS):
-        ready = {unit for unit, needed in ROOMS.items() if unit not in done and needed <= done}
-        assert ready, f"cycle among {sorted(set(ROOMS) - done)}"
-        done |= ready
+def folders_of(place):
+    """Names of the folders that hold files, other than what Python left there."""
+    files = (path.relative_to(place).parts for path in place.rglob("*") if path.is_file())
+    return {parts[0] for parts in files if len(parts) > 1 and "__pycache__" not in parts}
+
+
+def test_every_room_stands_in_its_wing():
+    assert folders_of(PACKAGE) == set(WINGS)
+    for wing, rooms in WINGS.items():
+        if rooms:
+            assert folders_of(PACKAGE / wing) == set(rooms), wing
+            assert [path.name for path in (PACKAGE / wing).glob("*.py")] == ["__init__.py"], wing
+    for path in (ROOT / "tests").rglob("test_*.py"):
+        folders = path.relative_to(ROOT / "tests").parts[:-1]
+        assert all(folders[0] == wing for wing, rooms in WINGS.items() if set(folders) & set(rooms)), path
+
+
+def test_imports_go_down_from_wing_to_wing_and_from_room_to_room():
+    """The order of the table is that of the floors: it leaves no room for a cycle."""
+    rooms = [room for wing, inside in WINGS.items() for room in inside or (wing,)]
+    floor = {**dict.fromkeys(BELOW | {"__init__"}, -1), **{room: number for number, room in enumerate(rooms)}}
+    floor |= dict.fromkeys(set(ROOMS) - set(floor), len(rooms))
+    assert set(floor) == set(ROOMS) | DATA
+    upwards = {(unit, one) for unit, needed in ROOMS.items() for one in needed if floor[one] >= floor[unit]}
+    assert not upwards
 
 
 @pytest.mark.parametrize("package", HEAVY)
@@ -193,7 +235,7 @@ def test_importing_the_package_loads_nothing_heavy():
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
     assert done.returncode == 0 and done.stdout.strip() == "[]", done.stdout + done.stderr
     # Most of the time of an import would be scipy.signal: written scipy.signal.welch, it is loaded where it is used.
-    code = "import sys, vehicle.car; print({'scipy.signal', 'scipy.stats', 'matplotlib'} & set(sys.modules))"
+    code = "import sys, vehicle.runs.car; print({'scipy.signal', 'scipy.stats', 'matplotlib'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
     assert done.stdout.strip() == "set()", done.stdout + done.stderr
     code = "import sys, vehicle; print('vehicle.shaker' in sys.modules)"

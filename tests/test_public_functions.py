@@ -22,10 +22,10 @@ from vehicle import (
     tune_car,
     write_report,
 )
-from vehicle.records.text_format import write_table
-from vehicle.sweeps.inputs import file_of, inputs_of
-from vehicle.sweeps.plan import changes_of, plan_sweep
-from vehicle.tuning.car_fit import ranges_of
+from vehicle.signals.records.text_format import write_table
+from vehicle.studies.sweeps.inputs import file_of, inputs_of
+from vehicle.studies.sweeps.plan import changes_of, plan_sweep
+from vehicle.studies.tuning.car_fit import ranges_of
 
 VISCOUS = "damper.viscous"
 

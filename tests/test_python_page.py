@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import vehicle
-from vehicle.parameters.paths import value_of
+from vehicle.model.parameters.paths import value_of
 
 ROOT = Path(__file__).resolve().parents[1]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -15,82 +15,82 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vehicle.car.car import Car as Car
-    from vehicle.car.road import Road as Road
-    from vehicle.car.run import Run as Run
-    from vehicle.comparison.compared_run import compare_run as compare_run
-    from vehicle.comparison.mode_comparison import compare_modes as compare_modes
-    from vehicle.comparison.tables import Comparison as Comparison
     from vehicle.errors import ConfigurationError as ConfigurationError
     from vehicle.errors import DataError as DataError
     from vehicle.errors import MissingPartError as MissingPartError
     from vehicle.errors import OutputError as OutputError
     from vehicle.errors import SimulationError as SimulationError
     from vehicle.errors import VehicleError as VehicleError
-    from vehicle.excitation.input_files import shipped_inputs as shipped_inputs
-    from vehicle.excitation.signal import Signal as Signal
-    from vehicle.excitation.signal_file import read_signal as read_signal
-    from vehicle.excitation.signal_file import write_signal as write_signal
-    from vehicle.optimisation.car_search import optimise_car as optimise_car
-    from vehicle.optimisation.found_cars import FoundCars as FoundCars
-    from vehicle.output.comparison_files import save_comparison as save_comparison
-    from vehicle.output.drive_files import save_drive as save_drive
-    from vehicle.output.saved_run import save_run as save_run
-    from vehicle.parameters.shipped import shipped_cars as shipped_cars
-    from vehicle.records.choice import Choice as Choice
-    from vehicle.records.measured import read_measured as read_measured
-    from vehicle.records.reader import read_record as read_record
-    from vehicle.records.record_comfort import RecordComfort as RecordComfort
-    from vehicle.records.record_comfort import evaluate_comfort as evaluate_comfort
-    from vehicle.replication.found_drive import FoundDrive as FoundDrive
-    from vehicle.replication.found_drive import replicate_drive as replicate_drive
-    from vehicle.report.report_file import write_report as write_report
-    from vehicle.sweeps.measure import ComfortMeasure as ComfortMeasure
-    from vehicle.sweeps.plan import run_sweep as run_sweep
-    from vehicle.sweeps.table import SweepTable as SweepTable
-    from vehicle.tuning.car_fit import tune_car as tune_car
-    from vehicle.tuning.measured_targets import measured_histories as measured_histories
-    from vehicle.tuning.measured_targets import measured_responses as measured_responses
-    from vehicle.tuning.result import TuningResult as TuningResult
+    from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
+    from vehicle.runs.car.car import Car as Car
+    from vehicle.runs.car.road import Road as Road
+    from vehicle.runs.car.run import Run as Run
+    from vehicle.runs.comparison.compared_run import compare_run as compare_run
+    from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
+    from vehicle.runs.comparison.tables import Comparison as Comparison
+    from vehicle.runs.output.comparison_files import save_comparison as save_comparison
+    from vehicle.runs.output.saved_run import save_run as save_run
+    from vehicle.runs.report.report_file import write_report as write_report
+    from vehicle.signals.excitation.input_files import shipped_inputs as shipped_inputs
+    from vehicle.signals.excitation.signal import Signal as Signal
+    from vehicle.signals.excitation.signal_file import read_signal as read_signal
+    from vehicle.signals.excitation.signal_file import write_signal as write_signal
+    from vehicle.signals.records.choice import Choice as Choice
+    from vehicle.signals.records.measured import read_measured as read_measured
+    from vehicle.signals.records.reader import read_record as read_record
+    from vehicle.signals.records.record_comfort import RecordComfort as RecordComfort
+    from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
+    from vehicle.studies.optimisation.car_search import optimise_car as optimise_car
+    from vehicle.studies.optimisation.found_cars import FoundCars as FoundCars
+    from vehicle.studies.replication.drive_files import save_drive as save_drive
+    from vehicle.studies.replication.found_drive import FoundDrive as FoundDrive
+    from vehicle.studies.replication.found_drive import replicate_drive as replicate_drive
+    from vehicle.studies.sweeps.measure import ComfortMeasure as ComfortMeasure
+    from vehicle.studies.sweeps.plan import run_sweep as run_sweep
+    from vehicle.studies.sweeps.table import SweepTable as SweepTable
+    from vehicle.studies.tuning.car_fit import tune_car as tune_car
+    from vehicle.studies.tuning.measured_targets import measured_histories as measured_histories
+    from vehicle.studies.tuning.measured_targets import measured_responses as measured_responses
+    from vehicle.studies.tuning.result import TuningResult as TuningResult
 
 _MODULES = {
-    "Car": "vehicle.car.car",
-    "Choice": "vehicle.records.choice",
-    "ComfortMeasure": "vehicle.sweeps.measure",
-    "Comparison": "vehicle.comparison.tables",
+    "Car": "vehicle.runs.car.car",
+    "Choice": "vehicle.signals.records.choice",
+    "ComfortMeasure": "vehicle.studies.sweeps.measure",
+    "Comparison": "vehicle.runs.comparison.tables",
     "ConfigurationError": "vehicle.errors",
     "DataError": "vehicle.errors",
-    "FoundCars": "vehicle.optimisation.found_cars",
-    "FoundDrive": "vehicle.replication.found_drive",
+    "FoundCars": "vehicle.studies.optimisation.found_cars",
+    "FoundDrive": "vehicle.studies.replication.found_drive",
     "MissingPartError": "vehicle.errors",
     "OutputError": "vehicle.errors",
-    "RecordComfort": "vehicle.records.record_comfort",
-    "Road": "vehicle.car.road",
-    "Run": "vehicle.car.run",
-    "Signal": "vehicle.excitation.signal",
+    "RecordComfort": "vehicle.signals.records.record_comfort",
+    "Road": "vehicle.runs.car.road",
+    "Run": "vehicle.runs.car.run",
+    "Signal": "vehicle.signals.excitation.signal",
     "SimulationError": "vehicle.errors",
-    "SweepTable": "vehicle.sweeps.table",
-    "TuningResult": "vehicle.tuning.result",
+    "SweepTable": "vehicle.studies.sweeps.table",
+    "TuningResult": "vehicle.studies.tuning.result",
     "VehicleError": "vehicle.errors",
-    "compare_modes": "vehicle.comparison.mode_comparison",
-    "compare_run": "vehicle.comparison.compared_run",
-    "evaluate_comfort": "vehicle.records.record_comfort",
-    "measured_histories": "vehicle.tuning.measured_targets",
-    "measured_responses": "vehicle.tuning.measured_targets",
-    "optimise_car": "vehicle.optimisation.car_search",
-    "read_measured": "vehicle.records.measured",
-    "read_record": "vehicle.records.reader",
-    "read_signal": "vehicle.excitation.signal_file",
-    "replicate_drive": "vehicle.replication.found_drive",
-    "run_sweep": "vehicle.sweeps.plan",
-    "save_comparison": "vehicle.output.comparison_files",
-    "save_drive": "vehicle.output.drive_files",
-    "save_run": "vehicle.output.saved_run",
-    "shipped_cars": "vehicle.parameters.shipped",
-    "shipped_inputs": "vehicle.excitation.input_files",
-    "tune_car": "vehicle.tuning.car_fit",
-    "write_report": "vehicle.report.report_file",
-    "write_signal": "vehicle.excitation.signal_file",
+    "compare_modes": "vehicle.runs.comparison.mode_comparison",
+    "compare_run": "vehicle.runs.comparison.compared_run",
+    "evaluate_comfort": "vehicle.signals.records.record_comfort",
+    "measured_histories": "vehicle.studies.tuning.measured_targets",
+    "measured_responses": "vehicle.studies.tuning.measured_targets",
+    "optimise_car": "vehicle.studies.optimisation.car_search",
+    "read_measured": "vehicle.signals.records.measured",
+    "read_record": "vehicle.signals.records.reader",
+    "read_signal": "vehicle.signals.excitation.signal_file",
+    "replicate_drive": "vehicle.studies.replication.found_drive",
+    "run_sweep": "vehicle.studies.sweeps.plan",
+    "save_comparison": "vehicle.runs.output.comparison_files",
+    "save_drive": "vehicle.studies.replication.drive_files",
+    "save_run": "vehicle.runs.output.saved_run",
+    "shipped_cars": "vehicle.model.parameters.shipped",
+    "shipped_inputs": "vehicle.signals.excitation.input_files",
+    "tune_car": "vehicle.studies.tuning.car_fit",
+    "write_report": "vehicle.runs.report.report_file",
+    "write_signal": "vehicle.signals.excitation.signal_file",
 }
 """Public name to the module that defines it; the block for type checkers above lists the same."""
 

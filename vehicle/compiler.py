@@ -23,7 +23,7 @@ VARIABLE = "NUMBA_CACHE_DIR"
 """numba reads this when it is imported; processes that are started from here inherit it."""
 
 PACKAGE = Path(__file__).parent
-COMPILING = ("simulation", "reduced")
+COMPILING = ("engines/simulation", "engines/reduced")
 """Rooms with functions whose compiled form is kept."""
 
 OPTIONS: dict[str, Any] = {"boundscheck": False, "error_model": "numpy", "fastmath": {"reassoc", "contract", "nsz"}}
@@ -72,7 +72,7 @@ def stamp() -> int:
     """
     versions = (importlib.import_module("mujoco").__version__, importlib.import_module("numpy").__version__)
     digest = hashlib.sha256(repr(versions).encode())
-    rooms = (path for room in ("laws", *COMPILING) for path in (PACKAGE / room).glob("*.py"))
+    rooms = (path for room in ("model/laws", *COMPILING) for path in (PACKAGE / room).glob("*.py"))
     for path in (Path(__file__), *sorted(rooms)):
         digest.update(path.read_bytes())
     return int.from_bytes(digest.digest()[:6], "big")

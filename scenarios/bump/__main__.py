@@ -29,8 +29,8 @@ from scenarios.bump.seeds import RECORD, SEEDS, BumpSeeds, experiments, many_see
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings, markdown
 from scenarios.study import car_study, setting
-from vehicle.car import SATURATED_VELOCITY
 from vehicle.errors import ConfigurationError
+from vehicle.runs.car import SATURATED_VELOCITY
 
 RING_DOWN = (
     "Ring-down time: from the end of the bump until the vertical acceleration last exceeds 20 % of its largest value "
@@ -42,7 +42,7 @@ RING_DOWN = (
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the bumps, draw the figures (and the film) into the folder, and compare."""
     if options.video is not None:
-        from vehicle.rendering.backend import require_film
+        from vehicle.drawing.rendering.backend import require_film
 
         if Path(options.video).suffix != ".mp4":
             raise ConfigurationError(f"--video {options.video}: a film is written as .mp4; give FILE.mp4")

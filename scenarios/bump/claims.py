@@ -19,7 +19,7 @@ from scenarios.bump.seeds import BumpSeeds, row_key
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim
 from scenarios.evidence import HIGH_PANELS, LOW_PANELS, evidence_of
 from scenarios.evidence_claims import evidence_claim, reason
-from vehicle.car import SATURATED_VELOCITY, Run
+from vehicle.runs.car import SATURATED_VELOCITY, Run
 
 RATIO = 2.0
 """'Much more time' to ring down: at least this ratio."""

@@ -23,14 +23,14 @@ from scenarios.bump.seeds import BumpSeeds, row_key
 from scenarios.charts import figure_file, rows_of
 from scenarios.evidence import evidence_of
 from scenarios.study import computed_by
-from vehicle.car import SATURATED_VELOCITY, Run
-from vehicle.excitation.bump import BUMP_START_S
-from vehicle.output.folder import write_whole
-from vehicle.rendering.backend import choose_backend
-from vehicle.rendering.figure import COLOURS, LINES
-from vehicle.rendering.film import write_film
-from vehicle.rendering.layout import Layout, font
-from vehicle.rendering.shot import Shot, Take
+from vehicle.drawing.rendering.backend import choose_backend
+from vehicle.drawing.rendering.figure import COLOURS, LINES
+from vehicle.drawing.rendering.film import write_film
+from vehicle.drawing.rendering.layout import Layout, font
+from vehicle.drawing.rendering.shot import Shot, Take
+from vehicle.runs.car import SATURATED_VELOCITY, Run
+from vehicle.runs.output.folder import write_whole
+from vehicle.signals.excitation.bump import BUMP_START_S
 
 Vector = npt.NDArray[np.float64]
 

@@ -11,10 +11,10 @@ import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import INSTANT_READING, SLIP_INSTANT
-from vehicle.car import SATURATED_VELOCITY, Run
-from vehicle.excitation.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
-from vehicle.excitation.signal import Signal
 from vehicle.names import AXES
+from vehicle.runs.car import SATURATED_VELOCITY, Run
+from vehicle.signals.excitation.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
+from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
 

@@ -10,10 +10,10 @@ from scenarios.comfort_runs import SEAT_RAIL_Z, Changes, ComfortRuns, Numbers
 from scenarios.comfort_sensitivity.claims import RIGID_BODY, SOURCE
 from scenarios.comfort_sensitivity.histories import WINDOW_S, ends_of
 from scenarios.evidence import COMFORT_ENDS, LEVELS
-from vehicle.analysis.segments import window_extremes
-from vehicle.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.sweeps.case import Case
-from vehicle.sweeps.evaluation import recordings_of
+from vehicle.signals.analysis.segments import window_extremes
+from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.studies.sweeps.case import Case
+from vehicle.studies.sweeps.evaluation import recordings_of
 
 EDGE_FACTORS = (0.6, 1.7)
 """Of the lower edge of the roads, which is not printed."""

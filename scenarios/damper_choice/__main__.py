@@ -45,9 +45,14 @@ from scenarios.damper_choice.runs import (
     trade_off,
 )
 from scenarios.study import VERTICAL_TYRES, lumped_study
-from vehicle.parameters.damper_choice import FITTED, DamperChoiceParameters, ExponentialRoad, damper_choice_parameters
-from vehicle.parameters.toml_file import as_table
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.model.parameters.damper_choice import (
+    FITTED,
+    DamperChoiceParameters,
+    ExponentialRoad,
+    damper_choice_parameters,
+)
+from vehicle.model.parameters.toml_file import as_table
+from vehicle.model.parameters.vehicle import load_vehicle
 
 TITLE = "Choice of dampers for road holding (Mehmood, Khan and Mehmood 2014)"
 

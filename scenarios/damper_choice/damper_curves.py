@@ -15,13 +15,13 @@ import numpy.typing as npt
 from scenarios.charts import chart, lines
 from scenarios.claims import NOT_TESTABLE, Claim
 from scenarios.places import placed
-from vehicle.linear.parts import ROAD, Network, masses_of
-from vehicle.linear.system import Slide
-from vehicle.lumped.half_car_rider import axle_links
-from vehicle.lumped.marched_solution import marched_solution
-from vehicle.lumped.road_holding import exponential_density, quarter_car_model
-from vehicle.parameters.damper_choice import DamperChoiceParameters
-from vehicle.rendering.figure import COLOURS
+from vehicle.drawing.rendering.figure import COLOURS
+from vehicle.engines.linear.parts import ROAD, Network, masses_of
+from vehicle.engines.linear.system import Slide
+from vehicle.engines.lumped.half_car_rider import axle_links
+from vehicle.engines.lumped.marched_solution import marched_solution
+from vehicle.engines.lumped.road_holding import exponential_density, quarter_car_model
+from vehicle.model.parameters.damper_choice import DamperChoiceParameters
 
 Array = npt.NDArray[np.float64]
 

@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
-from vehicle.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
-from vehicle.parameters.axle import Axle
-from vehicle.parameters.damper_choice import (
+from vehicle.engines.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
+from vehicle.model.parameters.axle import Axle
+from vehicle.model.parameters.damper_choice import (
     ExponentialRoad,
     FrequencyBands,
     RoadHoldingHalfCar,

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize, minimize_scalar
 
+from vehicle.engines.lumped.half_car_rider import ENDS
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.lumped.half_car_rider import ENDS
 
 Array = npt.NDArray[np.float64]
 

@@ -9,9 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.damper_choice.optimum import Fluctuation, Optimum, Step, iterate, joint_optimum, optimum
-from vehicle.analysis.weighting import weighting
-from vehicle.excitation.iso_road import CLASSES, REFERENCE
-from vehicle.lumped.road_holding import (
+from vehicle.engines.lumped.road_holding import (
     RideMeasures,
     RoadHoldingModel,
     half_car_model,
@@ -20,15 +18,17 @@ from vehicle.lumped.road_holding import (
     ride_measures,
     tyre_load_ratio,
 )
-from vehicle.parameters.axle import Axle
-from vehicle.parameters.damper_choice import (
+from vehicle.model.parameters.axle import Axle
+from vehicle.model.parameters.damper_choice import (
     DamperChoiceParameters,
     ExponentialRoad,
     FrequencyBands,
     RoadHoldingQuarterCar,
 )
-from vehicle.parameters.paths import value_of
-from vehicle.parameters.vehicle import Vehicle
+from vehicle.model.parameters.paths import value_of
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.signals.analysis.weighting import weighting
+from vehicle.signals.excitation.iso_road import CLASSES, REFERENCE
 
 Array = npt.NDArray[np.float64]
 

@@ -30,12 +30,12 @@ from scenarios.four_post.runs import (
     run_motion,
 )
 from scenarios.study import QUICK_NOTE, Study, study_parser
-from vehicle.car import Car
 from vehicle.commands.options import engine_option, vehicle_options
 from vehicle.commands.parser import Parser
-from vehicle.excitation.four_post import DURATION_S, MOTIONS
-from vehicle.linear.modes import Mode
-from vehicle.parameters.driving import tyre_words
+from vehicle.engines.linear.modes import Mode
+from vehicle.model.parameters.driving import tyre_words
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.four_post import DURATION_S, MOTIONS
 
 CARS = ("focus_road", "sedan")
 """Shipped cars on four wheels."""

@@ -9,15 +9,15 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.analysis.frf import FrequencyResponse
-from vehicle.analysis.peaks import Peak, resonance_peaks
-from vehicle.car import Car
-from vehicle.excitation.four_post import MOTIONS, four_post
-from vehicle.linear.first_order import first_order
-from vehicle.linear.modes import Mode
-from vehicle.linear.response import frequency_response
+from vehicle.drawing.rendering.recorded_run import hub_channel
+from vehicle.engines.linear.first_order import first_order
+from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.response import frequency_response
 from vehicle.names import AXES
-from vehicle.rendering.recorded_run import hub_channel
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.peaks import Peak, resonance_peaks
+from vehicle.signals.excitation.four_post import MOTIONS, four_post
 
 Vector = npt.NDArray[np.float64]
 

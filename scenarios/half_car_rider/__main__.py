@@ -18,9 +18,9 @@ from scenarios.half_car_rider.claims import base_case_claims, dose_claims, matri
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
 from scenarios.study import VERTICAL_TYRES, lumped_study
-from vehicle.lumped.half_car_rider import ENDS
-from vehicle.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
-from vehicle.parameters.semi_active import LAWS, PASSIVE
+from vehicle.engines.lumped.half_car_rider import ENDS
+from vehicle.model.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
+from vehicle.model.parameters.semi_active import LAWS, PASSIVE
 
 TITLE = "Half car with seat and rider (Parametric study of rider's comfort in a vehicle with semi-active suspension)"
 
@@ -32,7 +32,7 @@ SETTLING_NOTE = (
 
 ASSUMED = (
     "Assumed, because the source does not print them: seat mass 35 kg, stiffness 15000 N/m and damping 150 N s/m; all "
-    "numbers of the semi-active dampers (vehicle/parameters/half_car_rider.toml)."
+    "numbers of the semi-active dampers (vehicle/model/parameters/half_car_rider.toml)."
 )
 
 

@@ -21,9 +21,9 @@ from scenarios.half_car_rider.runs import (
     varied,
 )
 from scenarios.half_car_rider.settling_claims import settling_claims
-from vehicle.lumped.half_car_rider import half_car_rider
-from vehicle.lumped.history import Array, History
-from vehicle.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.history import Array, History
+from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
 
 Study = Mapping[str, list[list[Outcome]]]
 """Varied parameter -> speed -> factor -> outcome."""

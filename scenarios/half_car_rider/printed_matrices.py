@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from vehicle.linear.first_order import first_order
-from vehicle.linear.system import LinearSystem
-from vehicle.lumped.half_car_rider import half_car_rider
-from vehicle.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.engines.linear.first_order import first_order
+from vehicle.engines.linear.system import LinearSystem
+from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
 
 
 def printed_system(parameters: HalfCarRiderParameters) -> LinearSystem:

@@ -9,15 +9,15 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.analysis.exposure import vibration_dose_value
+from vehicle.engines.lumped.bump_response import bump_passage, bump_response
+from vehicle.engines.lumped.half_car_rider import ENDS, half_car_rider, lift_off, linear_tyre_load, places
+from vehicle.engines.lumped.history import Array, History
+from vehicle.engines.lumped.semi_active import simulate_bump
 from vehicle.errors import ConfigurationError
-from vehicle.lumped.bump_response import bump_passage, bump_response
-from vehicle.lumped.half_car_rider import ENDS, half_car_rider, lift_off, linear_tyre_load, places
-from vehicle.lumped.history import Array, History
-from vehicle.lumped.semi_active import simulate_bump
-from vehicle.parameters.axle import Axle
-from vehicle.parameters.half_car_rider import HalfCarRiderParameters
-from vehicle.parameters.semi_active import PASSIVE
+from vehicle.model.parameters.axle import Axle
+from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.model.parameters.semi_active import PASSIVE
+from vehicle.signals.analysis.exposure import vibration_dose_value
 
 Motion = Literal["displacement", "acceleration"]
 

@@ -16,10 +16,10 @@ from scenarios.kinematics.axles import POINT, Axle, Moved, axles_of, moved_axles
 from scenarios.kinematics.claims import axle_table, claims
 from scenarios.kinematics.figures import compliance_figure, moved_figure, travel_figure
 from scenarios.study import Study, study_parser
-from vehicle.car import Car
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.shipped import CARS, vehicle_file
+from vehicle.model.parameters.shipped import CARS, vehicle_file
+from vehicle.runs.car import Car
 
 REACH = 60
 """Wheel travel to both sides [mm]."""

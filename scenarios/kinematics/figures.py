@@ -11,8 +11,8 @@ import numpy.typing as npt
 from scenarios.charts import figure_file
 from scenarios.kinematics.axles import Axle, Moved
 from scenarios.kinematics.claims import COMPLIANCES
-from vehicle.rendering.figure import COLOURS, LINES
-from vehicle.simulation.axle_statics import WheelPose
+from vehicle.drawing.rendering.figure import COLOURS, LINES
+from vehicle.engines.simulation.axle_statics import WheelPose
 
 PANELS = {
     "camber [deg], top outwards +": "camber_deg",

@@ -24,7 +24,7 @@ from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.options import jobs_option, message_options, output_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import DataError, SimulationError
-from vehicle.output.folder import write_text
+from vehicle.runs.output.folder import write_text
 
 HOME = Path("renders/published")
 """The table and the pictures of the full studies are kept under version control."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from vehicle.output.folder import write_whole
+from vehicle.runs.output.folder import write_whole
 
 LARGEST = 120_000
 """Maximum size of a picture under version control [byte]."""

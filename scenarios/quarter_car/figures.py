@@ -21,12 +21,12 @@ from scenarios.quarter_car.runs import (
     Array,
     Runs,
 )
-from vehicle.analysis.spectra import power_spectral_density
-from vehicle.laws.coulomb import Coulomb
-from vehicle.linear.response import frequency_response
-from vehicle.lumped.history import History
-from vehicle.lumped.quarter_car import elastomer
-from vehicle.rendering.figure import COLOURS
+from vehicle.drawing.rendering.figure import COLOURS
+from vehicle.engines.linear.response import frequency_response
+from vehicle.engines.lumped.history import History
+from vehicle.engines.lumped.quarter_car import elastomer
+from vehicle.model.laws.coulomb import Coulomb
+from vehicle.signals.analysis.spectra import power_spectral_density
 
 Quantity = Callable[[History], Array]
 Run = Callable[[Runs, float], History]

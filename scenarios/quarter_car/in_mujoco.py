@@ -13,17 +13,17 @@ import numpy.typing as npt
 
 from scenarios.claims import OWN_CHECK, Claim
 from scenarios.quarter_car.runs import STEP, Runs, rms
-from vehicle.analysis.slip import slip_share
-from vehicle.assembly.quarter_car import WHEEL, quarter_car_spec
-from vehicle.excitation.signal import Signal
-from vehicle.laws.coulomb import Coulomb
-from vehicle.laws.friction import Clamped
-from vehicle.linear.first_order import FirstOrder
-from vehicle.lumped.quarter_car import quarter_car
-from vehicle.parameters.quarter_car import QuarterCar
-from vehicle.simulation.callbacks import installed
-from vehicle.simulation.plate_arrays import PlateArrays
-from vehicle.simulation.rows import Rows, prepare_model
+from vehicle.engines.linear.first_order import FirstOrder
+from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.plate_arrays import PlateArrays
+from vehicle.engines.simulation.rows import Rows, prepare_model
+from vehicle.model.assembly.quarter_car import WHEEL, quarter_car_spec
+from vehicle.model.laws.coulomb import Coulomb
+from vehicle.model.laws.friction import Clamped
+from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.signals.analysis.slip import slip_share
+from vehicle.signals.excitation.signal import Signal
 
 Array = npt.NDArray[np.float64]
 

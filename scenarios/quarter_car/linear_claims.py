@@ -7,9 +7,9 @@ import numpy as np
 from scenarios.claims import INFERRED, PREDICTED, Claim
 from scenarios.places import placed
 from scenarios.quarter_car.runs import Runs
-from vehicle.linear.natural_modes import natural_modes
-from vehicle.linear.response import frequency_response
-from vehicle.lumped.quarter_car import elastomer
+from vehicle.engines.linear.natural_modes import natural_modes
+from vehicle.engines.linear.response import frequency_response
+from vehicle.engines.lumped.quarter_car import elastomer
 
 ABOUT = "printed with 'about', read from a figure: 5 %"
 

@@ -10,7 +10,7 @@ from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, spread_claim
 from scenarios.places import placed
 from scenarios.quarter_car.linear_claims import ABOUT
 from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, SEED, STEEP, Array, Runs, peak, rms, rough_road
-from vehicle.linear.response import frequency_response
+from vehicle.engines.linear.response import frequency_response
 
 FIRST, SECOND = (1.0, 8.0), (8.0, 35.0)
 """Bands [Hz] where the first (body) and the second (wheel) resonance are looked for."""

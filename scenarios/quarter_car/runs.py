@@ -10,18 +10,18 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.analysis.spectra import power_spectral_density
-from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal import Signal
-from vehicle.laws.coulomb import Coulomb
-from vehicle.laws.switch import Switch
-from vehicle.linear.first_order import FirstOrder
-from vehicle.lumped.drive import Sampled, Sine
-from vehicle.lumped.history import History
-from vehicle.lumped.marched_solution import marched_solution
-from vehicle.lumped.quarter_car import quarter_car, single_mass
-from vehicle.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
-from vehicle.parameters.quarter_car import QuarterCar
+from vehicle.engines.linear.first_order import FirstOrder
+from vehicle.engines.lumped.drive import Sampled, Sine
+from vehicle.engines.lumped.history import History
+from vehicle.engines.lumped.marched_solution import marched_solution
+from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
+from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
+from vehicle.model.laws.coulomb import Coulomb
+from vehicle.model.laws.switch import Switch
+from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.signals.analysis.spectra import power_spectral_density
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal import Signal
 
 Array = npt.NDArray[np.float64]
 

@@ -7,9 +7,9 @@ import numpy as np
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim
 from scenarios.places import placed
 from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Array, Runs, rms
-from vehicle.linear.response import frequency_response
-from vehicle.lumped.history import History
-from vehicle.parameters.quarter_car import QuarterCar
+from vehicle.engines.linear.response import frequency_response
+from vehicle.engines.lumped.history import History
+from vehicle.model.parameters.quarter_car import QuarterCar
 
 NEARLY = 0.1
 """"Nearly equal" [-]."""

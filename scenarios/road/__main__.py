@@ -19,9 +19,9 @@ from scenarios.road.figures import draw_classes, draw_friction
 from scenarios.road.findings import check_table, class_table, friction_claims, friction_table, scaling_claim, words
 from scenarios.road.runs import Ride, RideRuns
 from scenarios.study import QUICK_NOTE, car_study
+from vehicle.engines.reduced.march import has_compiler
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.shipped import VEHICLES
-from vehicle.reduced.march import has_compiler
+from vehicle.model.parameters.shipped import VEHICLES
 
 CARS = {"without occupant": "focus_road", "with occupant": "focus_road_seated"}
 """Shipped cars of the study by their names in tables."""

@@ -11,7 +11,7 @@ import numpy as np
 from scenarios.charts import figure_file
 from scenarios.road.findings import ratio
 from scenarios.road.runs import Ride, RideRuns
-from vehicle.rendering.figure import COLOURS
+from vehicle.drawing.rendering.figure import COLOURS
 
 STYLES = ("-", "--", ":")
 """Of the cars, in their order."""

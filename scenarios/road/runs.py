@@ -12,19 +12,19 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.comfort_runs import chosen_engine, standard_error
-from vehicle.analysis.comfort import comfort_values
-from vehicle.analysis.seat_value import seat_value, weighted_rms_of
-from vehicle.analysis.slip import slip_shares
-from vehicle.car import Car, Run
 from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.errors import SimulationError
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
-from vehicle.parameters.vehicle import Vehicle
-from vehicle.sweeps.case import Case, all_tyre_words, overrides_of
-from vehicle.sweeps.measure import of_one
-from vehicle.sweeps.runs import Runs, Vector
-from vehicle.sweeps.sweep import sweep
+from vehicle.runs.car import Car, Run
+from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
+from vehicle.signals.analysis.slip import slip_shares
+from vehicle.studies.sweeps.case import Case, all_tyre_words, overrides_of
+from vehicle.studies.sweeps.measure import of_one
+from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.sweep import sweep
 
 LEAD_S = 2.0
 """Seconds at the beginning that are left out: the road rises out of a plane in the first one."""

@@ -34,7 +34,7 @@ from scenarios.source_choice.likelihood import (
 )
 from scenarios.source_choice.runs import Plan, Readings, Vector, readings
 from scenarios.study import QUICK_NOTE, Study, study_parser
-from vehicle.sweeps.executors import process_pool
+from vehicle.studies.sweeps.executors import process_pool
 
 EVERY = frozenset(row.key for row in EVIDENCE)
 HELD = EVERY - USED

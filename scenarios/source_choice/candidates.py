@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from vehicle.output.folder import write_text
-from vehicle.parameters.shipped import vehicle_file as shipped_file
+from vehicle.model.parameters.shipped import vehicle_file as shipped_file
+from vehicle.runs.output.folder import write_text
 
 PLATES = {"+y": "fr", "-y": "fl"}
 """Side of the plate to its wheel: +y is the driver's right."""

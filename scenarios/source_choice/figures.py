@@ -11,7 +11,7 @@ import numpy.typing as npt
 from scenarios.charts import figure_file
 from scenarios.source_choice.candidates import Rig
 from scenarios.source_choice.likelihood import Candidate, best
-from vehicle.rendering.figure import COLOURS
+from vehicle.drawing.rendering.figure import COLOURS
 
 Vector = npt.NDArray[np.float64]
 

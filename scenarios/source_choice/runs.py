@@ -23,16 +23,16 @@ from scenarios.source_choice.candidates import (
     Rig,
     vehicle_file,
 )
-from vehicle.analysis.comfort import comfort_values
-from vehicle.analysis.peaks import phase_resonance
-from vehicle.car import Car
-from vehicle.excitation.band import SHAKER_ROLL_OFF_ORDER
-from vehicle.excitation.bump import BUMP_START_S, NOISE_RMS, bump
-from vehicle.excitation.exact_road import LEAD_S, RATE_HZ, ROAD_RMS, road
-from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal import Signal
+from vehicle.engines.reduced.many import COARSE_STEP, simulate_many
 from vehicle.names import AXES
-from vehicle.reduced.many import COARSE_STEP, simulate_many
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.signals.analysis.peaks import phase_resonance
+from vehicle.signals.excitation.band import SHAKER_ROLL_OFF_ORDER
+from vehicle.signals.excitation.bump import BUMP_START_S, NOISE_RMS, bump
+from vehicle.signals.excitation.exact_road import LEAD_S, RATE_HZ, ROAD_RMS, road
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
 

@@ -42,20 +42,20 @@ from scenarios.tuning.data import (
 )
 from scenarios.tuning.figures import correlation_figure, level_figure, parameter_figure, record_figure
 from scenarios.tuning.own_data import own_measurements
-from vehicle.car import Car, Run
 from vehicle.commands.command_line import ProgressLine
 from vehicle.commands.compare import drift_option, mapping_options
 from vehicle.commands.input_options import record_options
 from vehicle.commands.parser import Parser
-from vehicle.parameters.paths import overrides_of
-from vehicle.parameters.ranges import Range
-from vehicle.tuning.car_fit import require_fittable
-from vehicle.tuning.fit import Target, fit
-from vehicle.tuning.frf_target import FrfTarget
-from vehicle.tuning.full_steps import FullSteps, full_steps
-from vehicle.tuning.measured_targets import BAND, SPACING, MeasuredTarget
-from vehicle.tuning.record_target import RecordTarget
-from vehicle.tuning.result import TuningResult
+from vehicle.model.parameters.paths import overrides_of
+from vehicle.model.parameters.ranges import Range
+from vehicle.runs.car import Car, Run
+from vehicle.studies.tuning.car_fit import require_fittable
+from vehicle.studies.tuning.fit import Target, fit
+from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.full_steps import FullSteps, full_steps
+from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
+from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.result import TuningResult
 
 
 class Tuning:

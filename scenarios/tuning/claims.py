@@ -9,12 +9,12 @@ from typing import Any
 
 from scenarios.claims import OWN_CHECK, Claim, markdown
 from scenarios.tuning.data import NOISE, SLIDING
-from vehicle.parameters.paths import unit_of
-from vehicle.parameters.vehicle import Vehicle
-from vehicle.tuning.full_steps import SMALL, FullSteps
-from vehicle.tuning.identifiability import WIDEST
-from vehicle.tuning.measured_targets import MeasuredTarget
-from vehicle.tuning.result import TuningResult
+from vehicle.model.parameters.paths import unit_of
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.studies.tuning.full_steps import SMALL, FullSteps
+from vehicle.studies.tuning.identifiability import WIDEST
+from vehicle.studies.tuning.measured_targets import MeasuredTarget
+from vehicle.studies.tuning.result import TuningResult
 
 WITHIN = 3.0
 """Standard errors: 99.7 % of the values of a normal distribution; one of nine is beyond in one fit of forty."""

@@ -10,23 +10,23 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.car_runs import CarRuns
-from vehicle.analysis.frf import FrequencyResponse
-from vehicle.car import Run
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.input_files import find_input
-from vehicle.excitation.signal_file import read_signal
+from vehicle.model.parameters.paths import overrides_of
+from vehicle.model.parameters.ranges import Range
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import channel_units
-from vehicle.output.folder import write_whole
-from vehicle.output.run_files import FRAME
-from vehicle.parameters.paths import overrides_of
-from vehicle.parameters.ranges import Range
-from vehicle.parameters.vehicle import Vehicle
-from vehicle.records.frf import read_frf, write_frf
-from vehicle.records.table import Record
-from vehicle.tuning.car_fit import ranges_of
-from vehicle.tuning.frf_target import FrfTarget
-from vehicle.tuning.measured_targets import BAND, SPACING, MeasuredTarget
-from vehicle.tuning.record_target import RecordTarget
+from vehicle.runs.car import Run
+from vehicle.runs.output.folder import write_whole
+from vehicle.runs.output.run_files import FRAME
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.records.frf import read_frf, write_frf
+from vehicle.signals.records.table import Record
+from vehicle.studies.tuning.car_fit import ranges_of
+from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
+from vehicle.studies.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_{wheel}_acc_z", "engine_acc_z", "suspension_mount_{wheel}_acc_z", "seat_rail_acc_z")
 """The four places that the authors compared (section 3.2.1): wheel, engine and body modes."""

@@ -6,10 +6,10 @@ import argparse
 from pathlib import Path
 
 from scenarios.tuning.data import CHANNELS, driven_channels
-from vehicle.car import Car
 from vehicle.commands.compare import clock_of, measured_choice
 from vehicle.errors import ConfigurationError
-from vehicle.tuning.measured_targets import MeasuredTarget, measured_histories, measured_responses
+from vehicle.runs.car import Car
+from vehicle.studies.tuning.measured_targets import MeasuredTarget, measured_histories, measured_responses
 
 STUCK = "low"
 """Level at which the dampers stay stuck, so that the car is linear."""

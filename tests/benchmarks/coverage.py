@@ -17,18 +17,18 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from tests.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses
-from vehicle.analysis.comfort import comfort_value, comfort_values
-from vehicle.analysis.comfort_error import WAVES, difference_error
-from vehicle.car import Car
+from tests.studies.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses
 from vehicle.commands.road import road_drive
-from vehicle.excitation.iso_road import CLASSES, REFERENCE, isotropic_coherence
-from vehicle.excitation.road_drive import RoadDrive
+from vehicle.model.parameters.ranges import Range
 from vehicle.names import AXES
-from vehicle.optimisation.trials import Spread, bands, samples_for
-from vehicle.parameters.ranges import Range
-from vehicle.sweeps.indices import sobol_indices, sobol_sample
-from vehicle.tuning.fit import fit
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.comfort import comfort_value, comfort_values
+from vehicle.signals.analysis.comfort_error import WAVES, difference_error
+from vehicle.signals.excitation.iso_road import CLASSES, REFERENCE, isotropic_coherence
+from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.studies.optimisation.trials import Spread, bands, samples_for
+from vehicle.studies.sweeps.indices import sobol_indices, sobol_sample
+from vehicle.studies.tuning.fit import fit
 
 Vector = npt.NDArray[np.float64]
 Rows = list[dict[str, Any]]

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 from scipy.signal import find_peaks
 
-from vehicle.car import Car
+from vehicle.runs.car import Car
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

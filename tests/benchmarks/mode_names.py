@@ -7,8 +7,8 @@ Asked: the named motion holds half of the energy, or two motions are named with 
 
 from __future__ import annotations
 
-from vehicle.car import Car
-from vehicle.linear.motion_names import NAMED
+from vehicle.engines.linear.motion_names import NAMED
+from vehicle.runs.car import Car
 
 CARS = (
     ("focus", "stuck"),

@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.analysis.record_rating import rate_record
-from vehicle.analysis.time_shift import time_shift
+from vehicle.signals.analysis.record_rating import rate_record
+from vehicle.signals.analysis.time_shift import time_shift
 
 Vector = npt.NDArray[np.float64]
 

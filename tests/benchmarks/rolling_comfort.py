@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import argparse
 
-from vehicle.car import Car
 from vehicle.commands.road import road_drive
-from vehicle.output.run_comfort import comfort_values
+from vehicle.runs.car import Car
+from vehicle.runs.output.run_comfort import comfort_values
 
 CASES: dict[str, tuple[dict[str, object], list[str]]] = {
     "standing, no contact patch": ({"tyre": "standing", "patch": 0.0}, []),

@@ -16,9 +16,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.car import Car
 from vehicle.commands.road import road_drive
-from vehicle.reduced.run import simulate_reduced
+from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.runs.car import Car
 
 Histories = dict[str, npt.NDArray[np.float64]]
 

@@ -20,15 +20,15 @@ import numpy as np
 import numpy.typing as npt
 
 from tests.benchmarks.sweep_case import case_alone_ms, case_ms
-from vehicle.car import Car
-from vehicle.excitation.input_files import find_input
-from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import read_signal
+from vehicle.engines.reduced.many import simulate_many
+from vehicle.engines.simulation.callbacks import compiled_rows, installed
+from vehicle.engines.simulation.plate_arrays import PlateArrays
+from vehicle.engines.simulation.rows import Rows, prepare_model
 from vehicle.names import AXES
-from vehicle.reduced.many import simulate_many
-from vehicle.simulation.callbacks import compiled_rows, installed
-from vehicle.simulation.plate_arrays import PlateArrays
-from vehicle.simulation.rows import Rows, prepare_model
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal_file import read_signal
 
 SHOWN = {
     "rows": "constraint rows",

@@ -10,11 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from scenarios.global_sensitivity import RANGES, points_of
-from vehicle.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.sweeps.case import Case, table_cases
-from vehicle.sweeps.evaluation import run_of
-from vehicle.sweeps.road import RoadInput, RoadMeasure
-from vehicle.sweeps.sweep import sweep
+from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.studies.sweeps.case import Case, table_cases
+from vehicle.studies.sweeps.evaluation import run_of
+from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.sweep import sweep
 
 SECONDS = 20.0
 """Evaluated part of a run [s]; with the lead it is 30 s long."""

@@ -10,8 +10,8 @@ import pytest
 
 from vehicle.commands.body import main
 from vehicle.commands.body.compare_bodies import FILES
-from vehicle.comparison import pictures
-from vehicle.flexbody.superelement_file import write_superelement
+from vehicle.model.flexbody.superelement_file import write_superelement
+from vehicle.runs.comparison import pictures
 
 
 @pytest.fixture(scope="module")

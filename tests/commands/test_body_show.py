@@ -9,14 +9,14 @@ import tomllib
 import numpy as np
 import pytest
 
-from vehicle.car import Car
 from vehicle.commands.body import main
-from vehicle.excitation.signal import Signal
-from vehicle.flexbody.mass_difference import mass_difference, vehicle_lines
-from vehicle.flexbody.rigid_body import rigid_body
-from vehicle.output.run_files import summarise
-from vehicle.parameters.vehicle import load_vehicle
-from vehicle.rendering.body_plot import plot_body
+from vehicle.drawing.rendering.body_plot import plot_body
+from vehicle.model.flexbody.mass_difference import mass_difference, vehicle_lines
+from vehicle.model.flexbody.rigid_body import rigid_body
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+from vehicle.runs.output.run_files import summarise
+from vehicle.signals.excitation.signal import Signal
 
 STORED, IMPROVED = "body.superelement=trimmed_body.toml", "body.inertia.ixx=1200"
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from vehicle.commands.drive import main
-from vehicle.excitation.signal_file import read_signal
-from vehicle.records.text_format import write_table
+from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.records.text_format import write_table
 
 CHANNEL = "knuckle_fr_acc_z"
 

@@ -13,7 +13,7 @@ from vehicle.commands.advice import axis_of, wheel_of
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.inspect import main as inspect
 from vehicle.errors import SimulationError
-from vehicle.records.channel import Channel
+from vehicle.signals.records.channel import Channel
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_the_command_runs_as_printed(tmp_path, capsys, monkeypatch, kind):
         def run(*_, **__):
             raise SimulationError("the run has begun")
 
-        monkeypatch.setattr("vehicle.car.car.Car.run", run)
+        monkeypatch.setattr("vehicle.runs.car.car.Car.run", run)
     extra = ["--engine", "reduced", "--quiet", "--output", "out"] if words[3] == "shaker" else []
     code = import_module(f"vehicle.commands.{words[3]}").main([*words[4:], *extra])
     err = capsys.readouterr().err

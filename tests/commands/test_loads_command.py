@@ -7,9 +7,9 @@ import csv
 import numpy as np
 import pytest
 
-from vehicle.analysis.load_spectrum import load_spectrum
 from vehicle.commands.loads import main, recorded_channels
 from vehicle.errors import ConfigurationError
+from vehicle.signals.analysis.load_spectrum import load_spectrum
 
 
 def rows_of(path):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle.commands.road import main
-from vehicle.excitation.signal_file import read_signal
+from vehicle.signals.excitation.signal_file import read_signal
 
 
 def test_a_class_and_a_speed_make_a_signal_that_is_read_back(tmp_path, capsys):

@@ -10,11 +10,11 @@ import pytest
 
 from vehicle.commands import modes, shaker
 from vehicle.commands.road import road_drive
-from vehicle.excitation.road_drive import RoadDrive
-from vehicle.parameters.driving import Driving, tyre_words
-from vehicle.parameters.shipped import vehicle_file
-from vehicle.parameters.vehicle import load_vehicle
-from vehicle.sweeps.case import SignalFile, all_tyre_words, drivings, table_cases
+from vehicle.model.parameters.driving import Driving, tyre_words
+from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.studies.sweeps.case import SignalFile, all_tyre_words, drivings, table_cases
 
 ROAD = ["--road", "A", "--speed", "72", "--duration", "3", "--engine", "reduced", "--quiet"]
 

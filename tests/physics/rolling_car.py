@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.car import Car
-from vehicle.parameters.vehicle import vehicle_of
+from vehicle.model.parameters.vehicle import vehicle_of
+from vehicle.runs.car import Car
 
 Vector = npt.NDArray[np.float64]
 
@@ -66,7 +66,7 @@ def rolling_car(
         vertical: stiffness of the tyres [N/m].
         overrides: texts "path=value".
     """
-    from vehicle.parameters.paths import override
+    from vehicle.model.parameters.paths import override
 
     (folder / "corner.toml").write_text(TEMPLATE)
     table: dict[str, Any] = {

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.simulation.row_model import Stepper, add_damper, empty_spec
-from vehicle.car import Car
+from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.laws.curve import Curve
-from vehicle.parameters.shipped import FOCUS_FILE
-from vehicle.parameters.toml_file import read_table
-from vehicle.parameters.vehicle import vehicle_of
+from vehicle.model.laws.curve import Curve
+from vehicle.model.parameters.shipped import FOCUS_FILE
+from vehicle.model.parameters.toml_file import read_table
+from vehicle.model.parameters.vehicle import vehicle_of
+from vehicle.runs.car import Car
 
 VELOCITY = [-0.5, -0.1, -0.02, 0.0, 0.02, 0.1, 0.5]
 FORCE = [-700.0, -300.0, -150.0, 0.0, 300.0, 600.0, 1400.0]

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.simulation.row_model import Stepper, add_damper, empty_spec
-from vehicle.car import Car
-from vehicle.laws.degressive import Degressive
-from vehicle.simulation.callbacks import compiled_rows
-from vehicle.simulation.rows import Rows, prepare_model
-from vehicle.simulation.run import simulate
+from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from vehicle.engines.simulation.callbacks import compiled_rows
+from vehicle.engines.simulation.rows import Rows, prepare_model
+from vehicle.engines.simulation.run import simulate
+from vehicle.model.laws.degressive import Degressive
+from vehicle.runs.car import Car
 
 LAW = Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02)  # appendix C.2 of Bommer 2006
 VALVE = [13500.0, 0.0, 13500.0 * 0.02]

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from tests.simulation.row_model import Stepper, add_damper, empty_spec
-from vehicle.car import Car
+from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.input_files import find_input
-from vehicle.excitation.signal_file import read_signal
-from vehicle.laws.curve import Curve
-from vehicle.parameters.shipped import FOCUS_FILE
-from vehicle.parameters.toml_file import read_table
-from vehicle.parameters.vehicle import vehicle_of
+from vehicle.model.laws.curve import Curve
+from vehicle.model.parameters.shipped import FOCUS_FILE
+from vehicle.model.parameters.toml_file import read_table
+from vehicle.model.parameters.vehicle import vehicle_of
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal_file import read_signal
 
 # A bump stop: nothing up to 20 mm, then two rates; and a rebound stop.
 GIVES, FORCES = [-0.06, -0.04, -0.02, 0.03, 0.04], [-9000.0, -1000.0, 0.0, 0.0, 2000.0]

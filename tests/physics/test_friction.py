@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.simulation.row_model import Stepper, add_damper, empty_spec
-from vehicle.laws.stribeck import Stribeck
+from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from vehicle.model.laws.stribeck import Stribeck
 
 LIMIT, SMOOTHING, VISCOUS = 125.0, 1e5, 2250.0  # the damper of Bommer 2006
 CREEP = 2.0 / np.pi * LIMIT * SMOOTHING  # N s/m, slope of the smooth law at rest

@@ -6,8 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from tests.flexbody.box_body import box_fields
-from tests.simulation.row_model import (
+from tests.engines.simulation.row_model import (
     QUARTER_TURN,
     Stepper,
     add_bushing,
@@ -15,7 +14,8 @@ from tests.simulation.row_model import (
     element_law,
     empty_spec,
 )
-from vehicle.flexbody.superelement import Superelement
+from tests.model.flexbody.box_body import box_fields
+from vehicle.model.flexbody.superelement import Superelement
 
 BOX = Superelement(**box_fields())
 STEP = 2e-4  # w h = 0.05 at the highest of the four modes

@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 import scipy
 
-from tests.flexbody.box_body import MASSES, PAIRS, POSITIONS, SECTION, box_fields
-from tests.simulation.row_model import QUARTER_TURN, Stepper, add_bushing, add_mode, element_law, empty_spec
-from vehicle.car import Car
+from tests.engines.simulation.row_model import QUARTER_TURN, Stepper, add_bushing, add_mode, element_law, empty_spec
+from tests.model.flexbody.box_body import MASSES, PAIRS, POSITIONS, SECTION, box_fields
 from vehicle.commands import body as body_command
-from vehicle.excitation.signal import Signal
-from vehicle.flexbody.beam import frame_stiffness
-from vehicle.flexbody.library import BODY_DESIGN
-from vehicle.flexbody.modes import condense_rotations
-from vehicle.flexbody.superelement import Superelement
-from vehicle.linear.matrices import car_matrices
-from vehicle.parameters.shipped import FOCUS_FILE
-from vehicle.parameters.vehicle import load_vehicle
-from vehicle.simulation.static_trim import StaticTrim
+from vehicle.engines.linear.matrices import car_matrices
+from vehicle.engines.simulation.static_trim import StaticTrim
+from vehicle.model.flexbody.beam import frame_stiffness
+from vehicle.model.flexbody.library import BODY_DESIGN
+from vehicle.model.flexbody.modes import condense_rotations
+from vehicle.model.flexbody.superelement import Superelement
+from vehicle.model.parameters.shipped import FOCUS_FILE
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.signal import Signal
 
 STIFFNESS = frame_stiffness(POSITIONS, [(a, b, SECTION) for a, b in PAIRS])
 _, RECOVERY = condense_rotations(STIFFNESS)

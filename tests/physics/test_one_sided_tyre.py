@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.simulation.row_model import Stepper, add_bushing, element_law, empty_spec
-from vehicle.car import Car
+from tests.engines.simulation.row_model import Stepper, add_bushing, element_law, empty_spec
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.signal import Signal
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.signal import Signal
 
 MASS, STIFFNESS, DAMPING, GRAVITY, HEIGHT = 40.0, 2.0e5, 800.0, 9.81, 0.03
 DURATION, EVERY = 0.4, 4e-3

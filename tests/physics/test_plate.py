@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
+from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
 
 MASS, K, B = 35.0, 2.5e5, 400.0
 

@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 
 from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
-from tests.simulation.row_model import poles
-from vehicle.analysis.slip import slip_share
-from vehicle.assembly.quarter_car import quarter_car_spec
+from tests.engines.simulation.row_model import poles
+from vehicle.engines.linear.natural_modes import natural_modes
+from vehicle.engines.lumped.drive import Sampled
+from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal import Signal
-from vehicle.linear.natural_modes import natural_modes
-from vehicle.lumped.drive import Sampled
-from vehicle.lumped.quarter_car import quarter_car
-from vehicle.lumped.stiff_solution import stiff_solution
-from vehicle.parameters.quarter_car import Friction, load_quarter_car
+from vehicle.model.assembly.quarter_car import quarter_car_spec
+from vehicle.model.parameters.quarter_car import Friction, load_quarter_car
+from vehicle.signals.analysis.slip import slip_share
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal import Signal
 
 CAR = load_quarter_car()
 LOOSE = dataclasses.replace(CAR, friction=Friction(limit=0.0, steepness=1e5))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.periodic import periodic_response
-from vehicle.car import Car
-from vehicle.excitation.signal import Signal
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.signal import Signal
 
 PERIOD, PERIODS, RATE = 4.0, 4, 4000.0
 

@@ -25,13 +25,13 @@ from tests.physics.rolling_car import (
     rolling_car,
     single_track,
 )
-from vehicle.car import Car
-from vehicle.excitation.iso_road import IsoRoad, drive
-from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.linear.first_order import first_order
-from vehicle.simulation.callbacks import installed
-from vehicle.simulation.rows import Rows
-from vehicle.simulation.run import simulate
+from vehicle.engines.linear.first_order import first_order
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.rows import Rows
+from vehicle.engines.simulation.run import simulate
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.iso_road import IsoRoad, drive
+from vehicle.signals.excitation.signal import Signal, uniform_time
 
 Complex = npt.NDArray[np.complex128]
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from tests.periodic import multisine, periodic_response
-from vehicle.car import Car
-from vehicle.excitation.input_files import find_input
-from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import read_signal
+from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.names import AXES
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal_file import read_signal
 
 PLACES = ("knuckle_fr", "seat_rail", "engine")
 

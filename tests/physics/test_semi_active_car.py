@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vehicle.car import Car
 from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.idle import idle_parameters
-from vehicle.parameters.shipped import vehicle_file
-from vehicle.parameters.template import SHIPPED
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.model.parameters.idle import idle_parameters
+from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.model.parameters.template import SHIPPED
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
 
 AXLES = ("front", "rear")
 PASSIVE = {"front": 2250.0, "rear": 1500.0}

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 
 from tests.physics.controlled_half_car import half_car_spec
-from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.linear.matrices import car_matrices
-from vehicle.lumped.bump_response import bump_passage
-from vehicle.lumped.semi_active import simulate_bump
-from vehicle.parameters.half_car_rider import half_car_rider_parameters
-from vehicle.parameters.semi_active import LAWS
-from vehicle.parameters.vehicle import load_vehicle
-from vehicle.reduced.pole_model import pole_model
-from vehicle.reduced.run import simulate_reduced
-from vehicle.simulation.callbacks import installed
-from vehicle.simulation.plate_arrays import PlateArrays
-from vehicle.simulation.rows import Rows, prepare_model
-from vehicle.simulation.static_trim import StaticTrim
+from vehicle.engines.linear.matrices import car_matrices
+from vehicle.engines.lumped.bump_response import bump_passage
+from vehicle.engines.lumped.semi_active import simulate_bump
+from vehicle.engines.reduced.pole_model import pole_model
+from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.plate_arrays import PlateArrays
+from vehicle.engines.simulation.rows import Rows, prepare_model
+from vehicle.engines.simulation.static_trim import StaticTrim
+from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
+from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.signals.excitation.signal import Signal, uniform_time
 
 STEP, DURATION, SPEED = 1e-3, 0.8, 30.0 / 3.6
 CAR = half_car_rider_parameters()

@@ -8,10 +8,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from vehicle.car import Car
-from vehicle.excitation.signal import Signal, uniform_time
-from vehicle.simulation.law_numbers import law_names
-from vehicle.simulation.layout import read_layout
+from vehicle.engines.simulation.law_numbers import law_names
+from vehicle.engines.simulation.layout import read_layout
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.signal import Signal, uniform_time
 
 
 def at_rest(seconds):

@@ -17,9 +17,9 @@ from scenarios.bump.runs import SIZES, relative_acceleration, ring_down_time, sl
 from scenarios.bump.seeds import BumpSeeds, many_seeds, row_key
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import evidence_of
-from vehicle.excitation.bump import bump
-from vehicle.reduced.march import has_compiler
-from vehicle.rendering.backend import film_available, find_ffmpeg
+from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
+from vehicle.engines.reduced.march import has_compiler
+from vehicle.signals.excitation.bump import bump
 
 
 @pytest.fixture(scope="module")

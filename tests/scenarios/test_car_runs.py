@@ -11,8 +11,8 @@ from scenarios.car_runs import CarRuns
 from scenarios.claims import PREDICTED, Findings
 from scenarios.study import car_study
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.bump import bump
-from vehicle.excitation.signal import Signal
+from vehicle.signals.excitation.bump import bump
+from vehicle.signals.excitation.signal import Signal
 
 SHORT = bump(amplitude=7.5e-3, duration=1.0, start=0.1)
 

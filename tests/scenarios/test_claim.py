@@ -26,8 +26,8 @@ from scenarios.claims import (
 )
 from scenarios.study import STUDIES, lumped_study, main_of, study_parser
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
-from vehicle.output.folder import prepare_folder, write_text
-from vehicle.output.written_files import MARKER
+from vehicle.runs.output.folder import prepare_folder, write_text
+from vehicle.runs.output.written_files import MARKER
 
 HOME = Path(scenarios.__file__).parent
 

@@ -34,13 +34,13 @@ from scenarios.comfort_sensitivity.histories import (
     wheel_peak,
 )
 from scenarios.evidence import LEVELS, evidence_of, status_of
-from vehicle.car import Car
+from vehicle.engines.reduced.march import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.output.written_files import MARKER
-from vehicle.reduced.march import has_compiler
-from vehicle.sweeps.case import Case
-from vehicle.sweeps.road import RoadInput, RoadMeasure
+from vehicle.runs.car import Car
+from vehicle.runs.output.written_files import MARKER
+from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
+from vehicle.studies.sweeps.case import Case
+from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
 
 needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 

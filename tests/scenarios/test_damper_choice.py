@@ -10,10 +10,10 @@ from scenarios.claims import Claim
 from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.damper_curves import compare_curves
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
-from vehicle.lumped.road_holding import quarter_car_model, tyre_load_ratio
-from vehicle.output.written_files import MARKER
-from vehicle.parameters.damper_choice import FITTED, damper_choice_parameters
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.engines.lumped.road_holding import quarter_car_model, tyre_load_ratio
+from vehicle.model.parameters.damper_choice import FITTED, damper_choice_parameters
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.output.written_files import MARKER
 
 P = damper_choice_parameters()
 

@@ -18,8 +18,8 @@ from scenarios.damper_choice.fit import (
     quarter_car_values,
     root_stiffness_mass,
 )
-from vehicle.parameters.damper_choice import damper_choice_parameters
-from vehicle.parameters.toml_file import as_table
+from vehicle.model.parameters.damper_choice import damper_choice_parameters
+from vehicle.model.parameters.toml_file import as_table
 
 P = damper_choice_parameters()
 Q, H = P.quarter_car, P.half_car

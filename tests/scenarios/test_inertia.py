@@ -9,7 +9,7 @@ import pytest
 
 from scenarios.evidence import status_of
 from scenarios.inertia import led_by, loss_angle, main, moment_about_cog, roll_claims, roll_mode, roll_peak
-from vehicle.car import Car
+from vehicle.runs.car import Car
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ import pytest
 from scenarios.kinematics.__main__ import main
 from scenarios.kinematics.axles import POINT, Moved, axles_of, bump_steer_gain, measured
 from scenarios.kinematics.claims import claims
-from vehicle.car import Car
-from vehicle.parameters.shipped import vehicle_file
+from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.runs.car import Car
 
 TRAVELS = (-0.02, 0.0, 0.02)
 MOVED = Moved(label="", shifts=(-0.01, 0.0, 0.01), curves=[], toe_slopes=(1.0, 3.0, 5.0), closed_form=np.nan)

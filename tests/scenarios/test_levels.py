@@ -18,8 +18,8 @@ from scenarios.levels import (
     order_claims,
     slip_claims,
 )
-from vehicle.analysis.peaks import phase_resonance
-from vehicle.output.written_files import MARKER
+from vehicle.runs.output.written_files import MARKER
+from vehicle.signals.analysis.peaks import phase_resonance
 
 
 @pytest.fixture(scope="module")

@@ -8,13 +8,13 @@ import pytest
 
 from scenarios.tuning.__main__ import add_options
 from scenarios.tuning.own_data import own_measurements
-from vehicle.car import Car
 from vehicle.commands.parser import Parser
 from vehicle.errors import DataError
-from vehicle.excitation.bump import bump
-from vehicle.records import uff_writer
-from vehicle.records.channel import Channel, uniform_axis
-from vehicle.records.text_format import write_table
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.bump import bump
+from vehicle.signals.records import uff_writer
+from vehicle.signals.records.channel import Channel, uniform_axis
+from vehicle.signals.records.text_format import write_table
 
 NOISE = 0.02
 STRIBECK = ("damper.friction_law='stribeck'", "damper.stribeck_friction=160.0", "damper.coulomb_friction=60.0")

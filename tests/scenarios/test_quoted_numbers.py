@@ -13,7 +13,7 @@ import pytest
 
 from scenarios.published.__main__ import HOME, PAGE
 from scenarios.published.page import page
-from vehicle.excitation.slip_set import CHOSEN
+from vehicle.signals.excitation.slip_set import CHOSEN
 
 ROOT = Path(__file__).parents[2]
 

@@ -11,9 +11,9 @@ from scenarios.road.__main__ import main
 from scenarios.road.findings import friction_claims, ratio, scaling_claim
 from scenarios.road.runs import Ride, RideRuns, one_sided_tyres
 from tests.scenarios.test_comfort_sensitivity import needs_reduced
-from vehicle.parameters.elements import Bushing
-from vehicle.parameters.shipped import VEHICLES
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.model.parameters.elements import Bushing
+from vehicle.model.parameters.shipped import VEHICLES
+from vehicle.model.parameters.vehicle import load_vehicle
 
 SEATED = """
 base = "focus_road_seated"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, road, velocity_density
+from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, road, velocity_density
 
 LEAD = 5.0
 

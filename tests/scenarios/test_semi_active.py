@@ -10,10 +10,10 @@ import pytest
 
 from scenarios import semi_active
 from scenarios.semi_active import LEAD_S, RideMeasure, Setting, main, settings
-from vehicle.analysis.weighting import weighted_record
-from vehicle.parameters.semi_active import LAWS
-from vehicle.parameters.vehicle import load_vehicle
-from vehicle.sweeps.runs import Runs
+from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.signals.analysis.weighting import weighted_record
+from vehicle.studies.sweeps.runs import Runs
 
 
 def test_settings_cover_laws_roads_delays_and_the_passive_range():

@@ -22,7 +22,7 @@ from scenarios.source_choice.likelihood import (
     values_of,
 )
 from scenarios.source_choice.runs import BUMPS, ENDS, POINTS, Plan, Readings
-from vehicle.car import Car
+from vehicle.runs.car import Car
 
 PLAN = Plan(seeds=4, shaker_edges=(2.5, 6.0), road_edges=(0.017, 0.029), road_s=30.0)
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from scenarios.stribeck import force_error, law_force, main, peak_claims
-from vehicle.analysis.slip import extra_peaks, most_prominent, slip_phases
-from vehicle.car import Car
-from vehicle.excitation.bump import bump
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.slip import extra_peaks, most_prominent, slip_phases
+from vehicle.signals.excitation.bump import bump
 
 TIME = np.arange(0.0, 1.0, 1e-3)
 

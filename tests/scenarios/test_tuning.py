@@ -8,15 +8,15 @@ import pytest
 from scenarios.tuning.__main__ import main
 from scenarios.tuning.claims import demonstration_claims, fit_notes, frozen_note, own_claims
 from scenarios.tuning.data import AUTHORS, HIDDEN, QUICK, parse_parameters
-from tests.tuning.two_masses import TRUE, MeasuredMasses
-from vehicle.analysis.frf import FrequencyResponse
-from vehicle.car import Car
+from tests.studies.tuning.two_masses import TRUE, MeasuredMasses
 from vehicle.errors import ConfigurationError
-from vehicle.parameters.paths import value_of
-from vehicle.parameters.ranges import Range
-from vehicle.records.frf import write_frf
-from vehicle.tuning.fit import fit
-from vehicle.tuning.full_steps import FullSteps
+from vehicle.model.parameters.paths import value_of
+from vehicle.model.parameters.ranges import Range
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.records.frf import write_frf
+from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.full_steps import FullSteps
 
 MOUNT = "bushings.suspension_mount.stiffness.z"
 CHANNELS = ("knuckle_fl_acc_z", "seat_rail_acc_z")

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from vehicle.commands.shaker import main
-from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal_file import write_signal
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal_file import write_signal
 
 
 @dataclass(frozen=True)

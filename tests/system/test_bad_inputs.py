@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from tests.system.conftest import csv_text
-from vehicle.excitation.random_road import random_road
+from vehicle.signals.excitation.random_road import random_road
 
 ROOT = Path(__file__).resolve().parents[2]
 GOOD = random_road(rms=1e-4, seed=1, duration=4.0).displacement["fr"]
@@ -90,9 +90,9 @@ def test_bad_parameters(shaker, short_signal, tmp_path, setting, piece):
 
 
 def test_item_27_bad_superelement_beside_the_vehicle_file(shaker, short_signal, tmp_path):
-    text = (ROOT / "vehicle/vehicles/focus/trimmed_body.toml").read_text()
+    text = (ROOT / "vehicle/model/vehicles/focus/trimmed_body.toml").read_text()
     (tmp_path / "trimmed_body.toml").write_text(text.replace("mode_count = 9", "mode_count = 8"))
-    focus = (ROOT / "vehicle/vehicles/focus/vehicle.toml").read_text()
+    focus = (ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_text()
     (tmp_path / "car.toml").write_text(focus.replace("body_design.toml", "trimmed_body.toml"))
     outcome = shaker("--input", "short.csv", "--vehicle", "car.toml")
     assert outcome.code == 3 and "mode_count" in outcome.err
@@ -101,8 +101,8 @@ def test_item_27_bad_superelement_beside_the_vehicle_file(shaker, short_signal, 
 def test_item_33_link_out_of_the_folder(shaker, short_signal, tmp_path):
     folder = tmp_path / "cars"
     folder.mkdir()
-    (folder / "body_design.toml").symlink_to(ROOT / "vehicle/vehicles/focus/body_design.toml")
-    (folder / "car.toml").write_text((ROOT / "vehicle/vehicles/focus/vehicle.toml").read_text())
+    (folder / "body_design.toml").symlink_to(ROOT / "vehicle/model/vehicles/focus/body_design.toml")
+    (folder / "car.toml").write_text((ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_text())
     outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml")
     assert outcome.code == 2 and "is a link that leads out of" in outcome.err
 
@@ -129,7 +129,7 @@ def test_item_35_output_that_cannot_be_written(shaker, short_signal, tmp_path):
 
 
 def test_item_36_a_lost_state_gives_no_numbers(shaker, short_signal, tmp_path, monkeypatch):
-    from vehicle.simulation.rows import Rows
+    from vehicle.engines.simulation.rows import Rows
 
     laws = Rows.__call__
 
@@ -139,7 +139,7 @@ def test_item_36_a_lost_state_gives_no_numbers(shaker, short_signal, tmp_path, m
             data.qfrc_applied[0] = np.nan
 
     monkeypatch.setattr(Rows, "__call__", break_down)
-    monkeypatch.setattr("vehicle.simulation.run.compiled_rows", lambda rows: "the test breaks the Python form")
+    monkeypatch.setattr("vehicle.engines.simulation.run.compiled_rows", lambda rows: "the test breaks the Python form")
     outcome = shaker("--input", "short.csv")
     assert outcome.code == 4
     assert "no longer finite at t = 1.50" in outcome.err and "joint" in outcome.err
@@ -173,7 +173,7 @@ def test_item_39_full_disk(shaker, short_signal, tmp_path, monkeypatch):
     def full(path, *_, **__):
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
-    monkeypatch.setattr("vehicle.output.run_files.write_frf", full)
+    monkeypatch.setattr("vehicle.runs.output.run_files.write_frf", full)
     outcome = shaker("--input", "short.csv")
     assert outcome.code == 6 and "No space left on device" in outcome.err
     assert not list(tmp_path.glob("runs/*")) and not list(tmp_path.glob("runs/.*"))
@@ -195,8 +195,8 @@ def test_item_39_closed_pipe(tmp_path):
 
 
 def test_item_40_no_rendering_library(shaker, short_signal, tmp_path, monkeypatch):
+    from vehicle.drawing.rendering import backend
     from vehicle.errors import MissingPartError
-    from vehicle.rendering import backend
 
     def missing():
         raise MissingPartError("films need libOSMesa: apt-get install libosmesa6")

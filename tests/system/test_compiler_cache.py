@@ -16,11 +16,11 @@ ROOT = Path(__file__).resolve().parents[2]
 
 SECOND_PROCESS = """
 import numpy as np
-from vehicle.laws.damper import RECORD
-from vehicle.laws.semi_active import SETTING
-from vehicle.reduced.control import Control
-from vehicle.reduced.march import compiled_march
-from vehicle.reduced.slope import Slope
+from vehicle.model.laws.damper import RECORD
+from vehicle.model.laws.semi_active import SETTING
+from vehicle.engines.reduced.control import Control
+from vehicle.engines.reduced.march import compiled_march
+from vehicle.engines.reduced.slope import Slope
 march = compiled_march(2)
 state, force, laws, curves = np.zeros((2, 3)), np.zeros(2), np.zeros(2, dtype=RECORD), np.zeros((2, 4, 1))
 curves[:, 0], curves[:, 3] = np.inf, 1.0  # one piece without an end

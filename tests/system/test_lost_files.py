@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.output.destination import free_file, free_files, free_folder
-from vehicle.output.folder import check_file, folder_lock, output_folder, prepare_folder, write_text, write_whole
-from vehicle.output.model_files import write_mjcf
-from vehicle.output.written_files import MARKER, discard, foreign, note, written
+from vehicle.runs.output.destination import free_file, free_files, free_folder
+from vehicle.runs.output.folder import check_file, folder_lock, output_folder, prepare_folder, write_text, write_whole
+from vehicle.runs.output.model_files import write_mjcf
+from vehicle.runs.output.written_files import MARKER, discard, foreign, note, written
 
 ROOT = Path(__file__).resolve().parents[2]
 FILM = b"\x00\x00\x00\x20ftypisom"
@@ -64,7 +64,7 @@ def test_a_folder_without_a_list_is_no_run(shaker, short_signal, tmp_path):
 def test_the_vehicle_file_beside_the_run_is_kept(shaker, short_signal, tmp_path):
     car = tmp_path / "cars" / "car.toml"
     car.parent.mkdir()
-    car.write_text((ROOT / "vehicle/vehicles/focus/vehicle.toml").read_text())
+    car.write_text((ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_text())
     outcome = shaker("--input", "short.csv", "--vehicle", "cars/car.toml", "--output", "cars", "--force")
     assert outcome.code == 2 and "holds the input cars/car.toml" in outcome.err and car.exists()
 
@@ -179,7 +179,8 @@ def test_the_next_free_name_and_two_runs_at_once(tmp_path):
 def test_processes_at_once_take_names_of_their_own(tmp_path):
     work = (
         "import sys; from contextlib import ExitStack; from pathlib import Path\n"
-        "from vehicle.output.destination import free_folder; from vehicle.output.folder import output_folder\n"
+        "from vehicle.runs.output.destination import free_folder; "
+        "from vehicle.runs.output.folder import output_folder\n"
         "with ExitStack() as held:\n"
         "    path = free_folder(held, Path('runs/low'))\n"
         "    print('ready', flush=True); sys.stdin.readline()\n"
@@ -228,7 +229,7 @@ def test_two_runs_in_one_folder(tmp_path):
         put(tmp_path / "run", "b.csv", force=True)
     # A killed process leaves its lock file and its half-written folder behind; neither stops the next run.
     killed = (
-        "import os; from pathlib import Path; from vehicle.output.folder import output_folder\n"
+        "import os; from pathlib import Path; from vehicle.runs.output.folder import output_folder\n"
         "with output_folder(Path('run'), force=True) as made: os.kill(os.getpid(), 9)"
     )
     subprocess.run([sys.executable, "-c", killed], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)})

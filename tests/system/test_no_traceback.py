@@ -10,9 +10,9 @@ import pytest
 
 from tests.system.conftest import csv_text
 from tests.system.test_bad_inputs import GOOD, ROOT
-from vehicle.car import Car
 from vehicle.commands.command_line import FAULT, run_command
 from vehicle.errors import ConfigurationError
+from vehicle.runs.car import Car
 
 NESTED = "[" * 2000 + "]" * 2000
 

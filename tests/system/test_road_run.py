@@ -8,13 +8,13 @@ import json
 import numpy as np
 import pytest
 
-from vehicle.analysis.comfort import comfort_value
 from vehicle.commands.road import main as road
 from vehicle.commands.sweep import main as sweep
-from vehicle.excitation.road_drive import RoadDrive
-from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import read_signal, write_signal
-from vehicle.output.written_files import MARKER
+from vehicle.runs.output.written_files import MARKER
+from vehicle.signals.analysis.comfort import comfort_value
+from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal_file import read_signal, write_signal
 
 
 def test_the_run_meets_the_road_of_the_road_command(shaker, tmp_path):

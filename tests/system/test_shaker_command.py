@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.frf_accuracy import banded_input
-from vehicle.car import Car
 from vehicle.errors import DataError
-from vehicle.excitation.random_road import random_road
-from vehicle.excitation.signal import Signal
-from vehicle.excitation.signal_file import write_signal
-from vehicle.output.written_files import MARKER, written
-from vehicle.parameters.shipped import FOCUS_FILE
-from vehicle.parameters.template import SHIPPED
-from vehicle.parameters.vehicle import load_vehicle
+from vehicle.model.parameters.shipped import FOCUS_FILE
+from vehicle.model.parameters.template import SHIPPED
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+from vehicle.runs.output.written_files import MARKER, written
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal_file import write_signal
 
 FILES = {"summary.json", "vehicle.toml", "time.npz", "frf.csv", "frf.png", "time.png"}
 
@@ -177,8 +177,8 @@ def test_published_modes(capsys):
 
 def test_run_in_python(short_signal: Path):
     """The five lines of the README."""
-    from vehicle.car import Car
-    from vehicle.excitation.signal_file import read_signal
+    from vehicle.runs.car import Car
+    from vehicle.signals.excitation.signal_file import read_signal
 
     run = Car.load().run(read_signal(short_signal))
     assert run["seat_rail_acc_z"].shape == run.time.shape

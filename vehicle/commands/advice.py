@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from vehicle.errors import VehicleError
 
 if TYPE_CHECKING:
-    from vehicle.records.channel import Channel, Measurement
+    from vehicle.signals.records.channel import Channel, Measurement
 
 FRONT = ("front", "f", "vorn", "vorne", "v", "va")
 REAR = ("rear", "r", "back", "hinten", "hinter", "h", "ha")
@@ -140,7 +140,7 @@ def _pick(measurement: Measurement, number: int) -> str:
 
 def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
     """Return the command for a profile over the distance; None for any other file."""
-    from vehicle.excitation.measured_road import read_road
+    from vehicle.signals.excitation.measured_road import read_road
 
     profile = measurement.format in ("crg", "erd")
     if not profile and not any(one.name.strip().lower() == "distance" for one in measurement.channels):
@@ -155,7 +155,7 @@ def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
 
 
 def _clock(channel: Channel) -> tuple[str, ...]:
-    from vehicle.records.clock import clock_options
+    from vehicle.signals.records.clock import clock_options
 
     return () if channel.axis is None else clock_options(channel.axis)
 
@@ -164,7 +164,7 @@ def _plates(
     measurement: Measurement, file: str, moves: list[tuple[int, Channel]], speeds: list[tuple[int, Channel]]
 ) -> tuple[str, str]:
     """Return the command for displacements: plates of a shaker, or a road with a speed."""
-    from vehicle.excitation.recorded_road import NAMES
+    from vehicle.signals.excitation.recorded_road import NAMES
 
     plain = {one.name.strip().rstrip(".").lower() for _, one in moves}
     if len(speeds) == 1 and any(plain & set(NAMES[side]) for side in NAMES):
@@ -197,7 +197,7 @@ def _tried(path: Path, words: list[str], more: Sequence[list[str]]) -> tuple[str
     """Return the first form of a shaker command whose signal can be read, or why none can."""
     from vehicle.commands.input_options import record_choice
     from vehicle.commands.shaker import parser
-    from vehicle.excitation.signal_file import read_signal
+    from vehicle.signals.excitation.signal_file import read_signal
 
     reason = ""
     if path.stat().st_size > LARGEST_CHECKED:

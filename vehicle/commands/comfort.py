@@ -17,8 +17,8 @@ from vehicle.commands.several_files import each_file, expanded, raise_worst, tab
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.records.choice import Choice
-    from vehicle.records.record_comfort import RecordComfort
+    from vehicle.signals.records.choice import Choice
+    from vehicle.signals.records.record_comfort import RecordComfort
 
 
 def parser() -> Parser:
@@ -101,8 +101,8 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
     Raises:
         ConfigurationError: `--rail` names another axis than z.
     """
-    from vehicle.analysis.evaluation import application
-    from vehicle.records.record_comfort import RecordComfort, evaluate_comfort
+    from vehicle.signals.analysis.evaluation import application
+    from vehicle.signals.records.record_comfort import RecordComfort, evaluate_comfort
 
     application(options.place)
     point, choice = _picked(options, options.picks)
@@ -133,8 +133,8 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
 
 def _about_the_seat(file: Path) -> list[str]:
     """What a run in the same folder says of its seat: that there is none."""
-    from vehicle.output.run_comfort import NO_SEAT
-    from vehicle.records.run_summary import run_summary
+    from vehicle.runs.output.run_comfort import NO_SEAT
+    from vehicle.signals.records.run_summary import run_summary
 
     return [NO_SEAT] if NO_SEAT in run_summary(file.parent).get("notices", ()) else []
 

@@ -17,11 +17,11 @@ from vehicle.commands.several_files import each_file, expanded, raise_worst, tab
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.car import Car, Run
-    from vehicle.comparison.simulated import Simulated
-    from vehicle.records.channel import Measurement
-    from vehicle.records.choice import Choice
-    from vehicle.records.measured import Measured
+    from vehicle.runs.car import Car, Run
+    from vehicle.runs.comparison.simulated import Simulated
+    from vehicle.signals.records.channel import Measurement
+    from vehicle.signals.records.choice import Choice
+    from vehicle.signals.records.measured import Measured
 
 OUTPUT = Path("runs/compare")
 
@@ -102,8 +102,8 @@ def clock_of(options: argparse.Namespace) -> tuple[float, float]:
     Raises:
         ConfigurationError: a number that is not finite, or a drift of more than a tenth.
     """
-    from vehicle.comparison.compared_run import require_clock
-    from vehicle.records.counterpart import PARTS
+    from vehicle.runs.comparison.compared_run import require_clock
+    from vehicle.signals.records.counterpart import PARTS
 
     drift = options.drift / PARTS
     require_clock(options.delay, drift)
@@ -174,7 +174,7 @@ def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> 
     Raises:
         ConfigurationError: a channel twice, an unknown unit, a number out of range.
     """
-    from vehicle.records.choice import Choice, pairs
+    from vehicle.signals.records.choice import Choice, pairs
 
     channels = pairs("--map", options.mapping, "")
     if "" in channels:
@@ -237,10 +237,10 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         options: of the command, with `measured` the file.
         output: folder of the results.
     """
-    from vehicle.comparison.compared_run import compare_run
-    from vehicle.comparison.frf_comparison import edges_of
-    from vehicle.output.comparison_files import save_comparison
-    from vehicle.records.reader import read_record
+    from vehicle.runs.comparison.compared_run import compare_run
+    from vehicle.runs.comparison.frf_comparison import edges_of
+    from vehicle.runs.output.comparison_files import save_comparison
+    from vehicle.signals.records.reader import read_record
 
     edges = edges_of(options.bands)
     choice = measured_choice(options)
@@ -269,7 +269,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
 def _measured(
     options: argparse.Namespace, known: tuple[str, ...], choice: Choice, measurement: Measurement | None = None
 ) -> Measured:
-    from vehicle.records.measured import read_measured
+    from vehicle.signals.records.measured import read_measured
 
     window = getattr(options, "window", None)
     return read_measured(options.measured, known, choice, turned=options.turned, window=window, measurement=measurement)
@@ -292,7 +292,7 @@ def _run(
     options: argparse.Namespace, measurement: Measurement, choice: Choice
 ) -> tuple[Run | Simulated, tuple[str, ...]]:
     """Return the run, simulated where an input is given, and the names of its channels."""
-    from vehicle.comparison.simulated import of_folder
+    from vehicle.runs.comparison.simulated import of_folder
 
     folder = Path(options.run)
     if folder.is_dir():
@@ -300,9 +300,9 @@ def _run(
             refuse_idle(options, group)
         simulated = of_folder(folder)
         return simulated, tuple(simulated.record.channels)
-    from vehicle.car import Car
-    from vehicle.excitation.input_files import find_input
-    from vehicle.excitation.signal_file import read_signal
+    from vehicle.runs.car import Car
+    from vehicle.signals.excitation.input_files import find_input
+    from vehicle.signals.excitation.signal_file import read_signal
 
     car = Car.load(options.vehicle, options.overrides)
     known = (*car.vehicle.channels, *car.vehicle.load_channels)
@@ -322,9 +322,9 @@ def _modes(
     options: argparse.Namespace, output: Path, measurement: Measurement, choice: Choice
 ) -> tuple[dict[str, Any], str]:
     """Mode shapes beside those of the car."""
-    from vehicle.comparison.mode_comparison import compare_modes
-    from vehicle.comparison.pictures import plot_mac
-    from vehicle.output.folder import output_folder, write_json, write_whole
+    from vehicle.runs.comparison.mode_comparison import compare_modes
+    from vehicle.runs.comparison.pictures import plot_mac
+    from vehicle.runs.output.folder import output_folder, write_json, write_whole
 
     car = _car(options)
     found, tyres = compare_modes(car, measurement, dict(choice.channels), options.damper), car.vehicle.driving.words
@@ -348,7 +348,7 @@ def _modes(
 
 def _car(options: argparse.Namespace) -> Car:
     """The car of a run, or of the options."""
-    from vehicle.car import Car
+    from vehicle.runs.car import Car
 
     file = options.vehicle
     if file is None and options.run is not None and Path(options.run).is_dir():

@@ -11,7 +11,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
-    from vehicle.records.choice import Choice
+    from vehicle.signals.records.choice import Choice
 
 
 FILE_NEEDS = "--input; a road drives all wheels of the car"
@@ -277,7 +277,7 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
     Raises:
         ConfigurationError: a role twice, a unit that is not known, a number out of range.
     """
-    from vehicle.records.choice import Choice, pairs
+    from vehicle.signals.records.choice import Choice, pairs
 
     channels = pairs("--channel", options.picks, role)
     asked = pairs("--unit", options.units, "")

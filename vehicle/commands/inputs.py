@@ -10,9 +10,9 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
-    from vehicle.car.road import Road
-    from vehicle.parameters.vehicle import Vehicle
-    from vehicle.sweeps.case import SignalFile
+    from vehicle.model.parameters.vehicle import Vehicle
+    from vehicle.runs.car.road import Road
+    from vehicle.studies.sweeps.case import SignalFile
 
 
 def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Road] | list[SignalFile]:
@@ -52,8 +52,8 @@ def _roads(options: argparse.Namespace) -> list[Road]:
 
 
 def _files(options: argparse.Namespace, vehicle: Vehicle) -> list[SignalFile]:
-    from vehicle.excitation.input_files import find_input
-    from vehicle.sweeps.case import SignalFile
+    from vehicle.signals.excitation.input_files import find_input
+    from vehicle.studies.sweeps.case import SignalFile
 
     wheel = CORNERS[options.wheel] if options.wheel else vehicle.shaker_wheel
     paths = [find_input(name).resolve() for name in options.input]

@@ -14,7 +14,7 @@ from vehicle.commands.parser import Parser
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 
 if TYPE_CHECKING:
-    from vehicle.records.channel import Channel, Measurement
+    from vehicle.signals.records.channel import Channel, Measurement
 
 
 SHOWN = 60
@@ -37,8 +37,8 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.excitation.input_files import find_input
-    from vehicle.records.reader import read_record
+    from vehicle.signals.excitation.input_files import find_input
+    from vehicle.signals.records.reader import read_record
 
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), tuple(options.databases))
@@ -88,7 +88,7 @@ def overview(results: list[dict[str, Any]]) -> str:
 
 def contents(measurement: Measurement) -> dict[str, Any]:
     """A file in plain numbers and texts; levels in SI, or as found where the unit is open."""
-    from vehicle.records.clock import time_remarks
+    from vehicle.signals.records.clock import time_remarks
 
     axes = {id(one.axis): one.axis for one in measurement.channels if one.kind == "time" and one.axis is not None}
     remarks = [text for axis in axes.values() for text in time_remarks(axis)]
@@ -152,7 +152,7 @@ def report(found: dict[str, Any]) -> str:
     Args:
         found: of `contents`, with the command.
     """
-    from vehicle.records.units import find_ratio
+    from vehicle.signals.records.units import find_ratio
 
     about = [f"{found['file']}: {found['format']}, {(count := len(found['channels']))} channel{'s' * (count != 1)}"]
     about += [found[key] for key in ("program", "start") if found[key]]

@@ -18,7 +18,7 @@ from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.simulation.axle_statics import AxleStatics, WheelPose
+    from vehicle.engines.simulation.axle_statics import AxleStatics, WheelPose
 
 MOST_POSITIONS = 2001
 """Positions of one table: 0.1 mm over 200 mm."""
@@ -77,8 +77,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.car import Car
-    from vehicle.simulation.axle_curves import design_slopes, travel_curve
+    from vehicle.engines.simulation.axle_curves import design_slopes, travel_curve
+    from vehicle.runs.car import Car
 
     travels = _travels(options.travel)
     load = np.array([*_vector("--contact-force", options.contact_force), *_vector("--moment", options.moment)])
@@ -111,7 +111,7 @@ def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) ->
     Raises:
         ConfigurationError: no wheel belongs to such a table.
     """
-    from vehicle.simulation.axle_statics import AxleStatics
+    from vehicle.engines.simulation.axle_statics import AxleStatics
 
     wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == name]
     if not wheels:
@@ -188,9 +188,9 @@ def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str
 
 
 def _write(options: argparse.Namespace, output: Path, name: str, poses: list[WheelPose]) -> None:
-    from vehicle.output.folder import output_folder, write_whole
-    from vehicle.records.text_format import write_table
-    from vehicle.rendering.kinematics_plot import plot_kinematics
+    from vehicle.drawing.rendering.kinematics_plot import plot_kinematics
+    from vehicle.runs.output.folder import output_folder, write_whole
+    from vehicle.signals.records.text_format import write_table
 
     units = {"m": "m", "deg": "deg", "n": "N"}
     names = list(HEADS)

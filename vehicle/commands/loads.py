@@ -15,8 +15,8 @@ from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.analysis.load_spectrum import LoadSpectrum
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.parameters.vehicle import Vehicle
+    from vehicle.signals.analysis.load_spectrum import LoadSpectrum
 
 FILES = ("loads.csv", "load_spectra.csv", "loads.png")
 SHOWN = 15
@@ -47,11 +47,11 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.analysis.load_spectrum import load_spectrum
-    from vehicle.output.folder import write_text, write_whole
-    from vehicle.records.reader import read_columns
-    from vehicle.records.run_summary import run_summary
-    from vehicle.rendering.load_plot import plot_loads
+    from vehicle.drawing.rendering.load_plot import plot_loads
+    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.signals.analysis.load_spectrum import load_spectrum
+    from vehicle.signals.records.reader import read_columns
+    from vehicle.signals.records.run_summary import run_summary
 
     source = _time_file(options.run)
     if not 1 <= options.classes <= 10000:

@@ -21,9 +21,9 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.assembly.mjcf_files import mjcf_files
-    from vehicle.car import Car
-    from vehicle.output.model_files import write_mjcf
+    from vehicle.model.assembly.mjcf_files import mjcf_files
+    from vehicle.runs.car import Car
+    from vehicle.runs.output.model_files import write_mjcf
 
     car = Car.load(options.vehicle, options.overrides)
     files = mjcf_files(car.vehicle, car.trimmed_body)

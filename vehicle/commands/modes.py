@@ -55,7 +55,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     _check_film_options(options)
-    from vehicle.car import Car
+    from vehicle.runs.car import Car
 
     if options.uff is not None and options.uff.exists():
         own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
@@ -66,8 +66,8 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, [*options.overrides, *speed])
     found = modes_table(car, options.damper)
     if options.uff is not None:
-        from vehicle.output.folder import write_whole
-        from vehicle.output.mode_file import write_modes
+        from vehicle.runs.output.folder import write_whole
+        from vehicle.runs.output.mode_file import write_modes
 
         write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
     if options.animate is not None:
@@ -90,8 +90,8 @@ def _check_film_options(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"--animate {options.animate:g}: must be a frequency above 0 Hz, as --animate 28")
     if options.video is None:
         raise ConfigurationError(f"--animate {options.animate:g}: shows a mode as a film; give --video [FILE.mp4] too")
-    from vehicle.output.destination import named_file
-    from vehicle.rendering.backend import require_film
+    from vehicle.drawing.rendering.backend import require_film
+    from vehicle.runs.output.destination import named_file
 
     if options.video:
         named_file(options.held, film_name(options.video, ""), "--video", force=options.force)
@@ -112,8 +112,8 @@ def nearest(modes: Sequence[Any], frequency: float) -> Any:
 
 def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
     """Write the film; what it shows, and where it is."""
-    from vehicle.output.folder import write_whole
-    from vehicle.rendering.mode_film import mode_film
+    from vehicle.drawing.rendering.mode_film import mode_film
+    from vehicle.runs.output.folder import write_whole
 
     mode = nearest(car.modes(options.damper), options.animate)
     path = film_name(options.video, f"runs/mode_{mode.frequency:.2f}_hz.mp4")
@@ -125,7 +125,7 @@ def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
 
 def modes_table(car: Any, damper: str) -> dict[str, Any]:
     """Modes of the car and of its free body, in plain numbers and texts."""
-    from vehicle.parameters.whole_body import body_notices
+    from vehicle.model.parameters.whole_body import body_notices
 
     body = car.model.superelement
     trimmed = car.trimmed_body

@@ -111,12 +111,12 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
-    from vehicle.car import Car
-    from vehicle.optimisation.car_search import plan_search, require_counts
-    from vehicle.optimisation.car_table import CARS
-    from vehicle.optimisation.problem import parsed_range, parsed_tolerance
-    from vehicle.optimisation.search_files import read_beside
-    from vehicle.sweeps.executors import executor_factory
+    from vehicle.runs.car import Car
+    from vehicle.studies.optimisation.car_search import plan_search, require_counts
+    from vehicle.studies.optimisation.car_table import CARS
+    from vehicle.studies.optimisation.problem import parsed_range, parsed_tolerance
+    from vehicle.studies.optimisation.search_files import read_beside
+    from vehicle.studies.sweeps.executors import executor_factory
 
     require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
     car = Car.load(options.vehicle, options.overrides)

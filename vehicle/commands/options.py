@@ -7,8 +7,8 @@ from pathlib import Path
 
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.names import ENGINES
-from vehicle.parameters.shipped import CARS, vehicle_file
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
@@ -109,7 +109,7 @@ def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
 
 
 def skip_option(parser: argparse.ArgumentParser, of_a_file: float) -> None:
-    """Add --skip: start of the evaluation, see `vehicle.excitation.evaluation_start`.
+    """Add --skip: start of the evaluation, see `vehicle.signals.excitation.evaluation_start`.
 
     Args:
         parser: of the command.

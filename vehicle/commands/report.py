@@ -32,7 +32,7 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.report.report_file import write_report
+    from vehicle.runs.report.report_file import write_report
 
     missing = next((run for run in options.runs if not run.is_dir()), None)
     if missing is not None:

@@ -14,8 +14,8 @@ from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.car.road import Drive, Road
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.parameters.vehicle import Vehicle
+    from vehicle.runs.car.road import Drive, Road
 
 
 def parser() -> Parser:
@@ -31,9 +31,9 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.excitation.signal_file import write_signal
-    from vehicle.output.folder import write_whole
-    from vehicle.parameters.vehicle import load_vehicle
+    from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.runs.output.folder import write_whole
+    from vehicle.signals.excitation.signal_file import write_signal
 
     if (options.road_class is None) == (options.profile is None):
         raise ConfigurationError("road: needed is either --class or --profile, one of them")
@@ -79,8 +79,8 @@ def road_of(road: str | Path, options: argparse.Namespace) -> Road:
     Raises:
         ConfigurationError: no speed.
     """
-    from vehicle.car.road import Road
-    from vehicle.records.choice import Choice
+    from vehicle.runs.car.road import Road
+    from vehicle.signals.records.choice import Choice
 
     if options.speed is None:
         raise ConfigurationError("a road needs --speed KM/H, as --speed 80")

@@ -35,10 +35,10 @@ from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
-from vehicle.records.formats import TABLES, WRITTEN
+from vehicle.signals.records.formats import TABLES, WRITTEN
 
 if TYPE_CHECKING:
-    from vehicle.excitation.signal import Signal
+    from vehicle.signals.excitation.signal import Signal
 
 
 def parser() -> Parser:
@@ -111,15 +111,15 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
-    from vehicle.excitation.evaluation_start import evaluation_start
-    from vehicle.excitation.input_files import find_input
-    from vehicle.excitation.signal_file import read_signal
-    from vehicle.output.folder import output_folder
+    from vehicle.runs.output.folder import output_folder
+    from vehicle.signals.excitation.evaluation_start import evaluation_start
+    from vehicle.signals.excitation.input_files import find_input
+    from vehicle.signals.excitation.signal_file import read_signal
 
     drive, overrides = None, list(options.overrides)
     if drives_on_road(options):
         from vehicle.commands.road import class_or_profile, road_drive
-        from vehicle.parameters.vehicle import load_vehicle
+        from vehicle.model.parameters.vehicle import load_vehicle
 
         drive = road_drive(class_or_profile(options.road), options, load_vehicle(options.vehicle, options.overrides))
         source, stem = drive.road, drive.name
@@ -131,13 +131,13 @@ def _job(options: argparse.Namespace) -> None:
     _check_numbers(options)
     output = output_folder_of(options, Path("runs") / stem, protect=inputs)
     if "h5" in options.formats:
-        from vehicle.records.reader import extra
+        from vehicle.signals.records.reader import extra
 
         extra("h5py", "hdf5", "--format h5")
     engine, reason = _engine(options)
     video_name = None
     if options.video is not None:
-        from vehicle.rendering.backend import require_film
+        from vehicle.drawing.rendering.backend import require_film
 
         video_name = _film_path(options, stem, output)
         require_film()
@@ -145,9 +145,9 @@ def _job(options: argparse.Namespace) -> None:
     if options.timestep is not None:
         overrides.append(f"solver.timestep={options.timestep!r}")
 
-    from vehicle.car import Car
     from vehicle.errors import SimulationError
-    from vehicle.output.run_files import require_plates, save_last_state, write_run
+    from vehicle.runs.car import Car
+    from vehicle.runs.output.run_files import require_plates, save_last_state, write_run
 
     car = Car.load(options.vehicle, overrides)
     wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
@@ -181,9 +181,9 @@ def _job(options: argparse.Namespace) -> None:
             raise save_last_state(error, output) from None
 
         def make_film(path: Path) -> None:
-            from vehicle.rendering.crew import drawing_jobs
-            from vehicle.rendering.film import film
-            from vehicle.rendering.shot import Take
+            from vehicle.drawing.rendering.crew import drawing_jobs
+            from vehicle.drawing.rendering.film import film
+            from vehicle.drawing.rendering.shot import Take
 
             take = Take(
                 start=options.video_start,
@@ -196,8 +196,8 @@ def _job(options: argparse.Namespace) -> None:
             film(run, path, take, jobs=drawing_jobs(), progress=progress)
 
         def make_report(path: Path) -> None:
-            from vehicle.report.finished_run import read_run
-            from vehicle.report.page import report_page
+            from vehicle.runs.report.finished_run import read_run
+            from vehicle.runs.report.page import report_page
 
             progress = ProgressLine("report    ", enabled=not options.quiet)
             path.write_text(
@@ -275,7 +275,7 @@ def _report_path(options: argparse.Namespace, output: Path) -> Path:
 
 def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) -> Path:
     """A plain name in the folder of the run, or a path outside it where nothing is in the way."""
-    from vehicle.output.destination import named_file
+    from vehicle.runs.output.destination import named_file
 
     if name.parent == Path():
         return name

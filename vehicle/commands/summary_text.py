@@ -59,7 +59,7 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
 
 def _comfort(summary: dict[str, Any]) -> list[str]:
     """Comfort at the seat rail, and on the seat of a car that has one."""
-    from vehicle.analysis.comfort import COMFORT_BAND
+    from vehicle.signals.analysis.comfort import COMFORT_BAND
 
     lines, places = [], summary["comfort"]
     if "seat_rail" in places:

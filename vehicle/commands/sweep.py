@@ -58,13 +58,13 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
-    from vehicle.car import Car
     from vehicle.errors import ConfigurationError, SimulationError
-    from vehicle.sweeps.differences import DIFFERENCES
-    from vehicle.sweeps.executors import executor_factory
-    from vehicle.sweeps.plan import plan_sweep
-    from vehicle.sweeps.store import ROWS
-    from vehicle.sweeps.table import read_variations
+    from vehicle.runs.car import Car
+    from vehicle.studies.sweeps.differences import DIFFERENCES
+    from vehicle.studies.sweeps.executors import executor_factory
+    from vehicle.studies.sweeps.plan import plan_sweep
+    from vehicle.studies.sweeps.store import ROWS
+    from vehicle.studies.sweeps.table import read_variations
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")

@@ -31,7 +31,7 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.parameters.vehicle import load_vehicle
+    from vehicle.model.parameters.vehicle import load_vehicle
 
     TASKS[options.task].run(options, load_vehicle(options.vehicle, options.overrides))
 

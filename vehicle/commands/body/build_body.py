@@ -12,8 +12,8 @@ from vehicle.commands.body.show_body import report
 from vehicle.commands.options import message_options, vehicle_options
 
 if TYPE_CHECKING:
-    from vehicle.flexbody.body_design import BodyDesign
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.flexbody.body_design import BodyDesign
+    from vehicle.model.parameters.vehicle import Vehicle
 
 
 def add(tasks: Any) -> None:
@@ -33,9 +33,9 @@ def add(tasks: Any) -> None:
 
 def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
     """The design with section factors that were fitted on this car."""
-    from vehicle.flexbody.body_frame import body_frame
-    from vehicle.flexbody.fit import STAGES, fit_factors
-    from vehicle.flexbody.node_masses import NodeProperties
+    from vehicle.model.flexbody.body_frame import body_frame
+    from vehicle.model.flexbody.fit import STAGES, fit_factors
+    from vehicle.model.flexbody.node_masses import NodeProperties
 
     frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
     factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
@@ -50,9 +50,9 @@ def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Compute the model, write it and print what it is."""
-    from vehicle.flexbody.body_design import read_design
-    from vehicle.flexbody.body_frame import design_superelement
-    from vehicle.flexbody.library import body_file
+    from vehicle.model.flexbody.body_design import read_design
+    from vehicle.model.flexbody.body_frame import design_superelement
+    from vehicle.model.flexbody.library import body_file
 
     require_output(options)
     file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)

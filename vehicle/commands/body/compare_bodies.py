@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from vehicle.flexbody.superelement import Superelement
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.flexbody.superelement import Superelement
+    from vehicle.model.parameters.vehicle import Vehicle
 
 FILES = ("mac.csv", "mac.png")
 
@@ -37,8 +37,8 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Print frequencies and MAC at the points of the car, and write files where asked for."""
     import numpy as np
 
-    from vehicle.analysis.modal_assurance import mac
-    from vehicle.flexbody.superelement import attached_nodes
+    from vehicle.model.flexbody.superelement import attached_nodes
+    from vehicle.signals.analysis.modal_assurance import mac
 
     if options.output is not None:
         output_folder_of(options, options.output)
@@ -65,8 +65,8 @@ def _write_files(
     options: argparse.Namespace, models: list[Superelement], likeness: npt.NDArray[np.float64], about: str
 ) -> None:
     """All MAC as a table, and as a picture of the first modes."""
-    from vehicle.comparison.pictures import plot_mac
-    from vehicle.output.folder import output_folder, write_text, write_whole
+    from vehicle.runs.comparison.pictures import plot_mac
+    from vehicle.runs.output.folder import output_folder, write_text, write_whole
 
     rows, columns = (model.frequencies for model in models)
     table = [f"# {about}; rows: {options.file.name}, columns: {options.other.name}"]

@@ -13,14 +13,14 @@ from vehicle.commands.body.model_file import output_options, require_output, wri
 from vehicle.commands.body.show_body import report
 from vehicle.commands.options import message_options, vehicle_options
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
+from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
 
 if TYPE_CHECKING:
-    from vehicle.flexbody.mass_properties import MassProperties
-    from vehicle.flexbody.sources.mode_shapes import GivenModes
-    from vehicle.flexbody.sources.units import Units
-    from vehicle.parameters.hardpoints import Point
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.flexbody.mass_properties import MassProperties
+    from vehicle.model.flexbody.sources.mode_shapes import GivenModes
+    from vehicle.model.flexbody.sources.units import Units
+    from vehicle.model.parameters.hardpoints import Point
+    from vehicle.model.parameters.vehicle import Vehicle
 
 _ANSYS = (
     "in /AUX2 read it with FILE,JOB,full and write HBMAT,k,matrix,,ASCII,STIFF,NO,YES and "
@@ -128,10 +128,10 @@ def add(tasks: Any) -> None:
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Read the source, write the model and print what it is."""
-    from vehicle.flexbody.sources.interfaces import interfaces, read_map
-    from vehicle.flexbody.sources.residual_table import read_residuals
-    from vehicle.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
-    from vehicle.flexbody.sources.units import require_first_mode, require_mass, require_size, units_of
+    from vehicle.model.flexbody.sources.interfaces import interfaces, read_map
+    from vehicle.model.flexbody.sources.residual_table import read_residuals
+    from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
+    from vehicle.model.flexbody.sources.units import require_first_mode, require_mass, require_size, units_of
 
     require_output(options)
     _check_numbers(options)
@@ -159,7 +159,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         modes = modes_of_matrices(body, options.up_to, found, options.method, options.attachment_modes)
         require_first_mode(float(modes.frequencies[0]), units)
     else:
-        from vehicle.flexbody.sources.mode_shapes import normalised
+        from vehicle.model.flexbody.sources.mode_shapes import normalised
 
         given = _given_modes(options, units, weight.mass, places).placed(options.axes, origin)
         notices += [units.words] if options.file.suffix == ".frd" else []
@@ -181,27 +181,27 @@ def _matrices(options: argparse.Namespace) -> Any:
     if file.suffix.lower() in REFUSED:
         raise DataError(f"{file}: {REFUSED[file.suffix.lower()]}.")
     if file.suffix == ".sti":
-        from vehicle.flexbody.sources.calculix import read_calculix
+        from vehicle.model.flexbody.sources.calculix import read_calculix
 
         return read_calculix(file)
-    from vehicle.flexbody.sources.nastran import is_bulk_data
+    from vehicle.model.flexbody.sources.nastran import is_bulk_data
 
     if not is_bulk_data(file):
         if options.mass is None:
             return None
         if options.nodes is None:
             raise ConfigurationError("--mass: a stiffness and a mass matrix need --nodes too, where their nodes are")
-    from vehicle.flexbody.sources.matrix_files import read_matrices
+    from vehicle.model.flexbody.sources.matrix_files import read_matrices
 
     return read_matrices(file, options.mass, options.dofs, options.nodes)
 
 
 def _given_modes(options: argparse.Namespace, units: Units, mass: float, places: Mapping[str, Point]) -> GivenModes:
     """The modes of a file: of CalculiX in the stated units, of a universal file in its own."""
-    from vehicle.flexbody.sources.frd import read_frd
-    from vehicle.flexbody.sources.mode_shapes import modes_of_measurement
-    from vehicle.flexbody.sources.units import require_level, require_size
-    from vehicle.records.reader import read_record
+    from vehicle.model.flexbody.sources.frd import read_frd
+    from vehicle.model.flexbody.sources.mode_shapes import modes_of_measurement
+    from vehicle.model.flexbody.sources.units import require_level, require_size
+    from vehicle.signals.records.reader import read_record
 
     if options.file.suffix == ".frd":
         given = read_frd(options.file, *units.sizes)
@@ -219,8 +219,8 @@ def _given_modes(options: argparse.Namespace, units: Units, mass: float, places:
 
 def _vehicle_mass(vehicle: Vehicle) -> MassProperties:
     """Mass properties of the trimmed body in the vehicle file."""
-    from vehicle.flexbody.mass_properties import MassProperties
-    from vehicle.flexbody.rigid_body import rigid_body
+    from vehicle.model.flexbody.mass_properties import MassProperties
+    from vehicle.model.flexbody.rigid_body import rigid_body
 
     own = rigid_body(vehicle.body)
     return MassProperties(mass=own.mass, cog=own.cog, inertia=own.inertia)
@@ -238,7 +238,7 @@ def _origin(text: str) -> tuple[float, float, float]:
 
 def _check_numbers(options: argparse.Namespace) -> None:
     """The numbers of an import; NaN is in none of the ranges."""
-    from vehicle.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
+    from vehicle.model.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
 
     most = 1e3 * LARGEST_TOLERANCE
     if options.attachment_modes is not None and options.method == METHODS[0]:

@@ -11,8 +11,8 @@ from vehicle.commands.options import FORCE_HELP
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.flexbody.superelement import Superelement
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.flexbody.superelement import Superelement
+    from vehicle.model.parameters.vehicle import Vehicle
 
 
 def output_options(task: Any) -> None:
@@ -36,16 +36,16 @@ def require_output(options: argparse.Namespace) -> None:
 
 def write(options: argparse.Namespace, model: Superelement) -> None:
     """Write a model to the output."""
-    from vehicle.flexbody.superelement_file import write_superelement
-    from vehicle.output.folder import write_whole
+    from vehicle.model.flexbody.superelement_file import write_superelement
+    from vehicle.runs.output.folder import write_whole
 
     write_whole(options.output, lambda file: write_superelement(file, model))
 
 
 def model_of(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:
     """The model of a file; that of the vehicle where none is given."""
-    from vehicle.flexbody.library import body_model
-    from vehicle.flexbody.superelement_file import read_superelement
+    from vehicle.model.flexbody.library import body_model
+    from vehicle.model.flexbody.superelement_file import read_superelement
 
     if file is None:
         return body_model(vehicle, options.vehicle.parent if options.vehicle else None)

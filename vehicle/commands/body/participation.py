@@ -13,8 +13,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
-    from vehicle.linear.participation import Participation
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.engines.linear.participation import Participation
+    from vehicle.model.parameters.vehicle import Vehicle
 
 FILES = ("participation.csv", "attachments.csv", "participation.png")
 LOWEST, HIGHEST, LINES = 1.0, 50.0, 600
@@ -63,8 +63,8 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Compute, write and print it."""
     import numpy as np
 
-    from vehicle.car import Car
-    from vehicle.linear.participation import participation
+    from vehicle.engines.linear.participation import participation
+    from vehicle.runs.car import Car
 
     if options.at is not None and not 0.0 < options.at < math.inf:
         raise ConfigurationError(f"--at {options.at:g}: must be a frequency above 0 Hz, as --at 26")
@@ -170,10 +170,10 @@ def _write(options: argparse.Namespace, over: Participation, found: Participatio
     """Both tables and the picture."""
     import numpy as np
 
-    from vehicle.linear.participation import in_phase
-    from vehicle.output.folder import output_folder, write_text, write_whole
-    from vehicle.records.text_format import write_table
-    from vehicle.rendering.participation_plot import plot_participation
+    from vehicle.drawing.rendering.participation_plot import plot_participation
+    from vehicle.engines.linear.participation import in_phase
+    from vehicle.runs.output.folder import output_folder, write_text, write_whole
+    from vehicle.signals.records.text_format import write_table
 
     at, keys = found.frequency[0], ["body_x", "body_y", "body_z", "body_rx", "body_ry", "body_rz"]
     keys += [f"mode_{n + 1}" for n in range(len(over.mode_frequency))]

@@ -13,8 +13,8 @@ from vehicle.commands.options import extra_output_options, message_options, vehi
 from vehicle.errors import DataError
 
 if TYPE_CHECKING:
-    from vehicle.flexbody.superelement import Superelement
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.flexbody.superelement import Superelement
+    from vehicle.model.parameters.vehicle import Vehicle
 
 FILES = ("modes.csv", "attachments.csv", "residuals.csv", "shapes.png")
 COLUMNS = 12
@@ -54,8 +54,8 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
     """What a model is: mass properties against the vehicle, modes, participation of attachments, residuals."""
-    from vehicle.flexbody.loads import body_loads
-    from vehicle.flexbody.mass_difference import mass_difference, vehicle_lines
+    from vehicle.model.flexbody.loads import body_loads
+    from vehicle.model.flexbody.mass_difference import mass_difference, vehicle_lines
 
     lines = [f"{model.name}: {len(model.nodes)} nodes, {len(model.frequencies)} modes", f"  {model.provenance}"]
     lines += mass_lines(model, vehicle)
@@ -77,7 +77,7 @@ def report(model: Superelement, vehicle: Vehicle) -> list[str]:
 
 def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Mass, CoG and inertia about it of the model against those of the vehicle."""
-    from vehicle.flexbody.rigid_body import rigid_body
+    from vehicle.model.flexbody.rigid_body import rigid_body
 
     own, lines = rigid_body(vehicle.body), [f"{'':<18} {'model':>10} {'vehicle':>10} {'difference':>11}"]
 
@@ -108,7 +108,7 @@ def levels(model: Superelement, vehicle: Vehicle) -> dict[str, Any]:
     """Shapes at the attachments and places of a car over the mean of the body, sqrt(m) Phi [-]: name to (modes, 3)."""
     import numpy as np
 
-    from vehicle.flexbody.superelement import attached_nodes
+    from vehicle.model.flexbody.superelement import attached_nodes
 
     places = vehicle.composition.attachments()
     nodes = attached_nodes(model, places)
@@ -152,7 +152,7 @@ def residual_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
 
 def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Points at which something acts on the body and whose node has no residual flexibility."""
-    from vehicle.flexbody.superelement import attached_nodes
+    from vehicle.model.flexbody.superelement import attached_nodes
 
     own = vehicle.composition
     acting = {one.point: one.at for one in own.connections if "body" in (one.moving, one.carrier)}
@@ -162,7 +162,7 @@ def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
 
 def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Whether the model knows how the nodes turn on which elements with a rotational stiffness act."""
-    from vehicle.flexbody.superelement import attached_nodes
+    from vehicle.model.flexbody.superelement import attached_nodes
 
     turning = {
         one.point: one.at

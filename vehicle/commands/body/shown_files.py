@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vehicle.flexbody.superelement import Superelement
+    from vehicle.model.flexbody.superelement import Superelement
 
 
 def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[str, Any]) -> None:
@@ -21,8 +21,8 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
     """
     import numpy as np
 
-    from vehicle.output.folder import output_folder, write_text, write_whole
-    from vehicle.rendering.body_plot import MOST, plot_body
+    from vehicle.drawing.rendering.body_plot import MOST, plot_body
+    from vehicle.runs.output.folder import output_folder, write_text, write_whole
 
     count = len(model.frequencies)
     modes = ["mode,frequency [Hz],damping ratio [-],name"]

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from vehicle.flexbody.superelement import Superelement
-    from vehicle.parameters.vehicle import Vehicle
+    from vehicle.model.flexbody.superelement import Superelement
+    from vehicle.model.parameters.vehicle import Vehicle
 
 
 def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], bare: list[str] | None) -> dict[str, Any]:
@@ -25,9 +25,9 @@ def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], ba
     """
     import numpy as np
 
-    from vehicle.flexbody.loads import body_loads
-    from vehicle.flexbody.mass_difference import mass_difference
-    from vehicle.flexbody.rigid_body import rigid_body
+    from vehicle.model.flexbody.loads import body_loads
+    from vehicle.model.flexbody.mass_difference import mass_difference
+    from vehicle.model.flexbody.rigid_body import rigid_body
 
     def mass_of(body: Any) -> dict[str, Any]:
         tensor = np.asarray(body.inertia).tolist()

@@ -1,0 +1,88 @@
+"""What a car, a run and its FRFs look like in a notebook, and as tables of pandas and xarray."""
+
+from __future__ import annotations
+
+import sys
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+
+from vehicle.drawing.notebook.picture import HEIGHT, WIDTH, line_drawing
+from vehicle.errors import MissingPartError
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.frf import FrequencyResponse
+
+
+@pytest.fixture(scope="module")
+def run(car, high_piece):
+    return car.run(high_piece, engine="reduced")
+
+
+@pytest.fixture(scope="module")
+def response(run):
+    return run.frf(["seat_rail_acc_z", "engine_acc_z"])
+
+
+def test_each_says_itself_in_a_line(run, response):
+    assert repr(Car.load(overrides=["body.mass=900"])) == "Car(focus, wheels fr, fl, body.mass=900)"
+    for one in (run.car, run, response):
+        assert "\n" not in repr(one) and len(repr(one)) < 200
+    assert "4 s, reduced, Car(focus, wheels fr, fl)" in repr(run)
+    assert "FRFs of seat_rail_acc_z, engine_acc_z to plate_fr_displacement" in repr(response)
+
+
+def test_each_has_a_table_and_a_drawing(run, response):
+    for one in (run.car, run, response):
+        page = ElementTree.fromstring(one._repr_html_())  # well-formed
+        assert page.find(".//table") is not None and page.find(".//{http://www.w3.org/2000/svg}svg") is not None
+    assert f"{run.comfort().overall:.3g} m/s²" in run._repr_html_()
+
+
+def test_plots_are_pictures(run, response, tmp_path):
+    for one in (run, response):
+        shown = one.plot()
+        assert shown._repr_png_().startswith(b"\x89PNG")
+    shown.save(tmp_path / "frf.png")
+    assert (tmp_path / "frf.png").read_bytes() == shown.png
+
+
+def test_frfs_of_a_run_are_frfs(run, response):
+    assert response.names == ("seat_rail_acc_z", "engine_acc_z")
+    assert isinstance(response, FrequencyResponse)
+    everything = run.frf()
+    row = everything.names.index("engine_acc_z")
+    np.testing.assert_allclose(everything.response[row], response.response[1], rtol=1e-9)
+
+
+def test_tables_hold_the_channels(run, response):
+    frame, dataset, table = run.to_dataframe(), run.to_xarray(), response.to_dataframe()
+    assert list(frame.columns) == list(run.recording.channels) and frame.index.name == "time [s]"
+    np.testing.assert_array_equal(frame["seat_rail_acc_z"].to_numpy(), run["seat_rail_acc_z"])
+    assert frame.attrs["units"]["seat_rail_acc_z"] == dataset["seat_rail_acc_z"].attrs["units"] == "m/s2"
+    np.testing.assert_array_equal(dataset["damper_fr_velocity"].sel(time=run.time[7]), run["damper_fr_velocity"][7])
+    values = table["engine_acc_z"]
+    again = values["magnitude"] * np.exp(1j * np.radians(values["phase"]))
+    np.testing.assert_allclose(again.to_numpy(), response.response[1], rtol=1e-12)
+
+
+@pytest.mark.parametrize(("library", "call"), [("pandas", "to_dataframe"), ("xarray", "to_xarray")])
+def test_a_missing_library_is_one_sentence(library, call, run, monkeypatch):
+    monkeypatch.setitem(sys.modules, library, None)
+    with pytest.raises(MissingPartError) as caught:
+        getattr(run, call)()
+    assert str(caught.value) == (
+        f"{call}: needs {library}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
+    )
+
+
+def test_a_drawn_line_keeps_its_extremes():
+    along = np.linspace(0.0, 1.0, 5000)
+    values = np.sin(40.0 * along)
+    values[1234] = 5.0
+    drawing = ElementTree.fromstring(line_drawing(along, values, "a"))
+    line = drawing.find("{http://www.w3.org/2000/svg}polyline")
+    assert line is not None
+    points = np.array([pair.split(",") for pair in line.attrib["points"].split()], dtype=float)
+    assert len(points) <= 2 * WIDTH and points[:, 1].min() == 16.0 and points[:, 1].max() == HEIGHT - 20
+    assert line_drawing(along[:1], values[:1], "a") == ""

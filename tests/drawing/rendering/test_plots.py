@@ -1,0 +1,233 @@
+"""The pictures of a run: they exist, name their units, and are the same bytes every time."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from tests.drawing.rendering.conftest import FakeCar, FakeRun, fabricated
+from vehicle.drawing.rendering import plots
+from vehicle.drawing.rendering.figure import FADED, wrapped_phase
+from vehicle.drawing.rendering.frf_plot import plot_frfs
+from vehicle.drawing.rendering.plots import distinct, outline, plot_frf, plot_time
+from vehicle.drawing.rendering.recorded_run import excerpt_start, liveliest
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.motion_response import MotionResponse
+
+CHANNELS = load_vehicle().acceleration_channels
+
+
+@pytest.fixture(scope="module")
+def long_run(car):
+    recording = fabricated(car, 4.0)
+    # Velocity white: displacement with 1/f, so that every frequency of the picture is driven.
+    noise = np.random.default_rng(1).normal(size=recording.time.size)
+    recording.channels["plate_fr_displacement"][:] = 1e-5 * np.cumsum(noise)
+    return FakeRun(car=FakeCar(model=car), recording=recording)
+
+
+@pytest.fixture(scope="module")
+def response():
+    frequency = np.arange(1.0, 50.0, 0.1)
+    rows = len(CHANNELS)
+    single = frequency**2 / (1.0 - (frequency / 28.0) ** 2 + 0.1j * frequency / 28.0)
+    return FrequencyResponse(
+        frequency=frequency,
+        response=np.outer(np.arange(1, rows + 1), single).astype(np.complex128),
+        coherence=np.full((rows, frequency.size), 0.9),
+        random_error=0.05 * np.outer(np.arange(1, rows + 1), np.abs(single)),
+        averages=np.full((rows, frequency.size), 7.0),
+        segments=1,
+        window="none",
+        estimator="local rational model",
+        resolution_hz=0.1,
+        reasons=(),
+    )
+
+
+@pytest.fixture
+def figures(monkeypatch):
+    """Figures as they are saved."""
+    kept = []
+    save = Figure.savefig
+
+    def keep(figure, *arguments, **options):
+        kept.append(figure)
+        save(figure, *arguments, **options)
+
+    monkeypatch.setattr(Figure, "savefig", keep)
+    return kept
+
+
+def every_axis(figure):
+    return [axis for part in (figure, *figure.subfigs) for axis in part.axes]
+
+
+def test_frf_plot_names_quantities_and_caption_and_draws_the_asked_channel(long_run, response, tmp_path, figures):
+    plot_frf(tmp_path / ".123.frf.png", long_run, response, "shake.csv, RMS 0.25 mm; estimator: local rational model")
+    axes = every_axis(figures[0])
+    assert {axis.get_ylabel() for axis in axes} - {""} == {
+        "acceleration / plate displacement [(m/s²)/m]",
+        "phase [deg]",
+        "coherence [-]",
+    }
+    assert {axis.get_xlabel() for axis in axes} - {""} == {"frequency [Hz]"}
+    assert axes[0].get_xscale() == axes[0].get_yscale() == "log"
+    assert axes[0].get_xlim() == (1.0, 50.0)
+    assert figures[0].get_supxlabel() == f"shake.csv, RMS 0.25 mm; estimator: local rational model; {FADED}"
+    shown = {text.get_text() for axis in axes[:2] for text in axis.get_legend().get_texts()}
+    assert shown >= {
+        "knuckle at damper bottom",
+        "damper top",
+        "body at suspension mount",
+        "engine",
+        "seat rail",
+        "body front",
+        "roof, left rear",
+    }
+    lines = {line.get_label(): line for line in axes[0].get_lines()}
+    row = CHANNELS.index("damper_top_fr_acc_z")
+    drawn = lines["damper top"].get_ydata()
+    there = np.isfinite(drawn)
+    assert there.mean() > 0.9
+    np.testing.assert_allclose(drawn[there], np.abs(response.response[row])[there])
+
+
+def test_time_plot_names_quantities_and_leaves_no_global_figure(long_run, tmp_path, figures):
+    before = "matplotlib.pyplot" in sys.modules
+    plot_time(tmp_path / "time.png", long_run)
+    assert ("matplotlib.pyplot" in sys.modules) == before
+    axes = every_axis(figures[0])
+    assert {axis.get_ylabel().replace("\n", " ") for axis in axes} - {""} == {
+        "plate displacement [mm]",
+        "acceleration z [m/s²]",
+        "damper velocity [mm/s]",
+        "tyre force z [kN]",
+        "damper force [N]",
+    }
+    assert {axis.get_xlabel() for axis in axes} - {""} == {"time [s]", "damper velocity [mm/s]"}
+    assert "RMS 0.25 mm" in figures[0].get_supxlabel() and "slip velocity" in figures[0].get_supxlabel()
+
+
+@pytest.mark.parametrize("which", ["frf", "time"])
+def test_plots_are_the_same_bytes_whatever_the_user_has_set(long_run, response, tmp_path, which):
+    def draw(path):
+        if which == "frf":
+            plot_frf(path, long_run, response, "caption")
+        else:
+            plot_time(path, long_run)
+        return path.read_bytes()
+
+    first = draw(tmp_path / "first.png")
+    with matplotlib.rc_context({"axes.facecolor": "yellow", "xtick.labelsize": 20.0, "axes.grid": False}):
+        second = draw(tmp_path / "second.png")
+    assert first[:8] == b"\x89PNG\r\n\x1a\n"
+    assert first == second
+
+
+def test_phase_breaks_where_it_wraps():
+    angle = np.radians([100.0, 170.0, 190.0, 260.0])
+    phase = wrapped_phase(np.exp(1j * angle))
+    np.testing.assert_allclose(phase[[0, 1, 3]], [100.0, 170.0, -100.0])
+    assert np.isnan(phase[2])
+
+
+def test_frf_plot_is_grey_where_the_input_tells_nothing_and_shows_the_random_error(
+    long_run, response, tmp_path, figures
+):
+    blank = response.response.copy()
+    blank[:, (response.frequency > 20.0) & (response.frequency < 30.0)] = np.nan
+    plot_frf(tmp_path / "frf.png", long_run, dataclasses.replace(response, response=blank), "")
+    magnitude = every_axis(figures[0])[0]
+    grey = next(part for part in magnitude.collections if part.get_label() == "no FRF: no input")
+    edges = np.concatenate([path.vertices[:, 0] for path in grey.get_paths()])
+    assert (edges.min(), edges.max()) == pytest.approx((20.0, 30.0), abs=0.2)
+    bands: Any = [part for part in magnitude.collections if isinstance(part, PolyCollection) and part is not grey]
+    assert len(bands) == 4
+    top = max(path.vertices[:, 1].max() for path in bands[0].get_paths())
+    row = CHANNELS.index("knuckle_fr_acc_z")
+    shown = np.abs(response.response[row][(response.frequency < 20.0) | (response.frequency > 30.0)])
+    assert top == pytest.approx((1.0 + 1.96 * 0.05) * shown.max(), rel=1e-6)
+
+
+def test_frfs_to_several_plates_are_lines_that_name_them(long_run, response, tmp_path, figures):
+    factors = {"fr": 1.0, "fl": 0.3}
+    responses = [
+        MotionResponse(motion={wheel: 1.0}, response=dataclasses.replace(response, response=factor * response.response))
+        for wheel, factor in factors.items()
+    ]
+    plot_frfs(tmp_path / "frf.png", long_run, responses, "caption")
+    axes = every_axis(figures[0])
+    assert figures[0].get_suptitle() == "FRFs to each of 2 plates, which act at once"
+    assert [axis.get_title() for axis in axes[:3]] == [
+        "Seat rail, vertical",
+        "Engine, vertical",
+        "Wheel carrier right, vertical",
+    ]
+    lines = {line.get_label(): line for line in axes[0].get_lines()}
+    assert {label for label in lines if label[0] != "_"} == {"plate right", "plate left"}
+    row = CHANNELS.index("seat_rail_acc_z")
+    drawn = lines["plate left"].get_ydata()
+    there = np.isfinite(drawn)
+    assert there.mean() > 0.5
+    np.testing.assert_allclose(drawn[there], 0.3 * np.abs(response.response[row])[there])
+    assert axes[6].get_ylabel() == "multiple coherence [-]"
+
+
+def test_a_common_motion_is_said_in_the_title(long_run, response, tmp_path, figures):
+    for left, words in ((1.0, "right, left"), (-1.0, "right (+1), left (-1)")):
+        plot_frfs(
+            tmp_path / "frf.png",
+            long_run,
+            [MotionResponse(motion={"fr": 1.0, "fl": left}, response=response)],
+            "",
+        )
+        assert figures[-1].get_suptitle() == f"FRFs to the common motion of plates {words}"
+
+
+def test_a_cloud_keeps_its_rare_dots_once():
+    common = np.linspace(-1.0, 1.0, 11)
+    speed, force = np.tile(common, 1000), np.tile(2.0 * common, 1000)
+    speed[4321], force[4321] = 7.0, 3.0
+    drawn = set(zip(*distinct(speed, force), strict=True))
+    assert drawn == {*zip(common, 2.0 * common, strict=True), (7.0, 3.0)}
+    assert [part.tolist() for part in distinct(np.zeros(5), np.zeros(5))] == [[0.0], [0.0]], "a car at rest"
+
+
+def test_liveliest_stretch():
+    time = np.arange(1001) / 100.0
+    values = np.where((time > 4.0) & (time < 5.0), 1.0, 0.1)
+    assert liveliest(time, values, 1.0) == pytest.approx(4.0, abs=0.011)
+    assert liveliest(time, values, 99.0) == 0.0
+
+
+def test_without_slip_the_knuckle_decides(run):
+    start, reason = excerpt_start(run.recording, "fl", "knuckle_fl_acc_z", 1.0, 0.1)
+    assert reason == "liveliest knuckle; no slip"
+    assert 0.0 <= start <= 0.2
+
+
+def test_an_outline_keeps_the_extremes_of_every_pixel_column(monkeypatch):
+    """Column by column, sample by sample: nothing is lost, and nothing moves by more than a piece, 0.11 columns."""
+    monkeypatch.setattr(plots, "MOST_POINTS", 800)
+    count, columns = 12_347, 43
+    time, values = np.linspace(0.0, 1e-3 * (count - 1), count), np.random.default_rng(1).normal(size=count)
+    values[[0, 5003, count - 1]] = 90.0, -80.0, 70.0  # of a single sample each, at both ends too
+    at, drawn = outline(time, values)
+    assert 600 < drawn.size <= 800 and np.all(np.diff(at) >= 0.0)
+    piece, width = 0.031, time[-1] / columns
+    for column in range(columns):
+        begin, end = column * width, (column + 1) * width
+        seen = [y for t, y in zip(at, drawn, strict=True) if begin <= t <= end]
+        surely = [y for t, y in zip(time, values, strict=True) if begin + piece <= t <= end]
+        perhaps = [y for t, y in zip(time, values, strict=True) if begin <= t <= end + piece]
+        assert min(perhaps) <= min(seen) <= min(surely) and max(surely) <= max(seen) <= max(perhaps)
+    np.testing.assert_array_equal(outline(time[:800], values[:800])[1], values[:800])

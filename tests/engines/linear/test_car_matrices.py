@@ -1,0 +1,176 @@
+"""Matrices of the assembled car: symmetric, consistent with the elements, constraints eliminated, published modes."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+
+from vehicle.engines.linear.first_order import free_basis
+from vehicle.engines.linear.matrices import car_matrices
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.rows import Rows, joint_springs
+from vehicle.errors import ConfigurationError
+from vehicle.runs.car import Car
+
+
+def element_stiffness(car):
+    """J' K J of all elements and joint springs at the design position, without any geometric part."""
+    model, static = car.model.model, car.model.static
+    data = mujoco.MjData(model)
+    rows = Rows(model, static.preload)
+    with installed(rows):
+        mujoco.mj_forward(model, data)
+    e = rows.layout
+    jacobian = data.efc_J.reshape(e.row_count, model.nv)
+    diagonal = np.zeros(e.row_count)
+    diagonal[e.bushings.rows] = e.bushings.stiffness
+    diagonal[e.springs.rows] = e.springs.stiffness
+    # Velocities of rotation by another way than that of the callback: the Jacobians of the two sites.
+    turning = np.zeros((model.nv, model.nv))
+    for stiffness, sites in zip(e.rotations.stiffness, e.rotations.sites, strict=True):
+        moving, carrier = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+        mujoco.mj_jacSite(model, data, None, moving, sites[0])
+        mujoco.mj_jacSite(model, data, None, carrier, sites[1])
+        turning += stiffness * (moving - carrier).T @ (moving - carrier)
+    return jacobian.T @ (diagonal[:, None] * jacobian) + turning + np.diag(joint_springs(model))
+
+
+def in_free_motions(car, matrix, *, stuck=True):
+    basis = free_basis(car.matrices.system, stuck=stuck)
+    mass = basis.T @ car.matrices.system.mass @ basis
+    scale = np.linalg.inv(np.linalg.cholesky(mass))
+    return scale @ basis.T @ matrix @ basis @ scale.T
+
+
+def test_stiffness_is_elements_and_a_small_geometric_part(car):
+    found, elements = (
+        in_free_motions(car, matrix) for matrix in (car.matrices.system.stiffness, element_stiffness(car))
+    )
+    difference = np.abs(found - elements)
+    # Gravity and preloads turn with the parts: 0.2 % of the stiffest direction in mass-normalised terms.
+    assert difference.max() < 0.005 * np.abs(elements).max()
+    assert difference.max() > 0.0
+    # Gravity and preload change undamped frequencies by at most 0.6 %.
+    frequencies = [np.sqrt(np.linalg.eigvalsh((m + m.T) / 2.0)) / (2.0 * np.pi) for m in (found, elements)]
+    below = frequencies[1] < 60.0
+    change = frequencies[0][below] / frequencies[1][below] - 1.0
+    assert below.sum() > 20
+    assert 1e-4 < np.max(np.abs(change)) < 0.01
+
+
+def test_without_gravity_the_stiffness_is_that_of_the_elements():
+    weightless = Car.load(None, ["gravity=0"])
+    found = in_free_motions(weightless, weightless.matrices.system.stiffness)
+    elements = in_free_motions(weightless, element_stiffness(weightless))
+    # Two derivations: central differences of the forces, and J' K J. Differences of 1e-6 leave 1e-8.
+    assert np.max(np.abs(found - elements)) < 1e-6 * np.abs(elements).max()
+
+
+def test_matrices_are_symmetric_and_positive(car):
+    matrices = car.matrices
+    np.testing.assert_allclose(matrices.system.mass, matrices.system.mass.T, atol=1e-10)
+    assert np.linalg.eigvalsh(matrices.system.mass)[0] > 0.0
+    np.testing.assert_allclose(matrices.system.damping, matrices.system.damping.T, atol=1e-9)
+    assert np.linalg.eigvalsh(matrices.system.damping)[0] > -1e-6
+    free = in_free_motions(car, matrices.system.stiffness)
+    assert np.linalg.eigvalsh((free + free.T) / 2.0)[0] > 0.0
+    # Preloads are in equilibrium, so the tangent is that of a potential: symmetric among the free motions.
+    assert np.max(np.abs(free - free.T)) < 1e-4 * np.abs(free).max()
+
+
+def test_ideal_joints_are_eliminated(car):
+    matrices = car.matrices
+    # Only the rods of the stabilizer on the damper housings are ideal: two balls of three rows.
+    assert matrices.system.constraints.shape == (6, 63)
+    assert np.linalg.matrix_rank(matrices.system.constraints) == 6
+    assert free_basis(matrices.system, stuck=False).shape == (63, 57)
+    stuck = free_basis(matrices.system, stuck=True)
+    assert stuck.shape == (63, 55)
+    np.testing.assert_allclose(matrices.system.constraints @ stuck, 0.0, atol=1e-12)
+    np.testing.assert_allclose(stuck[matrices.dampers], 0.0, atol=1e-12)
+    rigid = Car.load(None, ["body.attachment_flexibility=false"])
+    # Three more balls a side become ideal.
+    assert np.linalg.matrix_rank(rigid.matrices.system.constraints) == 24
+
+
+def test_energies_of_every_mode_sum_to_one(car):
+    modes = car.modes("stuck")
+    assert len(modes) > 20
+    for mode in modes:
+        assert sum(mode.energy.values()) == pytest.approx(1.0, rel=1e-12)
+        assert all(-1e-12 <= share <= 1.0 for share in mode.energy.values())
+        assert 0.0 < mode.damping_ratio < 1.0
+    assert [mode.frequency for mode in modes] == sorted(mode.frequency for mode in modes)
+    # The kinetic energy of all groups is that of the mass matrix: no part is forgotten.
+    matrices = car.matrices
+    total = sum(rows.T @ matrices.body_masses[name] @ rows for name, rows in matrices.body_rows.items())
+    total[matrices.modal, matrices.modal] += np.eye(9)
+    np.testing.assert_allclose(total, matrices.system.mass, atol=1e-8 * np.abs(matrices.system.mass).max())
+
+
+def test_published_modes_with_stuck_dampers(car):
+    modes = car.modes("stuck")
+    rigid = [mode for mode in modes if mode.frequency < 9.0]
+    assert len(rigid) == 6
+    (roll,) = [mode for mode in modes if mode.description.startswith("body roll")]
+    assert roll.frequency == pytest.approx(6.5, abs=0.3)
+    engine = [mode.frequency for mode in modes if mode.description.startswith("engine")]
+    assert len(engine) == 6 and min(engine) >= 9.0 and max(engine) <= 20.0
+    # Five modes of the body share the wheels' vertical motion; the longitudinal wheel modes are damped by half.
+    light = [mode for mode in modes if 20.0 < mode.frequency < 40.0 and mode.damping_ratio < 0.2]
+    wheel = max(light, key=lambda mode: mode.energy["wheel_fr"])
+    assert wheel.energy["wheel_fr"] > 0.25
+    assert wheel.frequency == pytest.approx(28.0, abs=1.0)
+
+
+def test_more_inertia_rolls_slower():
+    found = {}
+    for ixx in (1000, 1200):
+        modes = Car.load(None, [f"body.inertia.ixx={ixx}"]).modes("stuck")
+        # Roll mixes with pitch and yaw; it is the rigid mode whose body turns most about x.
+        (roll,) = [mode for mode in modes if mode.description.startswith("body roll")]
+        found[ixx] = roll.frequency
+    assert found[1200] < 0.9 * found[1000]
+
+
+def test_sliding_dampers_make_another_car(car):
+    stuck, sliding = car.modes("stuck"), car.modes("sliding")
+    heave = [next(m.frequency for m in modes if "body heave" in m.description) for modes in (stuck, sliding)]
+    assert heave[1] < heave[0]
+    # The wheels get their damper: no lightly damped vertical wheel mode is left near 28 Hz.
+    damped = [m.damping_ratio for m in sliding if "wheel hop" in m.description]
+    assert len(damped) == 2 and min(damped) > 0.1
+    for modes, least, most in ((stuck, 0.2, 1.0), (sliding, 0.0, 0.1)):
+        light = [m for m in modes if 20.0 < m.frequency < 40.0 and m.damping_ratio < 0.06]
+        assert least < max(m.energy["wheel_fr"] for m in light) < most
+    with pytest.raises(ConfigurationError, match="damper: found 'loose', allowed are stuck, sliding"):
+        car.modes("loose")
+
+
+def test_the_matrices_leave_the_model_alone(car):
+    before = car.model.model.qpos_spring.copy()
+    again = car_matrices(car.model.model, car.model.static, compiled=False)
+    np.testing.assert_array_equal(again.system.stiffness, car.matrices.system.stiffness)
+    # Compiled code adds up in another order; largest forces 1e4 N, rounded, over the difference step.
+    compiled = car_matrices(car.model.model, car.model.static)
+    np.testing.assert_allclose(compiled.system.stiffness, again.system.stiffness, rtol=1e-12, atol=1e-4)
+    np.testing.assert_array_equal(car.model.model.qpos_spring, before)
+    assert mujoco.get_mjcb_control() is None
+
+
+def test_static_deflection_of_plate_and_car(car):
+    # At 0 Hz the whole car follows the plates: lifting both front plates and nothing else tilts it about the rear
+    # supports, so its response per plate is between 0 and 1 at the seat, and 0.5 each on the middle plane by symmetry.
+    low = 0.01
+    names = ["seat_rail_acc_z", "body_front_acc_z", "knuckle_fr_acc_z"]
+    right, left = (
+        car.matrix_frf(names, [low], wheel=wheel)[:, 0] / -((2.0 * np.pi * low) ** 2) for wheel in ("fr", "fl")
+    )
+    assert np.max(np.abs(right.imag)) < 1e-3
+    assert right[1].real == pytest.approx(left[1].real, rel=0.02)
+    together = (right + left).real
+    rear, front = 3.465, 0.85
+    lever = (rear - np.array([2.05, 0.45])) / (rear - front)
+    # A rigid tilt, but for the soft horizontal supports.
+    np.testing.assert_allclose(together[:2], lever, rtol=0.03)

@@ -1,0 +1,103 @@
+"""Item 51: a step that would not answer the car is refused before the run, with the part and the step that does."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from vehicle.engines.linear.step_error import LOCAL_LIMIT, _Judge, require_accurate_step
+from vehicle.errors import ConfigurationError
+from vehicle.runs.car import Car
+
+MOUNT = "bushings.suspension_mount.stiffness=[3e6, 3e6, {}]"
+
+REFUSED = {
+    "a stiff mount": (
+        [MOUNT.format(3e7)],
+        r"at which the ringing of damper_top_fr_acc_z after the damper breaks away is \+3\d % off, allowed are 10 % "
+        r"\(\d+ Hz: damper_top_fr moves, held by front\.bushings\.suspension_mount\.stiffness\.z \(3e\+07\)\); "
+        r"give solver\.timestep=0\.0005, or another value of that parameter where it is a mistake",
+    ),
+    "a stiffer one": (
+        [MOUNT.format(1e9)],
+        r".* is \+4\d % off, .*stiffness\.z \(1e\+09\)\); give solver\.timestep=0\.0005",
+    ),
+    "a torque arm of steel": (
+        ["bushings.torque_arm_engine.stiffness=[1e8, 1.3e5, 6.5e5]"],
+        r"at which the integration is unstable \(\d+ Hz: torque_arm moves, held by "
+        r"engine\.bushings\.torque_arm_engine\.stiffness\.x \(1e\+08\)\); give solver\.timestep=0\.000125",
+    ),
+    # 3.6 kg on 5e6 N/m: w h = 1.18, and 2 asin(w h/2)/(w h) is 1.072.
+    "a stop of steel": (
+        ["damper.stop.displacement=[-0.03, 0.0, 0.02]", "damper.stop.force=[0.0, 0.0, 1e5]"],
+        r"at which a vibration on a piece of a table is 7 % high \(188 Hz: damper_top_fr moves, held by stop of "
+        r"damper 1, up to 5e\+06 N/m steeper than where the car stands\); give solver\.timestep=0\.0005,",
+    ),
+    "a step of 2 ms": (
+        ["solver.timestep=0.002", "solver.record_rate=500"],
+        r"at which the integration is unstable .*; give solver\.timestep=0\.001,",
+    ),
+    "a tyre of steel": (
+        ["bushings.tyre.stiffness=[1.5e5, 1.5e5, 1e10]"],
+        r"at which .*held by front\.bushings\.tyre\.stiffness\.z \(1e\+10\)\); ",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_the_part_and_the_step_are_named(case):
+    settings, expected = REFUSED[case]
+    car = Car.load(None, settings)
+    with pytest.raises(ConfigurationError) as caught:
+        require_accurate_step(car.model, car.matrices)
+    step = f"{car.vehicle.solver.timestep:g}"
+    assert re.match(rf"solver\.timestep: found {step} s, {expected}", str(caught.value)), str(caught.value)
+    advice = re.search(r"give (solver\.timestep=[0-9.e-]+)", str(caught.value))
+    if advice:
+        better = Car.load(None, [*settings, advice.group(1).rstrip(".")])
+        require_accurate_step(better.model, better.matrices)
+
+
+def test_the_reduced_engine_does_not_depend_on_the_step(high_piece):
+    coarse, fine = (
+        Car.load(None, [MOUNT.format(3e7), f"solver.timestep={step}"]).run(high_piece, engine="reduced")
+        for step in (0.001, 0.0001)
+    )
+    np.testing.assert_array_equal(coarse["damper_top_fr_acc_z"], fine["damper_top_fr_acc_z"])
+
+
+def test_a_run_is_refused_before_it_begins(high_piece):
+    begun: list[float] = []
+    with pytest.raises(ConfigurationError, match=r"^solver\.timestep: found 0\.001 s, .*stiffness\.z"):
+        Car.load(None, [MOUNT.format(3e7)]).run(high_piece, begun.append)
+    assert not begun
+
+
+@pytest.mark.parametrize("mount", [7e5, 2e6])
+def test_what_is_accepted_is_accurate(mount, high_piece):
+    """And the numbers beside LOCAL_LIMIT: the damper top within its limit, body and knuckle far better."""
+    coarse, fine = (
+        Car.load(None, [MOUNT.format(mount), f"solver.timestep={step}"]).run(high_piece) for step in (1e-3, 1.25e-4)
+    )
+    limits = {"damper_top_fr_acc_z": LOCAL_LIMIT, "damper_top_fr_acc_y": LOCAL_LIMIT}
+    for channel, limit in {**limits, "knuckle_fr_acc_z": 0.005, "seat_rail_acc_z": 0.005}.items():
+        ratio = np.sqrt(np.mean(coarse[channel] ** 2) / np.mean(fine[channel] ** 2))
+        assert ratio == pytest.approx(1.0, abs=limit), channel
+
+
+def test_every_setting_of_the_studies_is_accepted_at_the_default_step():
+    ends = [
+        *(f"bushings.suspension_mount.stiffness.z={value}" for value in (3.5e5, 14e5)),
+        "bushings.suspension_mount.damping.z=2000",
+        *(f"damper.viscous={value}" for value in (1125, 3375)),
+        "damper.viscous_law=degressive",
+        *(f"body.frequency_scale={value}" for value in (0.8, 1.25)),
+        "body.flexible=false",
+        "body.inertia.ixx=1200",
+        "bushings.hydromount.stiffness.z=6e5",
+    ]
+    for setting in ends:
+        car = Car.load(None, [setting])
+        assert _Judge(car.model, car.matrices).worst(1e-3) is None, setting

@@ -1,0 +1,52 @@
+"""Long records: plates are made piece by piece, and what cannot be held is refused before it is computed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.engines.reduced import plate_samples, run
+from vehicle.engines.simulation import acceleration
+from vehicle.engines.simulation.judgement import require_samples
+from vehicle.errors import ConfigurationError
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.random_road import random_road
+
+pytest.importorskip("numba", reason="the reduced engine needs it")
+
+
+def test_pieces_give_the_same_run(car, monkeypatch):
+    road = random_road(rms=5e-4, seed=2, duration=3.0)
+    channels = ["seat_rail_acc_z", "damper_fr_velocity", "plate_fr_displacement", "plate_fl_displacement"]
+    whole = car.run(road, engine="reduced", channels=channels)
+    monkeypatch.setattr(plate_samples, "LARGEST_TABLE", 0)
+    pieces = car.run(road, engine="reduced", channels=channels)
+    assert isinstance(plate_samples.plate_samples(road, 1e-3, 10, 2), plate_samples.LongPlates)
+    for name in channels:
+        np.testing.assert_array_equal(whole[name], pieces[name])
+
+
+def test_blocks_of_any_length_give_the_same_run(car, monkeypatch):
+    """What the blocks hand on: the dampers on both sides of a sample, the past of an acceleration, the plates."""
+    road = random_road(rms=4e-3, seed=3, duration=2.0)
+    names = [*car.vehicle.channels, *car.vehicle.requested_channels]
+    whole = car.run(road, engine="reduced", channels=names)
+    monkeypatch.setattr(run, "BLOCK", 333)
+    monkeypatch.setattr(acceleration, "BLOCK", 77)
+    blocks = car.run(road, engine="reduced", channels=names)
+    for name in names:
+        size = np.max(np.abs(whole[name]))
+        np.testing.assert_allclose(blocks[name], whole[name], rtol=0.0, atol=1e-9 * size, err_msg=name)
+
+
+def test_a_recording_that_does_not_fit_is_refused(monkeypatch):
+    monkeypatch.setattr("os.sysconf", {"SC_PAGE_SIZE": 4096, "SC_PHYS_PAGES": 1000}.__getitem__)  # 4 MB
+    with pytest.raises(
+        ConfigurationError, match=r"^solver\.record_rate: 10 channels of 3e\+04 samples need 0\.0024 GB"
+    ):
+        require_samples(30_000, 10)
+    require_samples(20_000, 10)
+    car = Car.load()
+    with pytest.raises(ConfigurationError, match=r"solver\.record_rate: .* GB; lower the rate"):
+        car.run(random_road(rms=5e-4, seed=2, duration=12.0), engine="reduced")
+    assert "matrices" not in vars(car), "refused before anything is computed"

@@ -1,0 +1,50 @@
+"""Item 52: a run whose energy balance does not close says so, and one that is wrong fails."""
+
+from __future__ import annotations
+
+import pytest
+
+from vehicle.engines.simulation.judgement import judge_energy
+from vehicle.engines.simulation.recording import Energies
+from vehicle.engines.simulation.run import simulate
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.model.parameters.vehicle import load_vehicle
+
+
+def balance(residual, work=10.0):
+    return Energies(work_in=work, dissipated=work * (0.9 - residual), stored=0.1 * work)
+
+
+def test_limits_of_the_residual():
+    assert judge_energy(balance(9e-3), 1000.0) == ()
+    (warning,) = judge_energy(balance(2e-2), 1000.0)
+    assert warning.startswith("energy residual 0.02: of 10 J put in by the plates 0.2 J are unaccounted for")
+    with pytest.raises(
+        SimulationError, match=r"^energy residual 0\.06: .*, allowed are 0\.05: the integration does not"
+    ):
+        judge_energy(balance(6e-2), 1000.0)
+    # A still plate, or one that does next to nothing, has no balance to judge.
+    assert judge_energy(balance(1.0, work=1e-8), 1000.0) == ()
+    # Plates that end lower than they began: the work of lifting comes back.
+    assert judge_energy(Energies(work_in=0.02, dissipated=0.8, stored=-0.781), 1000.0) == ()
+    (warning,) = judge_energy(Energies(work_in=0.02, dissipated=0.8, stored=-0.76), 1000.0)
+    assert warning.startswith("energy residual 0.025: of 0.8 J dissipated 0.02 J are unaccounted for")
+    # Powers of a few samples a period cannot be summed.
+    (coarse,) = judge_energy(balance(0.2), 50.0)
+    assert "summed from samples at 50 Hz" in coarse
+
+
+def test_item_52_a_friction_line_too_steep_to_integrate(car, high_piece):
+    with pytest.raises(ConfigurationError, match=r"^front\.damper\.smoothing: found 10000"):
+        load_vehicle(None, ["damper.smoothing=1e10"])
+    # Past the range, as a library would come: the balance tells.
+    for wheel in ("fr", "fl"):
+        parameters = car.model.spec.actuator(f"damper_{wheel}").biasprm
+        kept, parameters[1] = parameters[1], 1e10
+        assert kept == 1e5
+    try:
+        with pytest.raises(SimulationError, match=r"^energy residual \S+: of \S+ J dissipated"):
+            simulate(car.model, high_piece)
+    finally:
+        for wheel in ("fr", "fl"):
+            car.model.spec.actuator(f"damper_{wheel}").biasprm[1] = 1e5

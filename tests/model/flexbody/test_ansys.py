@@ -1,0 +1,93 @@
+"""A beam that ANSYS computed: its matrices in the formats that ANSYS writes give the frequencies of its own result."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy
+
+from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.matrix_files import read_matrices
+from vehicle.model.flexbody.sources.reduction import free_modes
+
+DATA = Path(__file__).parents[2] / "data" / "ansys" / "beam.npz"
+INCH, SLINCH = 0.0254, 175.126835
+LABELS = ("UX", "UY", "UZ")
+
+
+def harwell_boeing(path, matrix):
+    """As HBMAT writes: Fortran formats, D exponents, column by column."""
+    lower = matrix.tocsc()
+    lower.sort_indices()
+    blocks = []
+    for values, form, each in (
+        (lower.indptr + 1, "{:10d}", 8),
+        (lower.indices + 1, "{:10d}", 8),
+        (lower.data, "{:26.16E}", 3),
+    ):
+        words = [form.format(value) for value in values.tolist()]
+        blocks.append(["".join(words[i : i + each]) for i in range(0, len(words), each)])
+    counts = [len(block) for block in blocks]
+    size = matrix.shape[0]
+    head = [f"{'Matrix as written by HBMAT':<72}{'KEY':<8}"]
+    head += ["".join(f"{n:14d}" for n in (sum(counts), *counts, 0))]
+    head += [f"{'RSA':<14}" + "".join(f"{n:14d}" for n in (size, size, lower.nnz, 0))]
+    head += [f"{'(8I10)':<16}{'(8I10)':<16}{'(3D26.16)':<20}{'':<20}"]
+    path.write_text("\n".join([*head, *blocks[0], *blocks[1], *(row.replace("E", "D") for row in blocks[2])]) + "\n")
+
+
+@pytest.fixture(scope="module")
+def export(tmp_path_factory):
+    """Matrix Market, Harwell-Boeing, mapping and nodes of the beam; the frequencies of ANSYS [Hz]."""
+    folder = tmp_path_factory.mktemp("ansys")
+    held = np.load(DATA)
+    size = 3 * len(held["node"])
+    # A solver orders equations as it likes; here backwards.
+    equations = [(int(node), label) for node in held["node"] for label in LABELS][::-1]
+    for name in ("stiffness", "mass"):
+        row, column = (size - 1 - held[f"{name}_{kind}"].astype(int) for kind in ("row", "column"))
+        matrix = scipy.sparse.coo_matrix((held[name], (row, column)), shape=(size, size))
+        harwell_boeing(folder / f"{name}.matrix", matrix)
+        scipy.io.mmwrite(folder / f"{name}.mtx", matrix, symmetry="symmetric", precision=17)
+    lines = [f"{i:10d}{node:10d}   {label}" for i, (node, label) in enumerate(equations, 1)]
+    (folder / "beam.mapping").write_text("\n".join(["Matrix Eqn      Node  DOF", *lines]) + "\n")
+    places = zip(held["node"], held["position"].astype(float).tolist(), strict=True)
+    (folder / "nodes.csv").write_text("\n".join(f"{node},{x},{y},{z}" for node, (x, y, z) in places) + "\n")
+    return folder, held["frequency"]
+
+
+@pytest.mark.parametrize("suffix", ["mtx", "matrix"])
+def test_the_six_modes_of_ansys_to_its_digits(export, suffix):
+    folder, want = export
+    body = read_matrices(
+        folder / f"stiffness.{suffix}", folder / f"mass.{suffix}", folder / "beam.mapping", folder / "nodes.csv"
+    ).scaled(INCH, SLINCH)
+    found = free_modes(body, 21000.0)
+    assert want[0] == pytest.approx(7366.495, abs=5e-4)
+    # Sixteen digits in the result file; the entries of K were kept to 1e-14 of the largest, which is worth 2e-11.
+    np.testing.assert_allclose(found.frequencies, want, rtol=1e-10)
+    volume, density = 5.0 * INCH**3, 4.1408e-4 * SLINCH / INCH**3  # titanium
+    assert found.rigid.mass == pytest.approx(volume * density, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "said"),
+    [
+        ("stiffness.matrix", "RSA", "RZA", "of type RZA; needed is RSA or RUA"),
+        ("stiffness.matrix", "(8I10)", "(what)", "is none of Fortran's for numbers"),
+        ("stiffness.matrix", "(3D26.16)", "(3D25.16)", "no Harwell-Boeing file"),
+        ("beam.mapping", "UX\n", "TEMP\n", "found 'TEMP'; rows are equation"),
+        ("beam.mapping", "        10", "        11", "equations are not 1 to 963"),
+    ],
+)
+def test_broken_exports_are_refused(export, tmp_path, file, old, new, said):
+    folder, _ = export
+    for source in folder.iterdir():
+        (tmp_path / source.name).symlink_to(source)
+    (tmp_path / file).unlink()
+    (tmp_path / file).write_text((folder / file).read_text().replace(old, new, 1))
+    names = ("stiffness.matrix", "mass.matrix", "beam.mapping", "nodes.csv")
+    with pytest.raises(DataError, match=said):
+        read_matrices(*(tmp_path / name for name in names))

@@ -1,0 +1,220 @@
+"""Real finite elements: a car-size frame of solids that CalculiX computes, against what is imported of it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections import defaultdict
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy
+
+from tests.model.flexbody import solid_frame
+from vehicle.commands import body as command
+from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.calculix import read_calculix
+from vehicle.model.flexbody.sources.frd import read_frd
+from vehicle.model.flexbody.sources.interfaces import interfaces
+from vehicle.model.flexbody.sources.mode_shapes import normalised
+from vehicle.model.flexbody.sources.reduction import free_modes
+from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
+from vehicle.model.flexbody.sources.units import units_of
+from vehicle.model.flexbody.superelement_file import read_superelement
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.signals.analysis.modal_assurance import mac
+
+pytestmark = pytest.mark.skipif(shutil.which("ccx") is None, reason="needs CalculiX: apt-get install calculix-ccx")
+
+SPREAD = 0.3  # one cell of the mesh
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("ccx")
+    for name, matrices in (("stored", True), ("modes", False)):
+        solid_frame.write_deck(folder / f"{name}.inp", matrices=matrices)
+        solid_frame.run(folder, name)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def body(job):
+    return read_calculix(job / "stored.sti")
+
+
+@pytest.fixture(scope="module")
+def places(body):
+    return interfaces(body, load_vehicle(None).composition.attachments(), tolerance=1e-3, spread=SPREAD)
+
+
+@pytest.fixture(scope="module")
+def modes(body, places):
+    return modes_of_matrices(body, 80.0, places)
+
+
+def printed(job):
+    """Frequencies as CalculiX prints them [Hz]."""
+    rows = re.findall(r"^ +\d+ +(\S+) +\S+ +(\S+) +\S+$", (job / "modes.dat").read_text(), re.MULTILINE)
+    return np.array([float(frequency) for _, frequency in rows][6:])
+
+
+def test_frequencies_mass_and_rigid_motions(job, body, modes):
+    want = printed(job)
+    count = int(np.sum(want <= 80.0))
+    assert count > 15 and len(modes.frequencies) == count
+    np.testing.assert_allclose(modes.frequencies, want[:count], rtol=1e-6)  # seven digits are printed
+    assert modes.rigid.mass == pytest.approx(solid_frame.mass(), rel=1e-12)
+    motions = body.rigid_motions(modes.rigid.cog)
+    assert np.abs(body.stiffness @ motions).max() < 1e-9 * (abs(body.stiffness) @ abs(motions)).max()
+    assert free_modes(body, 80.0).orthogonality < 1e-9
+
+
+@pytest.fixture(scope="module")
+def accelerance(body, places):
+    """-w^2 (K - w^2 M)^-1 of the full matrices at three points, 5 to 50 Hz: (w^2, point) to (3, 3)."""
+    found = {}
+    for frequency in np.linspace(5.0, 50.0, 10):
+        square = float(2.0 * np.pi * frequency) ** 2
+        factor = scipy.sparse.linalg.splu((body.stiffness - square * body.mass).tocsc())
+        for place in places:
+            if place.name in ("strut_top_fr", "hydromount", "arm_rear_fl"):
+                found[square, place.name] = square * place.moved.T @ factor.solve(place.moved.toarray())
+    return found
+
+
+@pytest.mark.parametrize(
+    ("up_to", "method", "allowed"),
+    [(80.0, "free-free", 0.025), (120.0, "free-free", 0.01), (80.0, "rubin", 0.01)],
+)
+def test_driving_point_frf_of_modes_and_residual_against_the_matrices(
+    body, places, accelerance, up_to, method, allowed
+):
+    """Accelerance up to 50 Hz by modes and residual; far worse without the residual.
+
+    A mode at 81 Hz that answers statically is wrong by (50/81)^2 / (1 - (50/81)^2) = 60 % of its own share at 50 Hz,
+    one at 121 Hz by 21 %. Modes of the attachments carry the mass of that share.
+    """
+    modes = modes_of_matrices(body, up_to, places, method)
+    motions, _ = modes.rigid.rigid_motions(body.positions)
+    rigid = np.zeros((len(body.node), 6))
+    moving = body.direction < 3
+    rigid[moving] = motions[:, body.node[moving], body.direction[moving]].T
+    moved = {place.name: place.moved for place in places}
+    total: dict[str, float] = defaultdict(float)
+    wrong: dict[bool, dict[str, float]] = {True: defaultdict(float), False: defaultdict(float)}
+    for (square, name), whole in accelerance.items():
+        at, carried = moved[name].T @ modes.vectors, moved[name].T @ rigid
+        reduced = (at / ((2.0 * np.pi * modes.frequencies) ** 2 - square)) @ at.T - carried @ carried.T / square
+        total[name] += np.sum(whole**2)
+        for with_residual in (True, False):
+            found = square * (reduced + (modes.residual[name] if with_residual else 0.0))
+            wrong[with_residual][name] += np.sum((found - whole) ** 2)
+    with_it, without = (np.sqrt([wrong[kind][name] / total[name] for name in total]) for kind in (True, False))
+    assert with_it.max() < allowed, with_it
+    assert without.min() > (5.0 if method == "free-free" else 2.0) * with_it.max(), without
+
+
+def test_modes_of_the_result_file_are_the_same(job, modes):
+    found = normalised(read_frd(job / "modes.frd", 1.0), modes.rigid, None, 80.0)
+    np.testing.assert_allclose(found.frequencies, modes.frequencies, rtol=1e-6)
+    shapes = found.body.displacements(found.vectors)
+    assert np.all(np.diag(mac(shapes, modes.body.displacements(modes.vectors))) > 1.0 - 1e-6)
+    scale = np.linalg.norm(found.vectors, axis=0) / np.linalg.norm(modes.vectors, axis=0)
+    np.testing.assert_allclose(scale, 1.0, rtol=1e-4)  # six digits in the file
+
+
+def test_the_command_writes_the_model_and_lists_the_points(job, modes, places, tmp_path, capsys):
+    output = tmp_path / "body.npz"
+    options = ["import", str(job / "stored.sti"), "--spread", "300", "--up-to", "80", "--output", str(output)]
+    assert command.main(options) == 0
+    said = capsys.readouterr().out
+    assert "points of the car" in said and "strut_top_fr" in said
+    written = read_superelement(output)
+    units = f"{modes.body.source}, {units_of(None, None).words}"
+    want = superelement_of(replace(modes, body=replace(modes.body, source=units)), places, name="stored", damping=0.02)
+    np.testing.assert_array_equal(written.shapes, want.shapes)
+    assert written.provenance == want.provenance
+    assert command.main(options) == 2 and "exists" in capsys.readouterr().err
+    assert command.main(["import", str(job / "stored.sti"), "--output", str(tmp_path / "b.npz")]) == 3
+    assert "points of the car have no node within 1 mm; the nearest are" in capsys.readouterr().err
+
+
+def test_millimetres_tonnes_and_newtons_are_the_same_body(job, tmp_path, capsys):
+    """K in N/mm, M in t, places in mm: the mass follows from the length, and the stiffness with it."""
+    for suffix, factor in (("sti", 1e-3), ("mas", 1e-3)):
+        table = np.loadtxt(job / f"stored.{suffix}")
+        np.savetxt(tmp_path / f"mm.{suffix}", table * [1.0, 1.0, factor], fmt=["%d", "%d", "%.17g"])
+    shutil.copy(job / "stored.dof", tmp_path / "mm.dof")
+    deck = (job / "stored.inp").read_text()
+    head, rest = deck.split("*ELEMENT", 1)
+    rows = [[float(word) for word in line.split(",")] for line in head.splitlines()[1:]]
+    places = [f"{int(row[0])},{','.join(repr(1e3 * value) for value in row[1:])}" for row in rows]
+    (tmp_path / "mm.inp").write_text("\n".join(["*NODE", *places]) + "\n*ELEMENT" + rest)
+    common = ["--spread", "300", "--up-to", "40", "--force", "--output"]
+    assert command.main(["import", str(job / "stored.sti"), *common, str(tmp_path / "m.npz")]) == 0
+    capsys.readouterr()
+    millimetres = ["import", str(tmp_path / "mm.sti"), "--length-unit", "mm"]
+    assert command.main([*millimetres, *common, str(tmp_path / "mm.npz")]) == 0
+    notice = "lengths in mm, masses in t, which follows from mm, N and s"
+    assert f"note: {notice}" in capsys.readouterr().out
+    one, other = (read_superelement(tmp_path / f"{name}.npz") for name in ("m", "mm"))
+    assert notice in other.provenance
+    assert other.mass == pytest.approx(one.mass, rel=1e-9)
+    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-7)
+    for name, flexibility in one.residual.items():
+        np.testing.assert_allclose(other.residual[name], flexibility, rtol=0.0, atol=1e-5 * flexibility.max())
+    # The old reading of the same options: 0.86 kg.
+    assert command.main([*millimetres, "--mass-unit", "kg", *common, str(tmp_path / "kg.npz")]) == 3
+    said = capsys.readouterr().err
+    assert "mass: found 0.8592 kg" in said and 'Set --mass-unit "t".' in said
+    assert command.main(["import", str(tmp_path / "mm.sti"), *common, str(tmp_path / "kg.npz")]) == 3
+    assert "Set --length-unit mm." in capsys.readouterr().err
+
+
+def test_incompatible_modes_are_kept(tmp_path):
+    """Bricks C3D8I: three nodes for each, with mass and without a place; the frequencies are those of CalculiX."""
+    numbers = np.arange(1, 61).reshape(3, 4, 5)  # z, y, x
+    lines = ["*NODE"]
+    lines += [f"{numbers[k, j, i]},{0.6 * i},{0.4 * j},{0.4 * k}" for k in range(3) for j in range(4) for i in range(5)]
+    lines.append("*ELEMENT,TYPE=C3D8I,ELSET=EALL")
+    for n, (k, j, i) in enumerate(np.ndindex(2, 3, 4), 1):
+        face = [(j, i), (j, i + 1), (j + 1, i + 1), (j + 1, i)]
+        lines.append(",".join(map(str, [n, *(numbers[k + up, a, b] for up in (0, 1) for a, b in face)])))
+    lines += ["*MATERIAL,NAME=S", "*ELASTIC", "2e7,0.3", "*DENSITY", "200.", "*SOLID SECTION,ELSET=EALL,MATERIAL=S"]
+    for name, solver in (("stored", ",SOLVER=MATRIXSTORAGE"), ("modes", "")):
+        end = ["*STEP", f"*FREQUENCY{solver}", "12", "*END STEP"]
+        (tmp_path / f"{name}.inp").write_text("\n".join([*lines, *end]) + "\n")
+        solid_frame.run(tmp_path, name)
+    body = read_calculix(tmp_path / "stored.sti").scaled(1.0, 1.0).placed("-x,-y,z", (2.0, 0.0, 0.0))
+    want = printed(tmp_path)
+    found = free_modes(body, float(want[4]) * 1.01)
+    np.testing.assert_allclose(found.frequencies[:5], want[:5], rtol=1e-6)
+    assert found.rigid.mass == pytest.approx(2.4 * 1.2 * 0.8 * 200.0, rel=1e-9)
+    assert np.sum(body.direction >= 6) == 9 * 24
+    inch = read_calculix(tmp_path / "stored.sti").scaled(0.0254, 1.0)
+    np.testing.assert_allclose(free_modes(inch, float(want[4]) * 1.01).frequencies[:5], want[:5], rtol=1e-6)
+
+
+def test_a_support_is_refused(job, tmp_path):
+    text = (job / "stored.inp").read_text().replace("*STEP", "*BOUNDARY\n1,1,3\n5,1,3\n9,1,3\n*STEP")
+    (tmp_path / "held.inp").write_text(text)
+    solid_frame.run(tmp_path, "held")
+    with pytest.raises(DataError, match="rigid motions are held, at 1"):
+        free_modes(read_calculix(tmp_path / "held.sti"), 80.0)
+
+
+def test_expanded_shells_are_refused(tmp_path):
+    """Shell elements are expanded to solids, with nodes of their own and constraints between them."""
+    lines = ["*NODE,NSET=NALL"]
+    lines += [f"{1 + i + 11 * j},{0.4 * i},{0.3 * j},{0.02 * i * j}" for j in range(6) for i in range(11)]
+    lines += ["*ELEMENT,TYPE=S4,ELSET=EALL"]
+    corners = [(1 + i + 11 * j, 2 + i + 11 * j, 13 + i + 11 * j, 12 + i + 11 * j) for j in range(5) for i in range(10)]
+    lines += [f"{n},{','.join(map(str, own))}" for n, own in enumerate(corners, 1)]
+    lines += ["*MATERIAL,NAME=S", "*ELASTIC", "2e11,0.3", "*DENSITY", "7800.", "*SHELL SECTION,ELSET=EALL,MATERIAL=S"]
+    lines += ["0.002", "*STEP", "*FREQUENCY,SOLVER=MATRIXSTORAGE", "10", "*END STEP"]
+    (tmp_path / "shell.inp").write_text("\n".join(lines) + "\n")
+    solid_frame.run(tmp_path, "shell")
+    with pytest.raises(DataError, match=r"150 so.*expands shells and beams"):
+        read_calculix(tmp_path / "shell.sti")

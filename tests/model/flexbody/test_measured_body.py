@@ -1,0 +1,112 @@
+"""A body known by a modal test only: the car on it against the car on the body that was tested."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.model.flexbody.modal_test import true_body, write_modes
+from vehicle.commands import body as command
+from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.residual_table import read_residuals
+from vehicle.model.flexbody.superelement_file import read_superelement
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.modal_assurance import mac
+
+RIGID = "body.attachment_flexibility=false"
+"""A modal test has no residual flexibility; it is compared with a body that has none either."""
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    """Cars on the modes of a test, exact and with errors as of a careful test."""
+    folder = tmp_path_factory.mktemp("test")
+    cars = {}
+    for name, errors in (("exact", {}), ("noisy", {"noise": 0.02, "scale": 0.03})):
+        write_modes(folder / f"{name}.uff", **errors)
+        words = ["import", str(folder / f"{name}.uff"), "--output", str(folder / f"{name}.toml")]
+        assert command.main(words) == 0
+        cars[name] = Car(load_vehicle(None, [f"body.superelement={name}.toml"]), folder=folder)
+    return folder, cars
+
+
+def frequencies(car):
+    """Of the lightly damped modes up to 40 Hz [Hz]."""
+    return np.array(
+        [mode.frequency for mode in car.modes("stuck") if mode.frequency < 40.0 and mode.damping_ratio < 0.2]
+    )
+
+
+def seat_rail(car, piece):
+    """RMS of the vertical acceleration, 2 to 50 Hz [m/s2]."""
+    return car.run(piece, engine="reduced").comfort().z
+
+
+def test_shapes_of_a_test_are_mapped_and_scaled(measured):
+    folder, _ = measured
+    body, want = read_superelement(folder / "exact.toml"), true_body()
+    np.testing.assert_allclose(body.frequencies, want.frequencies, rtol=1e-5)  # six digits in the file
+    for place in load_vehicle(None).composition.attachments():
+        found = body.shape_at(place)
+        sign = np.sign(np.sum(found * want.shape_at(place), axis=0))
+        np.testing.assert_allclose(found * sign, want.shape_at(place), atol=2e-5 * np.abs(want.shapes).max())
+    noisy = read_superelement(folder / "noisy.toml")
+    assert np.diag(mac(noisy.shapes, body.shapes)).min() > 0.999  # 2 % of a component: 1 - 0.02^2
+
+
+def test_the_car_on_exact_modes_is_the_car_on_the_body(measured, high_piece):
+    _, cars = measured
+    true = Car.load(overrides=[RIGID])
+    np.testing.assert_allclose(frequencies(cars["exact"]), frequencies(true), rtol=1e-3)  # places have five digits
+    assert seat_rail(cars["exact"], high_piece) == pytest.approx(seat_rail(true, high_piece), rel=1e-3)
+
+
+def test_errors_of_a_test_change_the_car_less_than_themselves(measured, high_piece):
+    """A scale 3 % wrong is a modal mass 6 % wrong: at most 3 % of a frequency where all energy is in that mode."""
+    _, cars = measured
+    true = Car.load(overrides=[RIGID])
+    found, want = frequencies(cars["noisy"]), frequencies(true)
+    np.testing.assert_allclose(found, want, rtol=0.01)
+    assert np.abs(found / want - 1.0).max() > 1e-3  # the errors did reach the car
+    assert seat_rail(cars["noisy"], high_piece) == pytest.approx(seat_rail(true, high_piece), rel=0.03)
+
+
+def test_what_a_test_does_not_see_is_the_residual_flexibility(measured, high_piece, car):
+    """Local flexibility of mounts: the engine sits up to 8 % too stiff without it, the seat rail hardly notices."""
+    _, cars = measured
+    ratio = frequencies(cars["exact"]) / frequencies(car)
+    assert 1.05 < ratio.max() < 1.08 and ratio.min() > 0.999
+    assert seat_rail(cars["exact"], high_piece) == pytest.approx(seat_rail(car, high_piece), rel=0.02)
+
+
+def test_measured_residuals_bring_back_what_a_test_does_not_see(measured, car):
+    """Local stiffness of every attachment, measured on the true body [N/mm]: the car is the one on that body again."""
+    folder, _ = measured
+    rows = ["point,x [N/mm],y [N/mm],z [N/mm]"]
+    for name, own in car.trimmed_body.residual.items():
+        rows.append(f"{name}," + ",".join(f"{1e-3 / value:.9g}" for value in np.diag(own)))
+    (folder / "stiffness.csv").write_text("\n".join(rows), encoding="utf-8")
+    words = ["import", str(folder / "exact.uff"), "--output", str(folder / "whole.toml")]
+    assert command.main([*words, "--residual", str(folder / "stiffness.csv")]) == 0
+    whole = Car(load_vehicle(None, ["body.superelement=whole.toml"]), folder=folder)
+    np.testing.assert_allclose(frequencies(whole), frequencies(car), rtol=1e-3)  # 7 % without them
+    assert "residual flexibility of 15 points as measured" in whole.trimmed_body.provenance
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    {
+        "no unit": ("point,x,y,z\nseat,1,1,1", r"needed is point,x \[N/m\],y \[N/m\],z \[N/m\] for stiffnesses"),
+        "unknown": ("point,x [m/N],y [m/N],z [m/N]\nbonnet,1e-7,1e-7,1e-7", "'bonnet' is no point of the car; its"),
+        "twice": ("point,x [N/m],y [N/m],z [N/m]\nseat,1e7,1e7,1e7\nseat,1e7,1e7,1e7", "'seat' is given twice"),
+        "zero": ("point,x [N/m],y [N/m],z [N/m]\nseat,1e7,0,1e7", "seat: found 1e7,0,1e7, needed are three numbers"),
+        "word": ("point,x [N/m],y [N/m],z [N/m]\nseat,1e7,stiff,1e7", "needed are three numbers above 0"),
+        "empty": ("", "found the head ''"),
+    }.values(),
+)
+def test_a_bad_table_of_residuals_is_refused(text, message, tmp_path):
+    file = tmp_path / "residual.csv"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(DataError, match=message):
+        read_residuals(file, ("seat", "seat_rail"))

@@ -1,0 +1,104 @@
+"""The data file: round trip to the last digit, and nothing damaged, incomplete or misspelt is read."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from tests.model.flexbody.box_body import box_fields
+from vehicle.errors import DataError, OutputError
+from vehicle.model.flexbody.superelement import Superelement
+from vehicle.model.flexbody.superelement_file import read_superelement, write_superelement
+
+
+@pytest.fixture
+def path(tmp_path):
+    file = tmp_path / "box.toml"
+    write_superelement(file, Superelement(**box_fields()))
+    return file
+
+
+def test_round_trip_keeps_every_digit(path):
+    written, read = Superelement(**box_fields()), read_superelement(path)
+    for name in ("positions", "edges", "node_mass", "frequencies", "damping_ratio", "shapes"):
+        np.testing.assert_array_equal(getattr(read, name), getattr(written, name))
+    for name in ("name", "nodes", "mode_names", "provenance"):
+        assert getattr(read, name) == getattr(written, name)
+    assert {k: v.tolist() for k, v in read.residual.items()} == {"corner_1": np.diag([1e-7, 5e-8, 4e-8]).tolist()}
+    assert [file.name for file in path.parent.iterdir()] == ["box.toml"]
+
+
+BAD = {
+    "misspelt key": (
+        "mass_kg = 30.0",
+        "mas_kg = 30.0",
+        "node 1: unknown key 'mas_kg'; the nearest valid one is 'mass_kg'",
+    ),
+    "misspelt top key": (
+        "provenance =",
+        "provenence =",
+        "unknown key 'provenence'; the nearest valid one is 'provenance'",
+    ),
+    "key missing": ("damping_ratio = 0.02\n", "", "mode 1: key 'damping_ratio' is missing"),
+    "mode count": ("mode_count = 4", "mode_count = 9", "4 [[mode]] tables, but mode_count = 9"),
+    "node count": ("node_count = 8", "node_count = 43", "8 [[node]] tables, but node_count = 43"),
+    "not a number": ("mass_kg = 30.0", 'mass_kg = "heavy"', "node 1, mass_kg: 'heavy' is not made of numbers"),
+    "true is no number": ("mass_kg = 30.0", "mass_kg = true", "node 1, mass_kg: 'True' is not made of numbers"),
+    "NaN": ("mass_kg = 30.0", "mass_kg = nan", "node_mass[0]: nan; every number must be finite"),
+    "two numbers": (
+        "position_m = [0.0, -0.5, 0.4]",
+        "position_m = [0.0, -0.5]",
+        "node 2, position_m: shape (3,), the first",
+    ),
+    "edge": (
+        '["corner_0", "corner_1"]',
+        '["corner_0", "nose"]',
+        "edges: ['corner_0', 'nose'] is no pair of node names",
+    ),
+    "format": ("modal superelement 2", "modal superelement 7", "format is 'modal superelement 7'"),
+    "node renamed, edges not": ('"corner_7"\n', '"corner_6"\n', "edges: "),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_files_are_refused_with_path_and_place(path, case):
+    old, new, message = BAD[case]
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(DataError, match=re.escape(f"{path}: ") + ".*" + re.escape(message)):
+        read_superelement(path)
+
+
+def test_shape_row_missing_is_refused(path):
+    lines = path.read_text().splitlines()
+    first = lines.index("shape_per_sqrt_kg = [")
+    path.write_text("\n".join(lines[: first + 1] + lines[first + 2 :]))
+    with pytest.raises(DataError, match="mode 1, shape_per_sqrt_kg: 7 rows; 8 nodes need 8 rows of three numbers"):
+        read_superelement(path)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99])
+def test_truncated_file_is_refused(path, share):
+    data = path.read_bytes()
+    path.write_bytes(data[: int(share * len(data))])
+    with pytest.raises(DataError, match=re.escape(str(path))):
+        read_superelement(path)
+
+
+def test_missing_and_binary_files_are_refused(tmp_path):
+    with pytest.raises(DataError, match="no such file"):
+        read_superelement(tmp_path / "none.toml")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(DataError, match="cannot be read as UTF-8 text"):
+        read_superelement(tmp_path / "binary.toml")
+
+
+def test_a_file_that_cannot_be_written_leaves_nothing_behind(tmp_path):
+    (tmp_path / "taken.toml").mkdir()
+    for target in (tmp_path / "nowhere" / "box.toml", tmp_path / "taken.toml"):
+        with pytest.raises(OutputError, match="cannot be written"):
+            write_superelement(target, Superelement(**box_fields()))
+    assert [entry.name for entry in tmp_path.iterdir()] == ["taken.toml"]

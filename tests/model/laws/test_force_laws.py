@@ -1,0 +1,212 @@
+"""Each law against its printed equation, its derivative against differences, its bad parameters refused."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.laws.coulomb import Coulomb
+from vehicle.model.laws.damper import damper_law, friction_limit, pack
+from vehicle.model.laws.degressive import Degressive
+from vehicle.model.laws.friction import Clamped
+from vehicle.model.laws.kelvin import Kelvin
+from vehicle.model.laws.law import Parallel
+from vehicle.model.laws.maxwell import Maxwell
+from vehicle.model.laws.stribeck import Stribeck
+from vehicle.model.laws.switch import Switch
+from vehicle.model.parameters.vehicle import load_vehicle
+
+STRIBECK = {
+    "friction_limit": 65.0,
+    "static_limit": 125.0,
+    "stribeck_velocity": 0.03,
+    "stribeck_exponent": 3.5,
+    "smoothing": 1e3,
+}
+LAWS = [
+    Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02),
+    Coulomb(friction_limit=75.0, smoothing=1e3),
+    Clamped(law=Coulomb(friction_limit=75.0, smoothing=1e3)),
+    Clamped(law=Stribeck(**STRIBECK)),
+    Stribeck(**STRIBECK),
+    Stribeck(**{**STRIBECK, "stribeck_exponent": 0.5}),
+    Parallel(
+        laws=(
+            Degressive(low_damping=9.0, high_damping=9.0, knee_velocity=1.0),
+            Coulomb(friction_limit=125.0, smoothing=1e3),
+        )
+    ),
+]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+def test_the_slope_is_the_derivative_of_the_force(law):
+    # Knees (0.02 and pi/2/1e3 m/s) are not on the grid; a centred difference of 1e-8 m/s errs by its square times
+    # F''' (below 75e9 N s3/m3) and by 1e-16 F / 1e-8: 1e-5 of the largest slope covers both.
+    v = np.linspace(-0.1, 0.1, 402)
+    step = 1e-8
+    difference = (law.force(v + step) - law.force(v - step)) / (2.0 * step)
+    assert law.slope(v) == pytest.approx(difference, abs=1e-5 * np.abs(difference).max())
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+def test_a_law_is_odd_and_opposes_the_motion(law):
+    v = np.linspace(0.0, 0.5, 101)
+    assert law.force(-v) == pytest.approx(-law.force(v), abs=0.0)
+    assert (law.force(v[1:]) > 0.0).all()
+    assert law.slope(-v) == pytest.approx(law.slope(v), abs=0.0)
+    assert np.isfinite(law.slope(np.array([0.0, 1e3, -1e3]))).all()
+
+
+def test_a_law_accepts_scalars_and_broadcasts_arrays_of_parameters():
+    many = Coulomb(friction_limit=np.array([50.0, 75.0]), smoothing=1e5)
+    both = many.force(np.array([[0.01], [-0.02], [0.0]]))
+    assert both.shape == (3, 2)
+    assert both[1, 1] == Coulomb(friction_limit=75.0, smoothing=1e5).force(-0.02)
+
+
+def test_degressive_damper_follows_c1():
+    law = Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02)
+    # 15000 * 0.01; 15000 * 0.02; 1500 * 0.1 + (15000 - 1500) * 0.02, by hand.
+    assert law.force(np.array([0.01, 0.02, 0.1, -0.1])) == pytest.approx([150.0, 300.0, 420.0, -420.0], rel=1e-14)
+    assert law.force(0.02 * (1 - 1e-12)) == pytest.approx(law.force(0.02 * (1 + 1e-12)), rel=1e-11)
+
+
+def test_smooth_coulomb_follows_2_4_and_the_regularised_law_has_its_slope_at_rest():
+    smooth = Coulomb(friction_limit=75.0, smoothing=1e5)
+    hard = Clamped(law=Coulomb(friction_limit=75.0, smoothing=1e5))
+    coefficient = 2.0 / np.pi * 75.0 * 1e5
+    assert smooth.force(1e-5) == pytest.approx(75.0 * 0.5, rel=1e-14)  # atan(1) = pi/4
+    assert smooth.force(1e-3) / 75.0 == pytest.approx(0.99363, abs=5e-6)  # the 99.4 % of the run's summary file
+    assert hard.slope(0.0) == pytest.approx(coefficient, rel=1e-15) == smooth.slope(0.0)
+    assert hard.force(np.array([1e-6, 1.0, -1.0])) == pytest.approx([coefficient * 1e-6, 75.0, -75.0], rel=1e-14)
+
+
+def test_energy_per_cycle_of_the_smooth_law():
+    # x = A sin(w t): the integral of Fd (2/pi) atan(eps A w cos) A cos is, by differentiation under the integral sign,
+    # 4 Fd A (sqrt(1 + a^2) - 1)/a with a = eps A w; for large a it is Coulomb's 4 Fd A.
+    law = Coulomb(friction_limit=75.0, smoothing=1e3)
+    phase = np.arange(4096) * 2.0 * np.pi / 4096  # the periodic trapezoid converges faster than any power
+    for speed in (1e-4, 1e-3, 5e-2):
+        amplitude = 0.01
+        work = np.mean(law.force(speed * np.cos(phase)) * np.cos(phase)) * 2.0 * np.pi * amplitude
+        a = 1e3 * speed
+        assert work == pytest.approx(4.0 * 75.0 * amplitude * (np.sqrt(1.0 + a * a) - 1.0) / a, rel=1e-9)
+
+
+def test_stribeck_follows_3_2():
+    law = Stribeck(**{**STRIBECK, "smoothing": 1e5})
+    assert law.limit(0.0) == 125.0
+    assert law.limit(0.03) == pytest.approx(65.0 + 60.0 * np.exp(-1.0), rel=1e-14)
+    assert law.limit(np.array([-0.5, 1e6])) == pytest.approx([65.0, 65.0], rel=1e-14)
+    assert law.force(0.03) == pytest.approx((65.0 + 60.0 / np.e) * 2.0 / np.pi * np.arctan(3e3), rel=1e-14)
+    assert law.slope(0.0) == pytest.approx(125.0 * 2.0 / np.pi * 1e5, rel=1e-14)
+
+
+@pytest.mark.parametrize("word", ["coulomb", "stribeck"])
+def test_the_record_of_a_damper_is_its_law(word):
+    numbers: dict[str, Any] = {
+        "coulomb_friction": 65.0,
+        "stribeck_friction": 125.0,
+        "stribeck_velocity": 0.03,
+        "stribeck_exponent": 2.0,
+    }
+    valve: dict[str, Any] = {"viscous_law": "degressive", "degressive_viscous": 15000.0, "degressive_velocity": 0.02}
+    damper = dataclasses.replace(load_vehicle().damper, friction_law=word, **numbers, **valve)
+    record = pack(damper)
+    v = np.array([0.001, -0.03, 0.2])
+    falling = 60.0 * np.exp(-((v / 0.03) ** 2)) if word == "stribeck" else 0.0
+    limit = 65.0 + falling
+    assert [friction_limit(record, one) for one in v] == pytest.approx(limit + np.zeros(3), rel=1e-14)
+    smooth = limit * 2.0 / np.pi * np.arctan(damper.smoothing * v)
+    assert damper.viscous == 2250.0
+    knee = 2250.0 * v + np.clip(12750.0 * v, -0.02 * 12750.0, 0.02 * 12750.0)
+    assert damper_law(damper).force(v) == pytest.approx(knee + smooth, rel=1e-13)
+
+
+def test_switch_mixes_the_fields_as_appendix_a():
+    law = Switch(limit=50.0, band=1e-6, return_time=1e-4)
+    h = np.array([2e-6, -2e-6, 5e-7, 5e-7, 5e-7, 5e-7])
+    plus = np.array([-10.0, -10.0, 5.0, -20.0, -60.0, 5.0])
+    minus = np.array([90.0, 90.0, 105.0, -5.0, 40.0, -5.0])
+    alpha = law.mixing(h, plus, minus)
+    # slip +, slip -, transition to +, transition to -, stick, repulsive
+    assert alpha[[0, 1, 2, 3, 5]].tolist() == [1.0, 0.0, 1.0, 0.0, 1.0]
+    assert law.sticks(h, plus, minus).tolist() == [False, False, False, False, True, False]
+    # In stick the mixed field returns the velocity to zero with the time constant: h' = -h/tau.
+    assert alpha[4] * plus[4] + (1.0 - alpha[4]) * minus[4] == pytest.approx(-5e-7 / 1e-4, rel=1e-12)
+    assert law.force(2e-6, -10.0, 90.0) == 50.0
+    assert law.force(-2e-6, -10.0, 90.0) == -50.0
+
+
+BAD = [
+    (
+        Coulomb,
+        {"friction_limit": np.array([1.0, np.nan]), "smoothing": 1e5},
+        "Coulomb.friction_limit: found nan N, needed is a finite number (friction limit Fd in sliding)",
+    ),
+    (
+        Coulomb,
+        {"friction_limit": "much", "smoothing": 1e5},
+        "Coulomb.friction_limit: found 'much', needed is a number [N]",
+    ),
+    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "Coulomb.friction_limit: found True, needed is a number [N]"),
+    (
+        Degressive,
+        {"low_damping": 1.0, "high_damping": 1.0, "knee_velocity": -0.1},
+        "Degressive.knee_velocity: found -0.1 m/s, must be at least 0.0",
+    ),
+    (
+        Coulomb,
+        {"friction_limit": 75.0, "smoothing": 0.0},
+        "Coulomb.smoothing: found 0.0 s/m, must be greater than 0.0",
+    ),
+    (
+        Coulomb,
+        {"friction_limit": -75.0, "smoothing": 1e5},
+        "Coulomb.friction_limit: found -75.0 N, must be at least 0.0",
+    ),
+    (
+        Coulomb,
+        {"friction_limit": 75.0, "smoothing": np.array([1e5, -1.0])},
+        "Coulomb.smoothing: found -1.0 s/m, must be greater than 0.0",
+    ),
+    (
+        Switch,
+        {"limit": 50.0, "band": 0.0, "return_time": 1e-3},
+        "Switch.band: found 0.0 m/s, must be greater than 0.0",
+    ),
+    (
+        Switch,
+        {"limit": 50.0, "band": 1e-6, "return_time": -1.0},
+        "Switch.return_time: found -1.0 s, must be greater than 0.0",
+    ),
+    (
+        Stribeck,
+        {**STRIBECK, "static_limit": 60.0},
+        "Stribeck.static_limit: found 60.0 N, must be at least the friction limit 65.0 N; "
+        "raise static_limit or lower friction_limit",
+    ),
+    (
+        Stribeck,
+        {**STRIBECK, "stribeck_velocity": 0.0},
+        "Stribeck.stribeck_velocity: found 0.0 m/s, must be greater than 0.0",
+    ),
+    (Kelvin, {"stiffness": -1.0, "damping": 0.0}, "Kelvin.stiffness: found -1.0 N/m, must be at least 0.0"),
+    (
+        Maxwell,
+        {"stiffness": 1.0, "branch_stiffness": -1.0, "branch_damping": 1.0},
+        "Maxwell.branch_stiffness: found -1.0 N/m, must be at least 0.0",
+    ),
+]
+
+
+@pytest.mark.parametrize(("law", "values", "message"), BAD)
+def test_bad_parameters_are_refused_by_name(law, values, message):
+    with pytest.raises(ConfigurationError) as caught:
+        law(**values)
+    assert str(caught.value) == message

@@ -1,0 +1,260 @@
+"""Vehicle files and curves that are none: each one sentence with file and table, and the exit code 2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from vehicle.commands.command_line import FAULT, run_command
+from vehicle.model.parameters.shipped import FOCUS_FILE
+from vehicle.model.parameters.vehicle import load_vehicle
+
+TEXT = FOCUS_FILE.read_text(encoding="utf-8")
+NEW = "[outputs]"
+"""Before this a new table is put."""
+
+ARM = "inertia = [0.05, 0.02, 0.05]"
+LINK = 'moving = "engine"\ncarrier = "body"\nat = [0.7, 0.1, 1.2]\n'
+
+
+def put(text: str) -> tuple[str, str]:
+    """A table more."""
+    return NEW, f"{text}\n{NEW}"
+
+
+VEHICLES = {
+    # Keys that nobody knows.
+    "of the car": ("gravity = 9.81", "gravity = 9.81\ncolour = 3", "colour: unknown parameter; the nearest known"),
+    "of the body": (
+        "mass = 813.0",
+        "mass = 813.0\nmas = 3",
+        "body.mas: unknown parameter; the nearest known name is mass",
+    ),
+    "of an element": (
+        "viscous =",
+        "viscus = 1\nviscous =",
+        "front.damper.viscus: unknown parameter; the nearest known",
+    ),
+    "of an axle": ("[front.damper]", "[front.dampers]", "front.dampers: unknown parameter; the nearest known name"),
+    "of a side": (
+        *put("[front.left.bushing.arm_rear]\nstiffness = [1, 1, 1]"),
+        "front.left.bushing: unknown parameter",
+    ),
+    "a bushing of a side": (*put("[front.left.bushings.arm_reer]"), "front.left.bushings.arm_reer: unknown parameter"),
+    "deep in a side": (
+        *put("[front.left.bushings.arm_rear]\nstifness = [1e5, 1e5, 1e5]"),
+        "front.left.bushings.arm_rear.stifness: unknown parameter; the nearest known name is stiffness",
+    ),
+    "deeper in a side": (
+        *put("[front.left.damper.stop]\ndisplacment = [0, 1]"),
+        "front.left.damper.stop.displacment: unk",
+    ),
+    "a side in a side": (*put("[front.left.left.damper]\nviscous = 1"), "front.left.left: unknown parameter"),
+    "of a connection": (
+        *put(f"[connection.x]\n{LINK}stifness = [1, 1, 1]"),
+        "connection.x.stifness: unknown parameter",
+    ),
+    "of an output": (NEW, f"{NEW}\nx = {{ on = 'body', at = 'seat', in = 3 }}", "outputs.x.in: unknown parameter"),
+    "a point": ("strut_top = ", "strut_tip = [0, 1, 2]\nstrut_top = ", "front.hardpoints.strut_tip: unknown"),
+    # Templates.
+    "no template": ('template = "blocks"', "", "rear.template: missing; an instance needs template = NAME"),
+    "no template below": (*put("[seat.driver]\nparts = {}"), "seat.driver.template: missing"),
+    "a table of no kind": (*put("[reer]\nname = 1"), "reer: unknown parameter; the nearest known name is rear"),
+    "no such template": (
+        'template = "blocks"',
+        'template = "bloks"',
+        "template 'bloks': no such file beside the vehicle file nor in the package; the nearest is blocks",
+    ),
+    "a number as template": (
+        'template = "blocks"',
+        "template = 3",
+        "rear.template: found 3, needed is a text in quotes",
+    ),
+    "a name with a blank": (*put('["re ar"]\ntemplate = "blocks"'), "re ar: found 're ar', allowed are letters"),
+    # Points.
+    "missing": ("tie_outer = [", "tie_outr = [", "front.hardpoints.tie_outr: unknown parameter; the nearest"),
+    "twice": ("seat = [", "seat = [1, 0, 1]\nseat = [", "not a TOML file: Cannot overwrite a value (at line"),
+    "twice under two names": (
+        "seat = [",
+        "strut_top_fr = [1, 0, 1]\nseat = [",
+        "hardpoints.strut_top_fr: an instance has a",
+    ),
+    "of nothing": (
+        "tie_inner = [0.985, 0.335, 0.66]",
+        'tie_inner = "subframe.tie"',
+        "front.hardpoints.tie_inner: found",
+    ),
+    "of itself": (
+        "tie_inner = [0.985, 0.335, 0.66]",
+        'tie_inner = "front.tie_inner"',
+        "tie_inner', which leads back to",
+    ),
+    "in the plane": (
+        "strut_top = [0.877, 0.548, 1.23]",
+        "strut_top = [0.877, 0.548]",
+        "needed is a list of 3 numbers [m]",
+    ),
+    "not finite": (
+        "0.548, 1.23]",
+        "0.548, nan]",
+        "front.hardpoints.strut_top: found [0.877, 0.548, nan] m, needed are fin",
+    ),
+    "a text": ("0.548, 1.23]", '0.548, "high"]', "front.hardpoints.strut_top: found 'high', needed is a number"),
+    "on the other side": (
+        *put("[front.left.hardpoints]\ntie_inner = [0.985, 0.335, 0.66]"),
+        "front.left.hardpoints.tie_inner: found y = 0.335 m, which is on the other side",
+    ),
+    "of a rod at one place": (
+        "tie_inner = [0.985, 0.335, 0.66]",
+        "tie_inner = [0.985, 0.69, 0.648]",
+        "front.hardpoints.tie_outer, front.hardpoints.tie_inner: coincide",
+    ),
+    "of a part": (ARM, f'{ARM}\nbetween = ["lower_bal"]', "front.parts.a_arm.between: unknown hardpoint 'lower_bal'"),
+    "none of a part": (ARM, f"{ARM}\nbetween = []", "front.parts.a_arm.between: found no hardpoint"),
+    # Numbers and types.
+    "negative mass": (
+        "mass = 4.05",
+        "mass = -4.05",
+        "front.parts.a_arm.mass: found -4.05 kg, must be greater than 0.0",
+    ),
+    "infinite mass": ("mass = 4.05", "mass = inf", "front.parts.a_arm.mass: found inf kg, needed is a finite number"),
+    "moments": (
+        ARM,
+        "inertia = [0.05, 0.02, 0.5]",
+        "front.parts.a_arm.inertia: found [0.05, 0.02, 0.5] kg m2, the two",
+    ),
+    "products": (
+        ARM,
+        f"{ARM}\nproducts = [0.03, 0, 0]",
+        "front.parts.a_arm.products: found [0.03, 0.0, 0.0] kg m2, too",
+    ),
+    "a word for numbers": (
+        "stiffness = [2.5e5, 8.0e5, 8.0e5]",
+        'stiffness = "soft"',
+        "stiffness: found 'soft', needed is a",
+    ),
+    "a number for a table": (*put("[front.left]\nbushings = 3"), "front.left.bushings: found 3, needed is a table"),
+    "a number for a side": (
+        "[front.hardpoints]",
+        "left = 3\n[front.hardpoints]",
+        "front.left: found 3, needed is a table",
+    ),
+    "a date": (
+        "mass = 4.05",
+        "mass = 2026-11-22",
+        "front.parts.a_arm.mass: found datetime.date(2026, 11, 22), needed is",
+    ),
+    "a list of tables": (
+        "[solver]",
+        "[[solver]]",
+        "solver: found [{'timestep': 0.001, 'record_rate': 1000.0}], needed is",
+    ),
+    "not TOML": ("gravity = 9.81", "gravity = 9,81", "not a TOML file: "),
+    # What is named and is not there, what is there and is not taken.
+    "a port": (
+        "[front.hardpoints]",
+        'ports = { bdy = "engine" }\n[front.hardpoints]',
+        "front.ports.bdy: unknown parameter",
+    ),
+    "a part of a port": (
+        "[front.hardpoints]",
+        'ports = { body = "engin" }\n[front.hardpoints]',
+        "front.ports.body: 'engin'",
+    ),
+    "moving part": (
+        *put(f"[connection.x]\n{LINK.replace('engine', 'engin')}"),
+        "connection.x.moving: found 'engin', no",
+    ),
+    "carrier": (*put(f"[connection.x]\n{LINK.replace('body', 'bodi')}"), "connection.x.carrier: found 'bodi', no such"),
+    "the same part": (
+        *put(f"[connection.x]\n{LINK.replace('body', 'engine')}"),
+        "connection.x: holds engine on itself",
+    ),
+    "place": (*put(f"[connection.x]\n{LINK.replace('at', '#')}"), "connection.x.at: missing"),
+    "part of an output": (
+        'on = "engine"',
+        'on = "engin"',
+        "outputs.engine.on: found 'engin', no such part; the nearest is",
+    ),
+    "point of an output": (
+        'at = "engine_cog"',
+        'at = "engine_kog"',
+        "outputs.engine.at: found 'engine_kog', no such point",
+    ),
+    "two of one name": (*put(f"[connection.arm_rear_fr]\n{LINK}"), "arm_rear_fr: two elements have this name"),
+    "an alias": ("[alias]", '[alias]\nx = "front.nothing"', "alias.x: no parameter front.nothing"),
+    "a bushing": ("[front.bushings.arm_rear]", "[front.bushings.arm_front]", "front.bushings.arm_rear: missing;"),
+    "side of what exists once": (
+        *put("[front.left.stabilizer]\ntorsional_stiffness = 1"),
+        "front.left.stabilizer: mac",
+    ),
+    "side of what is not mirrored": (
+        *put("[engine.left.bushings.hydromount]\nstiffness = [1e5, 1e5, 1e5]"),
+        "engine.left.bushings.hydromount: three_mounts.toml does not take it; it is not mirrored",
+    ),
+    "nothing to stand on": (
+        TEXT[TEXT.index("[rear]") : TEXT.index("# Channels")],
+        "",
+        "found 0 m, allowed are 0.5 to 8 m",
+    ),
+}
+
+
+def said_of(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """What a command says of the car in a folder."""
+
+    def job() -> None:
+        load_vehicle(folder / "car.toml")
+
+    assert run_command(job) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: {folder / 'car.toml'}: ") and said.count("\n") == 1 and FAULT not in said, said
+    return said
+
+
+@pytest.mark.parametrize("case", VEHICLES)
+def test_vehicles(case, tmp_path, capsys):
+    old, new, message = VEHICLES[case]
+    assert old in TEXT
+    (tmp_path / "car.toml").write_text(TEXT.replace(old, new, 1), encoding="utf-8")
+    assert message in said_of(tmp_path, capsys)
+
+
+def test_a_point_that_nothing_uses(tmp_path, capsys):
+    rigid = "[hardpoints]\nspare = [1.0, 0.0, 1.0]", 'superelement = "body_design.toml"', "flexible = true"
+    text = TEXT.replace("[hardpoints]", rigid[0], 1).replace(rigid[1], "", 1).replace(rigid[2], "flexible = false", 1)
+    text = text.replace("attachment_flexibility = true", "attachment_flexibility = false", 1)
+    (tmp_path / "car.toml").write_text(text, encoding="utf-8")
+    assert "hardpoints.spare: nothing uses it" in said_of(tmp_path, capsys)
+
+
+HEAD = "velocity [m/s],force [N]\n"
+CURVES = {
+    "missing": (None, "no such file; give the path of a CSV file"),
+    "empty": ("", "test.csv: the file is empty"),
+    "binary": ("\0\0\0", "test.csv:1:1: NUL byte"),
+    "head": ("speed [m/s],force [N]\n-1,-1\n1,1\n", "test.csv:1: no column 'velocity [m/s]'; found 'speed [m/s]'"),
+    "unit": (
+        "velocity [mm/s],force [N]\n-1,-1\n1,1\n",
+        "test.csv:1: no column 'velocity [m/s]'; found 'velocity [mm/s]'",
+    ),
+    "of a spring": ("displacement [m],force [N]\n-1,-1\n1,1\n", "no column 'velocity [m/s]'; found 'displacement [m]'"),
+    "NaN": (HEAD + "-1,-1\n0,nan\n1,1\n", "test.csv:3:2: column 'force [N]' holds 'nan'; allowed are finite numbers"),
+    "a word": (HEAD + "-1,-1\nfast,0\n1,1\n", "test.csv:3:1: column 'velocity [m/s]' holds 'fast'"),
+    "unsorted": (HEAD + "1,1\n-1,-1\n", "front.damper.velocity: found -1.0 after 1.0, must be ascending"),
+    "falling": (HEAD + "-1,1\n1,-1\n", "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
+    "a point": (HEAD + "1,1\n", "front.damper.velocity: found 1 points, needed are 2 to 40"),
+    "one direction": (HEAD + "0,0\n1,1\n", "front.damper.velocity: found 0.0 to 1.0, must lie on both sides of 0"),
+}
+
+
+@pytest.mark.parametrize("case", CURVES)
+def test_curves_of_a_damper_test(case, tmp_path, capsys):
+    text, message = CURVES[case]
+    if text is not None:
+        (tmp_path / "test.csv").write_text(text, encoding="utf-8")
+    law = 'viscous_law = "table"\ncurve = "test.csv"'
+    (tmp_path / "car.toml").write_text(TEXT.replace('viscous_law = "linear"', law, 1), encoding="utf-8")
+    said = said_of(tmp_path, capsys)
+    assert message in said and "front.damper." in said

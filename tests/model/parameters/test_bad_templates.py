@@ -1,0 +1,168 @@
+"""Templates that are none: each one sentence with file and table, and the exit code 2."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.model.parameters.test_bad_cars import TEXT, said_of
+from vehicle.model.parameters.template import SHIPPED
+
+MACPHERSON = (SHIPPED / "macpherson.toml").read_text(encoding="utf-8")
+MOUNT = 'suspension_mount = { shape = "top_mount", points = ["strut_top"] }'
+LINE = 'along = ["damper_bottom", "strut_top"]'
+
+TEMPLATES = {
+    "unknown list": ("above = [", "abuve = [", "abuve: unknown; the nearest known name is above"),
+    "unknown key": (
+        'kind = "ball"',
+        'kynd = "ball"',
+        "joint.lower_ball.kynd: unknown parameter; the nearest known name",
+    ),
+    "unknown kind": ('kind = "ball"', 'kind = "bell"', "joint.lower_ball.kind: found 'bell', allowed are free, fixed"),
+    "unknown part": ('parent = "a_arm"', 'parent = "a_arn"', "joint.lower_ball.parent: 'a_arn' leads nowhere"),
+    "unknown moving part": (
+        'moving = "damper_top"',
+        'moving = "damper_tip"',
+        "suspension_mount.moving: 'damper_tip' leads",
+    ),
+    "unknown point": ('at = "tie_outer"', 'at = "tie_outa"', "'tie_outa' leads nowhere; the nearest is tie_outer"),
+    "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: 'dampr' leads nowhere"),
+    "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', allowed are left"),
+    "side of a point": ('at = "tie_outer"', 'at = "tie_outer:links"', "found side 'links', allowed are left, right"),
+    "a number for a part": ('child = "a_arm"', "child = 3", "joint.2.child: found 3, needed is a list"),
+    "a number for all": ("joint = [", "spring = 3\njoint = [", "not a TOML file"),
+    "a word for a table": ("joint = [", 'joint = ["a",', "joint: found 'a', needed is a table"),
+    "a word for a switch": ("mirrored = true", 'mirrored = "yes"', "mirrored: found 'yes', needed is true or false"),
+    "a number as meaning": ('tie_inner = "steering rod on the body"', "tie_inner = 3", "hardpoints.tie_inner: found 3"),
+    "a number for two points": ("above = [", "above = [3,", "above: found 3, needed is a list"),
+    "one point above": ("above = [", 'above = [["strut_top"],', "above: found ['strut_top']; needed are two points"),
+    "not TOML": ("mirrored = true", "mirrored = tru", "not a TOML file: Invalid value (at line"),
+    "no axis": (f", {LINE}", "", "joint.damper.along: a slide needs two points in along, or its axis, one of them"),
+    "two axes": (
+        LINE,
+        f"{LINE}, axis = [0, 0, 1]",
+        "joint.damper.along: a slide needs two points in along, or its axis",
+    ),
+    "an axis of no length": (
+        LINE,
+        "axis = [0, 0, 0]",
+        "joint.damper.axis: found [0.0, 0.0, 0.0]; an axis has a length",
+    ),
+    "an axis in the plane": (
+        LINE,
+        "axis = [0, 1]",
+        "joint.damper.axis: found (0.0, 1.0), needed is a list of 3 numbers",
+    ),
+    "along one point": (LINE, 'along = ["strut_top"]', "joint.damper.along: found ['strut_top']; needed are two"),
+    "a damper between a point": (LINE, 'along = ["strut_top", "strut_top"]', "needed are two different points"),
+    "a spring between a point": (
+        'upper = { part = "body", at = "strut_top" } }',
+        'upper = { part = "main_spring_lower", at = "spring_lower" } }',
+        "front.main_spring, lower end, upper end: coincide",
+    ),
+    "a damper on a ball": (
+        'joint = "damper"',
+        'joint = "lower_ball"',
+        "joint: 'lower_ball' is a ball, needed is a slide",
+    ),
+    "one end of a spring": (
+        ', upper = { part = "body", at = "strut_top" } }',
+        " }",
+        "spring.main_spring.lower: needed are",
+    ),
+    "a loop": (
+        '{ kind = "free", child = "a_arm" }',
+        '{ kind = "ball", name = "x", child = "a_arm", parent = "knuckle", at = "lower_ball" }',
+        "lead to no free part; close a loop by a connection",
+    ),
+    "on itself": (
+        'carrier = "body", at = "arm_front"',
+        'carrier = "a_arm", at = "arm_front"',
+        "holds a_arm_fr on itself",
+    ),
+    "held twice": (
+        '{ kind = "free", child = "a_arm" }',
+        '{ kind = "free", child = ["a_arm", "knuckle"] }',
+        "joint of knuckle: world holds it already; close a loop by a connection",
+    ),
+    "fixed and hinged": (
+        '{ kind = "free", child = "a_arm" }',
+        '{ kind = "free", child = "a_arm" }, { kind = "fixed", child = "suspension_mount", parent = "damper_top" }',
+        "joint of suspension_mount: it is fixed already",
+    ),
+    "free on a part": (
+        'child = "a_arm" }',
+        'child = "a_arm", parent = "knuckle" }',
+        "joint.2.parent: found 'knuckle'; a",
+    ),
+    "held by nothing": (', "main_spring_lower"]', "]", "nothing holds main_spring_lower_fr; give it a joint"),
+    "a joint on the body": (
+        '{ kind = "fixed", child = "main_spring_upper", parent = "body", at = "strut_top" }',
+        '{ kind = "ball", child = "main_spring_upper", parent = "body", at = "strut_top" }',
+        "on the trimmed body a part is fixed, with a point in at",
+    ),
+    "a part on a bracket": (
+        '["damper_bottom", "main_spring_lower"], parent = "knuckle" }',
+        '"damper_bottom", parent = "knuckle" }, { kind = "slide", child = "main_spring_lower", '
+        'parent = "main_spring_upper", at = "spring_lower", axis = [0, 0, 1] }',
+        "joint of main_spring_lower_fr: main_spring_upper_fr is fixed to the trimmed body, and what hangs on it would",
+    ),
+    "a part of others": (
+        'child = "a_arm" }',
+        'child = ["a_arm", "body"] }',
+        "joint of body: a part of another template",
+    ),
+    "no points": (MOUNT, MOUNT.replace('"strut_top"', ""), "parts.suspension_mount.points: found none"),
+    "a point too many": (
+        "tie_inner = ",
+        'spare = "nothing"\ntie_inner = ',
+        "hardpoints.spare: nothing of the template",
+    ),
+    "a point of another": ("tie_inner = ", 'wheel_center = "x"\ntie_inner = ', "hardpoints.wheel_center: comes twice"),
+    "two connections": ('name = "arm_front"', 'name = "arm_rear"', "arm_rear_fl: two elements have this name"),
+    "two joints": (
+        'name = "lower_ball"',
+        'name = "damper"',
+        "joint.damper: comes twice; a joint has a name of its own",
+    ),
+    "two outputs": ('name = "damper_top", on', 'name = "knuckle", on', "knuckle_fl: two elements have this name"),
+    "two wheels": (
+        "use = [",
+        'use = [{ template = "wheel", prefix = "b_", with = { hub = "knuckle" } },',
+        "wheel: comes",
+    ),
+    "a wheel twice": (
+        "use = [",
+        'use = [{ template = "wheel", with = { hub = "knuckle" } },',
+        "comes twice; give what it",
+    ),
+    "a name with a slash": ('name = "arm_front"', 'name = "arm/front"', "connection.arm/front.name: found 'arm/front'"),
+    "no such template": (
+        'template = "wheel"',
+        'template = "weel"',
+        "'weel': no such file beside the vehicle file nor in the package; the nearest is wheel",
+    ),
+    "uses itself": ('template = "wheel"', 'template = "mine"', "template 'mine': uses itself"),
+    "a key of use": (
+        'with = { hub = "knuckle" }',
+        'wiht = { hub = "knuckle" }',
+        "use: needed is template, allowed are",
+    ),
+    "a number as prefix": ('with = { hub = "knuckle" }', "prefix = 3", "use.0.prefix: found 3, needed is a text"),
+    "unbound port": (
+        ', with = { hub = "knuckle" }',
+        "",
+        "use.with.hub: missing; wheel.toml needs it (part that carries",
+    ),
+    "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no such port; it has ['hub']"),
+    "a port without part": ('hub = "knuckle"', 'hub = "knukle"', "'knukle' leads nowhere; the nearest is knuckle"),
+}
+
+
+@pytest.mark.parametrize("case", TEMPLATES)
+def test_templates(case, tmp_path, capsys):
+    old, new, message = TEMPLATES[case]
+    assert old in MACPHERSON
+    (tmp_path / "mine.toml").write_text(MACPHERSON.replace(old, new, 1), encoding="utf-8")
+    (tmp_path / "car.toml").write_text(TEXT.replace('"macpherson"', '"mine"'), encoding="utf-8")
+    assert message in said_of(tmp_path, capsys)

@@ -1,0 +1,146 @@
+"""Paths of parameters: into vehicles and back, whole or their ends, with their units."""
+
+import re
+
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.elements import Hydromount
+from vehicle.model.parameters.paths import assignments, full_path, overrides_of, unit_of, value_of
+from vehicle.model.parameters.ranges import Range
+from vehicle.model.parameters.toml_file import as_table
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+
+
+def test_values_arrive_where_their_paths_say(car):
+    values = {
+        "damper.viscous": 2100.0,
+        "bushings.suspension_mount.stiffness.z": 6.9e5,
+        "bushings.suspension_mount.stiffness.x": 2.9e6,
+        "body.mass": 800.0,
+    }
+    texts = overrides_of(car.vehicle, values)
+    changed = Car.load(overrides=texts).vehicle
+    assert {path: value_of(changed, path) for path in values} == values
+    # The third component is not a parameter and stays.
+    there = "front.bushings.suspension_mount.stiffness.y"
+    assert value_of(changed, there) == value_of(car.vehicle, there)
+    assert overrides_of(car.vehicle, {}) == ()
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "bushings.suspension_mount.stifness.z",
+        "bushings.suspension_mount.stiffness",
+        "bushings.suspension_mount.stiffness.w",
+        "damper.friction_law",
+        "damper",
+        "body.flexible",
+        "w",
+    ],
+)
+def test_a_path_that_is_no_number_is_refused_with_the_nearest(car, path):
+    for use in (lambda: overrides_of(car.vehicle, {path: 1.0}), lambda: value_of(car.vehicle, path)):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: no number of a vehicle; the nearest is "):
+            use()
+
+
+def test_the_nearest_path_has_its_axis(car):
+    for misspelt in ("bushings.suspension_mount.stifness.z", "suspension_mount.stifness.z"):
+        with pytest.raises(ConfigurationError, match=r"nearest is front\.bushings\.suspension_mount\.stiffness\.z$"):
+            value_of(car.vehicle, misspelt)
+
+
+def test_the_end_of_a_path_is_enough_where_it_can_mean_one_thing_only(car):
+    changed = load_vehicle(None, ["coulomb_friction=80", "suspension_mount.stiffness.z=5e5", "hydromount.damping.x=7"])
+    whole = [
+        "damper.coulomb_friction=80",
+        "bushings.suspension_mount.stiffness.z=5e5",
+        "bushings.hydromount.damping.x=7",
+    ]
+    assert changed == load_vehicle(None, whole) != car.vehicle
+    assert value_of(changed, "coulomb_friction") == 80.0
+    # A whole path wins over the end of another one: the point, not a group of bushings.
+    assert full_path(as_table(car.vehicle), "damper") == "front.damper"
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(None, ["torsional_stifness=1"])
+    assert str(caught.value) == (
+        "--set torsional_stifness=1: no parameter torsional_stifness; the nearest is "
+        "front.stabilizer.torsional_stiffness"
+    )
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(None, ["maxwell_stiffness=1", "mass=1"])
+    assert str(caught.value) == (
+        "--set mass=1: parameter mass may be body.mass, engine.parts.engine.mass, engine.parts.torque_arm.mass, "
+        "front.parts.a_arm.mass or one of 12 others; give more of its path"
+    )
+    with pytest.raises(ConfigurationError, match=r"parameter stiffness\.z: no number of a vehicle; .* may"):
+        value_of(car.vehicle, "stiffness.z")
+
+
+def test_optional_keys_are_given_where_the_law_has_them():
+    table = ["displacement=[-0.05, -0.02, 0.05]", "force=[-900.0, 0.0, 0.0]"]
+    laws = {
+        "damper.gas_force=200": lambda own: own.dampers[0].law.gas_force == 200.0,
+        "front.damper.stop={" + ", ".join(table) + "}": lambda own: own.dampers[0].law.stop.force[0] == -900.0,
+        "main_spring.table={" + ", ".join(table) + "}": lambda own: own.springs[0].table.force[0] == -900.0,
+        "*.damper.viscous=1999": lambda own: own.dampers[0].law.viscous == 1999.0,
+        "front.right.damper.viscous=1999": lambda own: [one.law.viscous for one in own.dampers] == [1999.0, 2250.0],
+    }
+    for text, holds in laws.items():
+        assert holds(load_vehicle(None, [text]).composition), text
+    branch = ["linear_mount.maxwell_stiffness=1e5", "linear_mount.maxwell_damping=1e3"]
+    mount = next(one.law for one in load_vehicle(None, branch).composition.connections if one.name == "linear_mount")
+    assert isinstance(mount, Hydromount) and mount.maxwell_damping == 1e3
+    ideal = [f"front.bushings.arm_front.{key}" for key in ("stiffness=[1e6, 1e6, 1e6]", "damping=[9, 9, 9]")]
+    links = load_vehicle(None, [*ideal, "arm_front.rotational_stiffness=1"]).composition.connections
+    arm = next(one.law for one in links if one.name == "arm_front_fl")
+    assert arm is not None and arm.damping == (9.0, 9.0, 9.0)
+    for text, near in (("gas_forse=1", "damper.gas_force"), ("*.stopp=1", "damper.stop"), ("w.tabel_x=1", "table_x")):
+        with pytest.raises(
+            ConfigurationError, match=rf"^--set {re.escape(text)}: no parameter .* nearest is .*{near}$"
+        ):
+            load_vehicle(None, [text])
+    with pytest.raises(ConfigurationError, match=r"parameter table_x may be front\.bushings\.\w+\.table_x, "):
+        load_vehicle(None, ["table_x=1"])
+
+
+def test_units_are_those_of_the_fields(car):
+    units = {
+        "damper.viscous": "N s/m",
+        "bushings.tyre.stiffness": "N/m",
+        "bushings.tyre.stiffness.z": "N/m",
+        "parts.engine.mass": "kg",
+        "hardpoints.strut_top.x": "m",
+    }
+    assert {path: unit_of(car.vehicle, path) for path in units} == units
+    for path in ("damper", "body.flexible", "front.template", "outputs.seat.on"):
+        with pytest.raises(ConfigurationError, match=f"parameter {path}: no quantity of a vehicle"):
+            unit_of(car.vehicle, path)
+
+
+def test_logarithmic_scale():
+    parameter = Range(path="a", low=1.0, high=4.0, start=2.0)
+    assert parameter.value(0.0) == 2.0
+    assert parameter.value(parameter.half_width) == pytest.approx(4.0)
+    assert parameter.value(-parameter.half_width) == pytest.approx(1.0)
+
+
+def test_what_a_path_begins_is_nearer_than_what_is_spelt_alike(car):
+    with pytest.raises(ConfigurationError, match=r"the nearest is front\.damper\.coulomb_friction$"):
+        full_path(car.vehicle.table, "front.damper.coulom")
+
+
+def test_overrides_as_a_mapping_and_a_single_text():
+    given = {"a.b": 1.5, "c": True, "d": (1, 2.0, 3), "e": "stribeck", "f": np.float64(2.0), "g": {"x": [1, 2]}}
+    assert assignments(given) == [
+        "a.b=1.5", "c=true", "d=[1, 2.0, 3]", 'e="stribeck"', "f=2.0", "g={x = [1, 2]}"
+    ]  # fmt: skip
+    assert assignments(["a=1"]) == ["a=1"]
+    with pytest.raises(ConfigurationError, match=r"found the text 'a=1'; needed is a list, as \['a=1'\]"):
+        assignments("a=1")
+    with pytest.raises(ConfigurationError, match="a is a object; needed is a number"):
+        assignments({"a": object()})

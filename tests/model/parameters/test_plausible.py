@@ -1,0 +1,203 @@
+"""Item 56: cars that no engineer could mean are refused by parameter, value, range and reason, before any engine."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.model.parameters.test_bad_parameters import INSTANCE
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.flexbody.superelement_checks import check_superelement
+from vehicle.model.parameters.idle import idle_parameters
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+
+ABSURD = {
+    "wheel centre below the plate": (
+        "hardpoints.wheel_center.z=0.3",
+        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.1 m, allowed are 0.15 to 0.7 m (loaded ",
+    ),
+    "patch above the wheel centre": (
+        "hardpoints.tyre_patch.z=0.8",
+        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.105 m, allowed are ",
+    ),
+    "patch beside the wheel": (
+        "hardpoints.tyre_patch.x=1.5",
+        "hardpoints.tyre_patch.x less hardpoints.wheel_center.x: found 0.65 m, allowed are -0.2 to 0.2 m (",
+    ),
+    "a point below the plate": (
+        "hardpoints.lower_ball.z=0.3",
+        "hardpoints.lower_ball.z: found 0.3 m, must not lie below the plate (hardpoints.tyre_patch.z = 0.4 m)",
+    ),
+    "rear support without stiffness": (
+        "bushings.rear_support.stiffness.z=0",
+        "bushings.rear_support.stiffness.z: found 0 N/m, must be at least 5000 N/m (the rear of the car stands on it; ",
+    ),
+    "strut mount without stiffness": (
+        "bushings.suspension_mount.stiffness.z=0",
+        "bushings.suspension_mount.stiffness.z: found 0 N/m, must be at least 10000 N/m (",
+    ),
+    "tyre without stiffness": (
+        "bushings.tyre.stiffness=[0, 0, 0]",
+        "bushings.tyre.stiffness.x: found 0 N/m, must be at least 10000 N/m (the tyre carries the car; ",
+    ),
+    "mount of ten tonnes": (
+        "parts.suspension_mount.mass=1e4",
+        "parts.suspension_mount.mass: found 10000 kg, allowed are 0.02 to 150 kg (from the screw of a rod to ",
+    ),
+    "knuckle of a microgram": (
+        "parts.knuckle.mass=1e-9",
+        "parts.knuckle.mass: found 1e-09 kg, allowed are 0.02 to 150 kg (",
+    ),
+    "engine in grams": (
+        "parts.engine.mass=220000",
+        "parts.engine.mass: found 220000 kg, allowed are 20 to 1000 kg (an electric motor has 30 kg, ",
+    ),
+    "engine inertia in kg cm2": (
+        "parts.engine.inertia=[151700, 68800, 151700]",
+        "parts.engine.inertia.x: found 151700 kg m2, allowed are 0.00022 to 220 kg m2 (radius of gyration: ",
+    ),
+    "offset in mm": ("parts.caliper.offset.x=120", "parts.caliper.offset.x: found 120 m, allowed are -1 to 1 m ("),
+    "body of 16 kg": ("body.mass=16", "body.mass: found 16.0 kg, must be at least 100.0 (without engine and axles "),
+    "body of 100 tonnes": ("body.mass=100000", "body.mass: found 100000.0 kg, must be at most 5000.0 (without engine "),
+    "centre of gravity in mm": (
+        "body.cog=[2157, 0, 1011]",
+        "body.cog.x: found 2157 m, allowed are 0.45 to 3.9 m (between the outermost hardpoints; ",
+    ),
+    "height of it in mm": ("body.cog.z=1011", "body.cog.z: found 1011 m, allowed are 0.4 to 1.85 m ("),
+    "inertia without its thousands": (
+        "body.inertia.iyy=5.268",
+        "body.inertia.iyy: found 5.268 kg m2, allowed are 32.52 to 17621.6 kg m2 (about the origin; radius of ",
+    ),
+    "gravity of 500": ("gravity=500", "gravity: found 500.0 m/s2, must be at most 30.0 (9.81 on Earth; "),
+    "stiffness of 1e12": (
+        "bushings.tyre.stiffness.z=1e12",
+        "bushings.tyre.stiffness: found 1000000000000.0 N/m, must be at most 10000000000.0 (a block of steel of 5 cm ",
+    ),
+    "a law that is off": (
+        "damper.stribeck_velocity=1e300",
+        "damper.stribeck_velocity: found 1e+300 m/s, must be at most 10.0 (dampers on a shaker move by ",
+    ),
+    "body modes at 20 kHz": (
+        "body.frequency_scale=1000",
+        "body.frequency_scale: found 1000.0 -, must be at most 20.0 (a body 400 times as stiff is rigid: ",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", ABSURD)
+def test_absurd_values_are_refused_when_the_car_is_read(case):
+    assignment, expected = ABSURD[case]
+    with pytest.raises(ConfigurationError) as caught:
+        load_vehicle(None, [assignment])
+    said = INSTANCE.sub("", str(caught.value)).removeprefix("Head.")
+    assert said.startswith(expected), said
+
+
+IMPOSSIBLE = {
+    "first mode at 3 Hz": (
+        ["body.frequency_scale=0.16"],
+        r"body\.frequency_scale: found 0\.16 -, which puts the first mode of the body \(19\S* Hz in "
+        r"body\.superelement = body_design\.toml\) at 3\.04 Hz, allowed are 5 Hz and more",
+    ),
+    "first mode at 0.001 Hz": (
+        ["body.frequency_scale=5e-5"],
+        r"body\.frequency_scale: .* at 0\.00095 Hz, allowed are ",
+    ),
+    "springs too soft to carry": (
+        ["main_spring.stiffness=1000"],
+        r"main_spring\.stiffness: too soft for the weight it carries \(body\.mass 813 kg, gravity 9\.81 m/s2\): it "
+        r"would sag by 1\.6\d m, allowed are 0\.5 m",
+    ),
+    "engine on threads": (
+        [
+            "bushings.linear_mount.stiffness=[1, 1, 1]",
+            "bushings.hydromount.stiffness=[1, 1, 1]",
+            "bushings.hydromount.maxwell_stiffness=0",
+        ],
+        r"bushings\.hydromount\.stiffness\.x: too soft for the weight it carries",
+    ),
+    "a car that tips forward": (
+        # Rigid: no masses at the nodes of the design have this centre of gravity and inertia.
+        [
+            *("body.cog.x=0.8", "body.inertia.ixx=1200", "body.inertia.iyy=3000", "body.inertia.izx=700"),
+            *("body.inertia.izz=2000", "body.inertia.ixy=82.03"),
+            "body.flexible=false",
+        ],
+        r"body\.cog: found \[0\.8, 0\.0, 1\.011\] m, with which rear support right would carry -\d+ N and the car "
+        r"would tip off it; it must lie between the points where the car stands on the ground",
+    ),
+    "inertia with a turned sign": (
+        ["body.inertia.izx=-1800"],
+        r"body\.inertia: ixx 1000, .*izx -1800, .* kg m2 about the origin: with body\.mass \(813 kg\) at body\.cog .* "
+        r"the principal moments about the centre of gravity are -3097, 656\.7 and 4081 kg m2\. Of a real body "
+        r"none is negative, and the two smaller add up to the largest at least \(-2440 >= 4081\?\)\. The nearest "
+        r"physical tensor differs by 3\.26e\+03 kg m2, allowed are 81\.6 \(2% of the largest\); check signs and digits",
+    ),
+    "inertia of 1e30": (["body.inertia.izx=1e30"], r"body\.inertia: ixx 1000, .*differs by 1e\+30 kg m2"),
+    "mass against inertia": (
+        ["body.mass=3000", *(f"body.inertia.{key}" for key in ("ixx=1000", "iyy=5268", "izz=4600", "izx=1800"))],
+        r"body\.inertia: ixx 1000, .*with body\.mass \(3000 kg\).*",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", IMPOSSIBLE)
+def test_impossible_cars_are_refused_when_they_are_built(case):
+    settings, expected = IMPOSSIBLE[case]
+    with pytest.raises(ConfigurationError) as caught:
+        _ = Car.load(None, settings).model
+    assert re.match(expected, INSTANCE.sub("", str(caught.value))), str(caught.value)
+
+
+ROAD_VEHICLES = {
+    "a light body": [
+        *("body.mass=300", "body.inertia.ixx=443", "main_spring.stiffness=12000"),
+    ],
+    "a heavy one": [
+        *("body.mass=1600", "main_spring.stiffness=60000"),
+    ],
+    "on the moon": ["gravity=1.62"],
+    "weightless": ["gravity=0"],
+    "no stabilizer": ["stabilizer.torsional_stiffness=0"],
+    "soft tyres and air springs": ["bushings.tyre.stiffness.z=1e5", "bushings.rear_support.stiffness.z=2e4"],
+    "a soft convertible": ["body.frequency_scale=0.63"],
+    "no friction": ["damper.coulomb_friction=0"],
+}
+
+
+@pytest.mark.parametrize("name", ROAD_VEHICLES)
+def test_road_vehicles_are_accepted_in_both_engines(name, high_piece):
+    car = Car.load(None, ROAD_VEHICLES[name])
+    for engine in ("reduced", "mujoco"):
+        assert car.run(high_piece, engine=engine).comfort().overall > 0.1
+
+
+def test_a_body_of_rubber_is_refused(car):
+    body = car.trimmed_body
+    with pytest.raises(
+        DataError, match=r"damping_ratio\[0\]: 0\.99; allowed is 0 to 0\.3\. Give the share of critical"
+    ):
+        check_superelement(dataclasses.replace(body, damping_ratio=np.full_like(body.damping_ratio, 0.99)))
+
+
+def test_parameters_without_effect_are_said():
+    changes = ["damper.stribeck_velocity=0.05", "damper.viscous=2000", "body.frequency_scale=1.1"]
+    assert idle_parameters(load_vehicle(None, changes), changes) == (
+        "damper.stribeck_velocity=0.05: without effect; it belongs to front.damper.friction_law = stribeck",
+    )
+    changes = ["front.damper.viscous=2000"]
+    assert idle_parameters(load_vehicle(Path("sedan"), changes), changes) == (
+        "front.damper.viscous=2000: without effect; it belongs to front.damper.viscous_law = linear or degressive",
+    )
+    # Attachments of a rigid body give way too.
+    changes = ["body.flexible=false", "body.frequency_scale=1.1", "body.attachment_flexibility=false"]
+    assert idle_parameters(load_vehicle(None, changes), changes) == (
+        "body.frequency_scale=1.1: without effect; it belongs to body.flexible = true",
+    )
+    changes = ["damper.friction_law=stribeck", "damper.coulomb_friction=65", "damper.stribeck_velocity=0.05"]
+    assert idle_parameters(load_vehicle(None, changes), changes) == ()

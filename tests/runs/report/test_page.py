@@ -1,0 +1,237 @@
+"""The report as a file: complete, self-contained, the same numbers as the summary, and refused where it cannot be."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from html import unescape
+from html.parser import HTMLParser
+
+import mujoco
+import numpy as np
+import pytest
+
+from vehicle.commands.body import main as body_command
+from vehicle.commands.report import main
+from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
+from vehicle.runs.car import Car
+from vehicle.runs.report.comfort_class import reactions
+from vehicle.runs.report.comparison import changed_parameters, difference, shipped_origin
+from vehicle.runs.report.moving_modes import FULL
+
+EMPTY = {"meta", "link", "input", "img", "br"}
+
+
+class Outline(HTMLParser):
+    """Checks that elements are closed in their order; keeps what is linked and what is said."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.links, self.words, self.titles = [], [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.links += [value for name, value in attrs if name in ("src", "href", "xlink:href", "data", "action")]
+        if tag not in EMPTY:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.links += [value for name, value in attrs if name in ("src", "href", "xlink:href")]
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] not in ("script", "style"):
+            self.words.append(data)
+        if self.open and self.open[-1] == "h2":
+            self.titles.append(data)
+
+
+@pytest.fixture(scope="module")
+def outline(reported):
+    found = Outline()
+    found.feed(reported.text)
+    found.close()
+    assert found.open == []
+    return found
+
+
+def test_the_page_is_whole_and_asks_nobody(reported, outline):
+    assert reported.page.stat().st_size < 6e6
+    assert outline.links and all(link.startswith(("#", "data:")) for link in outline.links)
+    assert not re.search(r"url\((?!#)|@import|<iframe|<object|<base", reported.text)
+    assert "default-src 'none'" in unescape(reported.text)
+    wanted = ["Findings", "What was run", "Frequency responses", "Time histories", "Dampers", "Comfort", "Modes"]
+    assert outline.titles == [*wanted, "All numbers", "How to repeat it"]
+    assert reported.text.count("<svg ") == 2
+
+
+def test_the_page_says_the_numbers_of_the_summary(reported, outline):
+    summary = json.loads((reported.folder / "summary.json").read_text())
+    words = " ".join(outline.words)
+    total = summary["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"]
+    assert f"{total:.3g} m/s²" in words and reactions(total)[0] in words
+    assert f"{100 * summary['slip_share']['fl']:.2f} %" in words
+    top = max(summary["peaks"]["knuckle_fl_acc_z"], key=lambda peak: peak["magnitude"])
+    assert f"The highest vertical resonance at the knuckle lies at {top['frequency_hz']:.1f} Hz" in words
+    assert "front.damper.coulomb_friction" in words and "a<b>&c.csv" in words
+    assert all(notice in words for notice in summary["notices"])
+    assert summary["command"].startswith("python -m vehicle.shaker --input ") and summary["command"] in words
+    assert summary["files"]["report"] == "report.html"
+
+
+def test_a_report_of_the_folder_is_that_of_the_command(reported, tmp_path, capsys):
+    """The same bytes again, from the files alone: the car is built from vehicle.toml."""
+    again = tmp_path / "again.html"
+    assert main([str(reported.folder), "--output", str(again), "--quiet"]) == 0
+    assert again.read_bytes() == reported.page.read_bytes()
+    assert main([str(reported.folder), "--output", str(again), "--quiet"]) == 2
+    assert "exists; give --force" in capsys.readouterr().err
+
+
+def empty_figure(path, *arguments):
+    path.write_text('<svg viewBox="0 0 1 1"></svg>')
+
+
+def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
+    """The figures of each run are those of a single one, and are left out here."""
+    monkeypatch.setattr("vehicle.runs.report.sections.plot_time", empty_figure)
+    monkeypatch.setattr("vehicle.runs.report.response_section.plot_frfs", empty_figure)
+    page = tmp_path / "two.html"
+    assert main([str(reported.folder), str(reported.folder), "--output", str(page), "--quiet"]) == 0
+    found = Outline()
+    found.feed(page.read_text(encoding="utf-8"))
+    assert found.titles[0] == "Beside each other" and found.titles[-1] == "Modes"
+    assert "None: the cars are the same." in found.words
+    assert page.stat().st_size < 6e6
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["nowhere"], "nowhere: is no folder; give the folder of a run"),
+        (["."], "holds no summary.json; give the folder of a run"),
+        (["{run}", "--output", "page.txt"], "--output page.txt: this file is written as .html"),
+        (["{run}", "--output", "mine.html", "--force"], "--output mine.html: is not as this program wrote it there"),
+    ],
+)
+def test_what_cannot_be_reported_is_refused(words, message, reported, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.html").write_text("<html>mine</html>")
+    assert main([word.format(run=reported.folder) for word in words]) == 2
+    assert message in capsys.readouterr().err
+    assert (tmp_path / "mine.html").read_text() == "<html>mine</html>"
+
+
+def test_a_damaged_run_is_refused(reported, tmp_path, capsys):
+    (tmp_path / "summary.json").write_text('{"files": {}}')
+    assert main([str(tmp_path)]) == 3
+    assert "summary.json: is damaged (KeyError" in capsys.readouterr().err
+    (tmp_path / "summary.json").write_text((reported.folder / "summary.json").read_text())
+    assert main([str(tmp_path)]) == 3
+    assert "vehicle.toml: missing, though summary.json lists it as vehicle" in capsys.readouterr().err
+
+
+def test_reactions_are_those_of_the_standard():
+    """ISO 2631-1:1997, C.2.3, with the overlaps and the open ends."""
+    told = {
+        0.0: ("not uncomfortable",),
+        0.3149: ("not uncomfortable",),
+        0.315: ("a little uncomfortable",),
+        0.55: ("a little uncomfortable", "fairly uncomfortable"),
+        0.7: ("fairly uncomfortable",),
+        0.9: ("fairly uncomfortable", "uncomfortable"),
+        1.3: ("uncomfortable", "very uncomfortable"),
+        2.0: ("very uncomfortable",),
+        2.2: ("very uncomfortable", "extremely uncomfortable"),
+        3.0: ("extremely uncomfortable",),
+    }
+    assert {value: reactions(value) for value in told} == told
+
+
+def test_a_time_and_a_share_have_differences_and_no_ratio():
+    assert difference(3.57, 28.2, "s") == "+24.6 s" and difference(2.0, 5.5, "%") == "+3.5 percentage points"
+    assert difference(2.0, 3.0, "m/s²") == "+50 %" and difference(None, 3.0, "s") == "–"
+
+
+def test_changed_parameters_are_those_that_were_set():
+    cars = [
+        Car.load().vehicle,
+        Car.load(overrides=["damper.coulomb_friction=100", "engine.parts.engine.mass=200"]).vehicle,
+    ]
+    assert [(path, unit, values) for path, unit, values in changed_parameters(cars)] == [
+        ("engine.parts.engine.mass", "kg", ["220", "200"]),
+        ("front.damper.coulomb_friction", "N", ["125", "100"]),
+    ]
+    assert changed_parameters([cars[0], cars[0]]) == []
+
+
+def test_points_move_as_the_car_moves():
+    """Against MuJoCo's own kinematics of a small motion: bodies, and the sites of the flexible body by their places."""
+    car = Car.load().model
+    wire = car_wireframe(car)
+    model, data = car.model, mujoco.MjData(car.model)
+    rng, step = np.random.default_rng(1), 1e-6
+    motion = rng.standard_normal(model.nv)
+    mujoco.mj_kinematics(model, data)
+    centres = {wheel.part: data.body(wheel.part).xpos.copy() for wheel in car.vehicle.composition.wheels}
+    mujoco.mj_integratePos(model, data.qpos, motion, step)
+    mujoco.mj_kinematics(model, data)
+    moved = wire.displacement(motion.astype(complex)).real
+    for wheel in car.vehicle.composition.wheels:
+        # The hub of the drawing is the centre of the wheel, at which its body sits.
+        hub = int(np.argmin(np.linalg.norm(wire.points - np.asarray(wheel.center), axis=1)))
+        assert np.allclose(wire.points[hub], centres[wheel.part], atol=1e-9)
+        expected = (data.body(wheel.part).xpos - centres[wheel.part]) / step
+        assert np.allclose(moved[hub], expected, rtol=1e-4, atol=1e-4)
+    # A node of the body: its rigid motion and the sum of its mode shapes.
+    modal = [int(model.jnt_dofadr[j]) for j in range(model.njnt) if model.joint(j).name.startswith("mode_")]
+    alone = np.zeros(model.nv)
+    alone[modal] = motion[modal]
+    nodes = len(car.superelement.positions)
+    expected = np.einsum("m,mni->ni", motion[modal], np.asarray(car.superelement.shapes))
+    assert np.allclose(wire.displacement(alone.astype(complex)).real[:nodes], expected, atol=1e-12)
+    ground = wire.lines[wire.groups == GROUPS.index("ground")]
+    assert len(ground) == 4 * len(car.vehicle.wheels) and not wire.motion[ground.ravel()].any()
+
+
+def test_a_mode_of_the_page_is_that_of_the_car(reported):
+    data = json.loads(reported.text.split('id="mode-data">')[1].split("</script>")[0])
+    car = Car.load(reported.folder / "vehicle.toml")
+    assert {state: len(found) for state, found in data["cars"][0]["states"].items()} == {
+        state: len(car.modes(state)) for state in ("stuck", "sliding")
+    }
+    mode, shown = car.modes("stuck")[5], data["cars"][0]["states"]["stuck"][5]
+    assert shown["hz"] == pytest.approx(mode.frequency, abs=1e-4)
+    moved = car_wireframe(car.model).displacement(mode.shape)
+    told = (np.array(shown["re"]) + 1j * np.array(shown["im"])).reshape(-1, 3) / FULL
+    overlap = abs(np.vdot(told, moved)) ** 2 / (np.vdot(told, told).real * np.vdot(moved, moved).real)
+    assert overlap > 0.99999
+    assert np.linalg.norm(unit_factor(moved) * moved, axis=1).max() == pytest.approx(1.0)
+
+
+def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(reported, capsys):
+    text = unescape(re.sub(r"<[^>]+>", "", reported.text))
+    told = re.findall(r"At ([\d.]+) Hz the vertical acceleration at the seat rail is made by (.+?) [+-]\d+ %", text)
+    assert 1 <= len(told) <= 3
+    peaks = json.loads((reported.folder / "summary.json").read_text())["peaks"]["seat_rail_acc_z"]
+    highest = max(peaks, key=lambda peak: peak["magnitude"])["frequency_hz"]
+    first = next(name for at, name in told if float(at) == pytest.approx(highest, abs=0.051))
+    (state,) = re.findall(r"linear car with dampers (\w+): `python -m vehicle body participation`", text)
+    words = ["participation", "--at", str(highest), "--damper", state, "--json"]
+    assert body_command([*words, "--vehicle", str(reported.folder / "vehicle.toml")]) == 0
+    parts = {one["name"]: one["share"] for one in json.loads(capsys.readouterr().out)["contributions"]}
+    assert first in parts and abs(parts[first]) == max(map(abs, parts.values()))
+    assert f"made by {first} {100 * parts[first]:+.0f} %" in text
+
+
+def test_a_car_is_compared_with_the_shipped_one_that_it_was_made_from():
+    sedan = Car.load("sedan", ["name=mine", "body.mass=1300"]).vehicle
+    origin = shipped_origin(sedan)
+    assert origin is not None and origin.name == "sedan"
+    assert len(changed_parameters([origin, sedan])) == 6  # name, mass, four moments and products
+    # Most of it is of no shipped car: nothing is claimed.
+    table = dict(sedan.table)
+    table["front"], table["rear"] = {f"key_{number}": number for number in range(100)}, {}
+    assert shipped_origin(dataclasses.replace(sedan, table=table)) is None

@@ -1,0 +1,204 @@
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from vehicle.commands.comfort import main
+from vehicle.signals.analysis.weighting import weighted_record, weighting
+
+
+@pytest.fixture
+def ride(tmp_path):
+    """A file of 60 s at 1 kHz: z a unit sine of 8 Hz about the offset given, x and y smaller sines."""
+
+    def written(offset=0.0, y=0.2):
+        time = np.arange(60_000) * 1e-3
+        sine = np.sin(2 * np.pi * 8.0 * time)
+        path = tmp_path / "ride.csv"
+        np.savetxt(
+            path,
+            np.column_stack((time, 0.1 * sine, y * sine, sine + offset)),
+            fmt=("%.3f", "%.8f", "%.8f", "%.8f"),
+            delimiter=",",
+            header="time [s],x [m/s2],y [m/s2],z [m/s2]",
+            comments="",
+        )
+        return str(path)
+
+    return written
+
+
+def test_json_holds_the_measures_of_each_axis(ride, capsys):
+    assert main(["--input", ride(), "--json"]) == 0
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    said = err.splitlines()
+    assert [line[:50] for line in said[:3]] == [
+        f"notice: {a}: MTVV and crest factor leave out the first"[:50] for a in "xyz"
+    ]
+    assert said[3:] == [
+        "notice: msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, asks for 240 s: a rough estimate"
+    ]
+    for axis, name in zip("xyz", ("Wd", "Wd", "Wk"), strict=True):
+        assert found[axis]["weighting"] == name
+        assert {"weighted_rms", "mtvv", "crest_factor", "vdv", "msdv"} <= set(found[axis])
+        assert all(np.isfinite(found[axis][key]) for key in ("weighted_rms", "mtvv", "crest_factor", "vdv", "msdv"))
+    assert found["z"]["vdv"] == pytest.approx(2.257, abs=0.0005)
+    assert set(found["vector_sum"]) == {"weighted_rms", "vdv", "health_weighted_rms"}
+    assert found["offset"]["treatment"] == "kept"
+
+
+def test_channels_that_were_copied_and_a_clipped_sensor_are_named(ride, tmp_path, capsys):
+    """The crest factor is the peak over the RMS that stands beside it."""
+    time = np.arange(12_000) * 1e-3
+    rough = np.cumsum(np.random.default_rng(3).standard_normal((2, 12_000)), axis=1)
+    rough = 0.1 * (rough - np.apply_along_axis(np.convolve, 1, rough, np.ones(400) / 400.0, "same"))
+    path = tmp_path / "copied.csv"
+    table = np.column_stack((time, rough[0], np.clip(rough[1], -0.6, 0.6), rough[0]))
+    np.savetxt(path, table, fmt="%.6f", delimiter=",", header="time [s],x [m/s2],y [m/s2],z [m/s2]", comments="")
+    assert main(["--input", str(path), "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert "x and z hold the same samples" in err and "--channel z=NAME" in err
+    assert "y: clipped?" in err and "x: clipped" not in err and "constant" not in err
+    found = json.loads(out)["z"]
+    weighted = weighted_record(1e-3, np.round(rough[0], 6), "Wk")
+    peak = np.abs(weighted[round(weighting("Wk").settling_s / 1e-3) :]).max()
+    assert found["crest_factor"] == pytest.approx(peak / found["weighted_rms"], rel=1e-6)
+
+
+def test_the_table_shows_the_same(ride, capsys):
+    assert main(["--input", ride(), "--mtvv", "exponential"]) == 0
+    out, _ = capsys.readouterr()
+    assert "weighting                 Wd          Wd          Wk" in out
+    title, x, y, z, unit = out.splitlines()[6].split()
+    assert (title, z, unit) == ("VDV", "2.257", "m/s^1.75")
+    # steady state of the sines; the switching-on adds a thousandth
+    dose = weighting("Wd").spectrum_factor(8.0) * (3 / 8 * 60) ** 0.25
+    assert [float(x), float(y)] == pytest.approx([0.1 * dose, 0.2 * dose], rel=3e-3)
+
+
+def test_the_running_average_is_the_one_asked_for(ride, capsys):
+    path = ride()
+    found = {}
+    for average in ("linear", "exponential"):
+        assert main(["--input", path, "--json", "--mtvv", average]) == 0
+        found[average] = json.loads(capsys.readouterr().out)
+        assert found[average]["running_average"] == average
+    # of a steady sine the exponential average ripples at twice 8 Hz, 1 / (2 * 2 pi 16) = 0.5 % in RMS; the linear one
+    # holds whole periods
+    assert 1.002 < found["exponential"]["z"]["mtvv"] / (np.sqrt(0.5) * weighting("Wk").spectrum_factor(8.0)) < 1.02
+    assert found["exponential"]["z"]["mtvv"] != found["linear"]["z"]["mtvv"]
+
+
+def test_gravity_is_refused_until_its_treatment_is_said(ride, capsys):
+    path = ride(offset=9.81)
+    assert main(["--input", path, "--json"]) == 3
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(
+        f"error: {path}: the mean of column 'z' is 9.81 m/s2, its drift -0.004 m/s2; they change its "
+    )
+    assert "weighted RMS or VDV by 70.3 %, allowed are 1 % and a mean of 1 m/s2; give --offset remove if" in err
+    assert err.count("\n") == 1
+    assert main(["--input", path, "--json", "--offset", "remove"]) == 0
+    removed = json.loads(capsys.readouterr().out)
+    assert removed["z"]["vdv"] == pytest.approx(2.257, abs=0.0005)
+    assert removed["offset"]["treatment"] == "removed"
+    assert removed["offset"]["mean"] == pytest.approx({"x": 0, "y": 0, "z": 9.81}, abs=1e-9)
+    assert main(["--input", path, "--json", "--offset", "keep"]) == 0
+    assert json.loads(capsys.readouterr().out)["z"]["vdv"] > 3.0
+
+
+def test_another_place_is_evaluated_by_its_rules(ride, capsys):
+    assert main(["--input", ride(), "--json", "--place", "seat_bs6841"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["z"]["weighting"], found["standard"]) == ("Wb", "BS 6841:1987")
+
+
+def test_a_dead_axis_is_null_with_a_reason(ride, capsys):
+    assert main(["--input", ride(y=0.0), "--json"]) == 0
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    assert found["y"]["crest_factor"] is None
+    assert "y: zero throughout" in found["reasons"][0]
+    assert "notice: y: constant at 0 m/s2 (no sensor?)" in err
+
+
+def test_bad_data_exits_3_and_a_bad_path_2(tmp_path, capsys):
+    path = tmp_path / "bad.csv"
+    path.write_text("time [s],x [m/s2],y [m/s2],z [m/s2]\n0,0,0,0\n0.001,0,nan,0\n0.002,0,0,0\n")
+    assert main(["--input", str(path)]) == 3
+    assert capsys.readouterr() == (
+        "",
+        f"error: {path}:3:3: column 'y [m/s2]' holds 'nan'; allowed are finite numbers; repair the cell or cut the "
+        "record\n",
+    )
+    assert main(["--input", str(tmp_path / "nix.csv")]) == 2
+    assert capsys.readouterr() == ("", f"error: {tmp_path / 'nix.csv'}: no such file; give the path of a CSV file\n")
+    assert main(["--input", str(path), "--place", "sofa"]) == 2
+    assert "point of contact: found 'sofa', allowed are seat" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [[], ["--input"], ["--input", "a.csv", "--offset", "maybe"], ["--inp", "a.csv"]])
+def test_wrong_usage_exits_2(arguments, capsys):
+    assert main(arguments) == 2
+    assert "error:" in capsys.readouterr().err
+
+
+def test_a_traceback_appears_with_debug_only(tmp_path, capsys):
+    assert main(["--input", str(tmp_path / "nix.csv"), "--debug"]) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_an_interrupt_exits_130(ride, capsys, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("vehicle.signals.records.record_comfort.read_acceleration", interrupted)
+    assert main(["--input", "any.csv"]) == 130
+
+
+def test_the_module_runs_as_a_command_and_a_closed_pipe_is_quiet(ride):
+    path = ride()
+    command = [sys.executable, "-m", "vehicle.comfort", "--input", path, "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["input"] == path
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()  # nobody reads: what `| head -0` does
+        assert "Error" not in process.stderr.read()
+        assert process.wait(timeout=60) == 6
+
+
+@pytest.mark.parametrize("skip", ["-5", "nan", "60"])
+def test_a_skip_that_is_no_part_of_the_record_is_refused(ride, capsys, skip):
+    assert main(["--input", ride(), "--skip", skip]) == 2
+    assert capsys.readouterr() == (
+        "",
+        f"error: skip: found {skip} s, allowed is 0 s to less than the record, 60 s\n",
+    )
+
+
+@pytest.mark.parametrize(("duration", "mean"), [(60, 9.81), (900, 9.81), (60, -1.5), (60, 0.05)])
+def test_gravity_is_refused_in_a_record_of_any_length_and_a_small_offset_does_no_harm(tmp_path, capsys, duration, mean):
+    time = np.arange(250 * duration) / 250
+    sway = np.cos(2 * np.pi * 0.2 * time) * 0.1 + np.cos(2 * np.pi * 8 * time)
+    found = []
+    for offset in (0.0, mean):
+        path = tmp_path / f"{offset}.csv"
+        columns = np.column_stack((time, sway, sway, sway + offset))
+        np.savetxt(path, columns, "%.9g", ",", header="time [s],x [m/s2],y [m/s2],z [m/s2]", comments="")
+        found.append(main(["--input", str(path), "--json"]))
+        out, err = capsys.readouterr()
+        if found[-1] == 0:
+            found.append(json.loads(out)["z"]["msdv"])
+    if abs(mean) > 1.0:
+        assert found[2] == 3
+        assert f"the mean of column 'z' is {mean:g} m/s2" in err
+        assert "give --offset remove" in err
+    else:
+        assert found[3] == pytest.approx(found[1], rel=0.01)  # it was twice

@@ -1,0 +1,81 @@
+"""The error of an overall RMS and of a difference, against the scatter of Gaussian records."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.signals.analysis.comfort_error import WAVES, difference_error
+
+STEP, SAMPLES, RECORDS = 5e-3, 2000, 400
+FREQUENCY = np.fft.rfftfreq(SAMPLES, STEP)
+
+
+def lines(natural, damping, rng, count=RECORDS, *, fixed=False):
+    """Lines of an oscillator under white noise, Gaussian or of fixed amplitude; (count, lines)."""
+    answer = 1.0 / (natural**2 - FREQUENCY**2 + 2j * damping * natural * FREQUENCY)
+    real, imaginary = rng.standard_normal((2, count, FREQUENCY.size))
+    noise = real + 1j * imaginary
+    return answer * (np.sqrt(2.0) * noise / np.abs(noise) if fixed else noise)
+
+
+def history(*axes):
+    return np.fft.irfft(np.stack(axes, axis=1), SAMPLES, axis=2)
+
+
+@pytest.mark.parametrize("related", [0.0, 1.0])
+def test_stated_error_is_the_scatter(related):
+    """Axes that do not know each other, and axes that are copies: the second scatter sqrt(3) as much."""
+    rng = np.random.default_rng(1)
+    first = lines(12.0, 0.05, rng)
+    others = [first if related else lines(12.0, 0.05, rng) for _ in range(2)]
+    found = comfort_values(STEP, history(first, *others))
+    scatter = found.overall.std(ddof=1) / found.overall.mean()
+    # 400 records give a standard deviation within 3.5 %; three times that.
+    assert np.sqrt(np.mean(found.error**2)) == pytest.approx(scatter, rel=0.11)
+    away = np.abs(found.overall / found.overall.mean() - 1.0)
+    # 0.94 with many records; a share of 400 is known within 0.012, three times that.
+    assert 0.9 < np.mean(away < 1.96 * found.error) < 0.98
+
+
+def test_white_noise_has_the_bandwidth_time_formula():
+    noise = np.random.default_rng(4).standard_normal((40, 1, SAMPLES))
+    # One axis moves: 1 / (2 sqrt(B T)) with 48 Hz and 10 s. Three copies of it: the same.
+    for weights in ([1.0, 0.0, 0.0], [1.0, 1.0, 1.0]):
+        found = comfort_values(STEP, noise * np.array(weights)[:, None])
+        assert np.sqrt(np.mean(found.error**2)) == pytest.approx(0.5 / np.sqrt(48.0 * 10.0), rel=0.03)
+
+
+def test_lines_of_fixed_amplitude_have_the_error_of_the_gaussian_road():
+    rng = np.random.default_rng(2)
+    errors = [
+        comfort_values(STEP, history(*[lines(12.0, 0.05, rng, 50, fixed=fixed)] * 3)).error for fixed in (False, True)
+    ]
+    assert np.sqrt(np.mean(errors[1] ** 2)) == pytest.approx(np.sqrt(np.mean(errors[0] ** 2)), rel=0.1)
+    same = comfort_values(STEP, history(*[lines(12.0, 0.05, rng, 50, fixed=True)] * 3)).overall
+    assert same.std() < 1e-9 * same.mean()
+
+
+def test_error_of_a_difference_on_the_same_road():
+    """Two cars on one road: the difference scatters far less than each of them."""
+    rng = np.random.default_rng(3)
+    noise = lines(12.0, 0.05, rng)
+    cars = [noise, noise / lines_ratio(0.05, 0.06)]
+    values = [comfort_values(STEP, history(one, one, one)) for one in cars]
+    gap = values[0].overall - values[1].overall
+    stated = difference_error(values[0].waves, values[1].waves)
+    assert gap.std(ddof=1) < 0.3 * values[0].overall.std(ddof=1)
+    assert np.sqrt(np.mean(stated**2)) == pytest.approx(gap.std(ddof=1), rel=0.11)
+    assert values[0].waves.shape == (RECORDS, WAVES)
+
+
+def lines_ratio(first, second):
+    """Answer of the oscillator with the first damping over that with the second."""
+    one, other = (1.0 / (144.0 - FREQUENCY**2 + 24j * damping * FREQUENCY) for damping in (first, second))
+    return one / other
+
+
+def test_silence_has_no_error():
+    found = comfort_values(STEP, np.zeros((1, 3, SAMPLES)))
+    assert found.error == pytest.approx([0.0]) and not found.waves.any()

@@ -1,0 +1,197 @@
+import json
+
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.evaluation import (
+    APPLICATIONS,
+    application,
+    evaluate,
+    offset_effect,
+    offset_line,
+    without_offset,
+)
+from vehicle.signals.analysis.weighting import weighting
+
+STEP = 1e-3
+TIME = np.arange(60_000) * STEP
+
+
+def sine(frequency, amplitude=1.0):
+    return amplitude * np.sin(2 * np.pi * frequency * TIME)
+
+
+def test_the_seat_is_weighted_wd_wd_wk():
+    found = evaluate(STEP, [sine(1.0, 0.5), sine(4.0, 0.7), sine(8.0)])
+    assert [found[axis]["weighting"] for axis in "xyz"] == ["Wd", "Wd", "Wk"]
+    expected = [0.5 * weighting("Wd").spectrum_factor(1.0), 0.7 * weighting("Wd").spectrum_factor(4.0)]
+    expected = np.array([*expected, weighting("Wk").spectrum_factor(8.0)]) / np.sqrt(2)
+    # the filters start from rest: of the RMS of 60 s the first second differs; maxima are taken after it
+    assert [found[axis]["weighted_rms"] for axis in "xyz"] == pytest.approx(expected, rel=5e-3)
+    assert found["z"]["vdv"] == pytest.approx(2.257, abs=0.0005)
+    assert found["z"]["crest_factor"] == pytest.approx(np.sqrt(2), rel=1e-3)
+    assert found["z"]["mtvv"] == pytest.approx(expected[2], rel=1e-3)
+    assert found["z"]["estimated_vdv"] == pytest.approx(1.4 * found["z"]["weighted_rms"] * 60**0.25, rel=1e-12)
+    # comfort with k = 1, health with k = 1.4, 1.4, 1
+    assert found["vector_sum"]["weighted_rms"] == pytest.approx(np.linalg.norm(expected), rel=5e-3)
+    assert found["vector_sum"]["health_weighted_rms"] == pytest.approx(
+        np.linalg.norm(expected * [1.4, 1.4, 1.0]), rel=5e-3
+    )
+    assert found["vector_sum"]["vdv"] == pytest.approx(sum(found[axis]["vdv"] ** 4 for axis in "xyz") ** 0.25)
+    assert (found["duration_s"], found["place"]) == (pytest.approx(60.0), "seat")
+    assert found["reasons"][2].startswith(
+        "z: MTVV and crest factor leave out the first 3.5 s, in which Wk settles; with"
+    )
+    assert found["reasons"][3].startswith("msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, asks for 240 s")
+    assert len(found["reasons"]) == 4
+    # of a record that starts at rest the switching-on is real: 1.5 instead of 1.414
+    rest = evaluate(STEP, [sine(1.0, 0.5), sine(4.0, 0.7), sine(8.0)], from_rest=True)
+    assert 1.02 < rest["z"]["crest_factor"] / found["z"]["crest_factor"] < 1.1
+    assert rest["reasons"] == found["reasons"][3:]
+
+
+def test_motion_sickness_uses_wf():
+    found = evaluate(STEP, [sine(8.0), sine(8.0), sine(0.2)])
+    expected = weighting("Wf").spectrum_factor(0.2) * np.sqrt(60 / 2)
+    # after the 17.5 s of settling 8.5 periods are left, whose mean square is that of the sine within 0.5 %
+    assert found["z"]["msdv"] == pytest.approx(expected, rel=5e-3)
+    assert found["z"]["msdv_weighting"] == "Wf"
+    assert found["x"]["msdv"] < 0.02 * expected
+
+
+def test_the_backrest_has_its_own_weightings_and_factors():
+    found = evaluate(STEP, [sine(8.0), sine(2.0), sine(2.0)], place="backrest")
+    assert [found[axis]["weighting"] for axis in "xyz"] == ["Wc", "Wd", "Wd"]
+    rms = [found[axis]["weighted_rms"] for axis in "xyz"]
+    assert rms[0] == pytest.approx(weighting("Wc").spectrum_factor(8.0) / np.sqrt(2), rel=5e-3)
+    assert found["vector_sum"]["weighted_rms"] == pytest.approx(np.linalg.norm(np.multiply(rms, [0.8, 0.5, 0.4])))
+    assert found["vector_sum"]["health_weighted_rms"] is None
+    assert found["reasons"][-1] == "vector_sum.health_weighted_rms: the standard gives no health factors for backrest"
+
+
+def test_every_place_evaluates_and_writes_json():
+    xyz = np.random.default_rng(0).standard_normal((3, 4000))
+    for place in APPLICATIONS:
+        found = evaluate(STEP, xyz, place=place, average="exponential")
+        assert json.loads(json.dumps(found, allow_nan=False)) == found
+        assert [found[axis]["weighting"] for axis in "xyz"] == list(APPLICATIONS[place].weightings)
+
+
+def test_an_axis_of_zeros_has_none_and_a_reason():
+    found = evaluate(STEP, [0.0 * TIME, sine(4.0), sine(8.0)])
+    assert found["x"]["weighted_rms"] == 0.0
+    assert found["x"]["crest_factor"] is None
+    assert found["x"]["vdv_ratio"] is None
+    assert found["reasons"][0] == "x: zero throughout, so crest factor and ratios are undefined"
+
+
+def test_doubling_the_acceleration_doubles_every_value_but_the_ratios():
+    xyz = np.random.default_rng(1).standard_normal((3, 45_000))
+    once, twice = evaluate(STEP, xyz)["y"], evaluate(STEP, 2 * xyz)["y"]
+    for key in ("weighted_rms", "mtvv", "vdv", "estimated_vdv", "msdv"):
+        assert twice[key] == pytest.approx(2 * once[key], rel=1e-12)
+    for key in ("crest_factor", "mtvv_ratio", "vdv_ratio"):
+        assert twice[key] == pytest.approx(once[key], rel=1e-12)
+
+
+def test_bad_records_and_places_are_refused():
+    with pytest.raises(DataError, match="found 2 signals, needed are the axes x, y, z"):
+        evaluate(STEP, np.ones((2, 100)))
+    with pytest.raises(DataError, match="all three axes are zero throughout"):
+        evaluate(STEP, np.zeros((3, 100)))
+    with pytest.raises(DataError, match="sampling rate: found 20 Hz, weighting Wd needs at least 25 Hz"):
+        evaluate(0.05, np.ones((3, 100)))
+    with pytest.raises(ConfigurationError, match="point of contact: found 'sofa', allowed are seat, backrest"):
+        application("sofa")
+
+
+def test_an_offset_shows_as_the_step_it_is():
+    xyz = np.stack([sine(8.0, 0.1), sine(8.0) + 9.81, 0.0 * TIME])
+    effect = offset_effect(STEP, xyz)
+    assert effect[0] < 1e-5  # the line through a sine of 480 periods rises by 4 mm/s2
+    assert effect[2] == 0.0
+    # the energies of sine and step add: step response of Wd integrated numerically from its polynomials in s gives the
+    # square of the change
+    alone, clean, both = (
+        evaluate(STEP, [sine(8.0), y, sine(8.0)], from_rest=True)["y"]
+        for y in (np.full(TIME.size, 9.81), sine(8.0), xyz[1])
+    )
+    rms = np.hypot(alone["weighted_rms"], clean["weighted_rms"])
+    assert both["weighted_rms"] == pytest.approx(rms, rel=0.03)
+    assert rms / clean["weighted_rms"] > 2.0
+    # the dose feels it even more
+    assert effect[1] == pytest.approx(both["vdv"] / clean["vdv"] - 1.0, rel=1e-3)
+    assert offset_effect(STEP, without_offset(xyz)) == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+
+
+def test_a_pure_offset_has_an_infinite_effect_and_nothing_is_left_of_it():
+    xyz = np.stack([sine(8.0), sine(8.0), np.full(TIME.size, 9.81)])
+    assert offset_effect(STEP, xyz)[2] == np.inf
+    assert not without_offset(xyz)[2].any()
+
+
+SLOW_STEP = 1 / 250
+
+
+def ride(duration, frequency=4.0):
+    """Three sines of unit amplitude at 250 Hz that were going on before the record."""
+    time = np.arange(round(duration / SLOW_STEP)) * SLOW_STEP
+    return np.stack([np.cos(2 * np.pi * frequency * time + phase) for phase in (0.3, 1.0, 2.0)])
+
+
+@pytest.mark.parametrize("duration", [60.0, 600.0])
+@pytest.mark.parametrize("bias", [9.81, np.linspace(-1.0, 1.0)], ids=["gravity", "drift"])
+def test_maxima_and_sickness_dose_do_not_see_a_mean_or_a_drift(duration, bias):
+    clean = ride(duration, 0.2) + ride(duration)
+    bias = np.interp(np.linspace(0, 1, clean.shape[1]), np.linspace(0, 1, np.size(bias)), np.atleast_1d(bias))
+    with_bias = evaluate(SLOW_STEP, clean + bias)
+    without = evaluate(SLOW_STEP, clean)
+    for axis in "xyz":
+        # 1 % of the step of gravity is left when the filters count as settled, and falls by 20 within 3 s
+        for key in ("mtvv", "msdv"):
+            assert with_bias[axis][key] == pytest.approx(without[axis][key], rel=0.015)
+        # The peak does not see it; the crest factor is over the RMS beside it, which holds the whole record.
+        peaks = [found[axis]["crest_factor"] * found[axis]["weighted_rms"] for found in (with_bias, without)]
+        assert peaks[0] == pytest.approx(peaks[1], rel=0.015)
+    # from the first sample on the peak is that of the step
+    whole = evaluate(SLOW_STEP, clean + bias, from_rest=True)["z"]
+    assert whole["crest_factor"] * whole["weighted_rms"] > 1.2 * peaks[1]
+
+
+def test_the_offset_of_a_long_record_shows_in_its_dose():
+    xyz = 0.7 * ride(600.0) + np.array([[0.0], [0.0], [9.81]])
+    effect = offset_effect(SLOW_STEP, xyz)
+    assert effect[:2].max() < 1e-4
+    assert effect[2] > 0.05
+    line = offset_line(xyz + np.linspace(-1.0, 1.0, xyz.shape[1]))
+    assert line[2, [0, -1]] == pytest.approx([8.81, 10.81], abs=1e-3)
+    assert offset_line(without_offset(xyz)) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("duration", "said"), [(20.0, "at least 43.2 s are needed"), (50.0, "D.1, asks for 240 s")])
+def test_a_record_must_hold_the_lowest_frequency_of_its_weighting(duration, said):
+    found = evaluate(SLOW_STEP, ride(duration))
+    assert (found["z"]["msdv"] is None) == (duration == 20.0)
+    assert f"msdv: {duration:g} s hold {duration / 10:.1f} periods of 0.1 Hz" in found["reasons"][-1]
+    assert said in found["reasons"][-1]
+    short = evaluate(SLOW_STEP, ride(5.0))["reasons"]
+    assert any(r.startswith("z: 5 s hold 2.5 periods of 0.5 Hz, where Wk begins; 8.64 s are needed") for r in short)
+    assert not any("msdv" in reason for reason in evaluate(SLOW_STEP, ride(240.0))["reasons"])
+    with pytest.raises(DataError, match=r"found 3 s, but weighting Wd settles in 3\.5 s; give a longer record"):
+        evaluate(SLOW_STEP, ride(3.0))
+    assert evaluate(SLOW_STEP, ride(3.0), from_rest=True)["z"]["weighted_rms"] > 0.0
+
+
+def test_what_is_skipped_does_not_count():
+    xyz = ride(60.0)
+    xyz[:, :1000] *= 10.0
+    found = evaluate(SLOW_STEP, xyz, skip=10.0)
+    assert found["duration_s"] == pytest.approx(50.0)
+    # 4 s of the large part have gone; 6 s later its decay is below 1e-4
+    assert found["z"]["weighted_rms"] == pytest.approx(weighting("Wk").spectrum_factor(4.0) / np.sqrt(2), rel=1e-3)
+    for skip in (-5.0, np.nan, np.inf, 60.0):
+        with pytest.raises(
+            ConfigurationError, match=r"^skip: found .* s, allowed is 0 s to less than the record, 60 s$"
+        ):
+            evaluate(SLOW_STEP, xyz, skip=skip)

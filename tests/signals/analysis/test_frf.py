@@ -1,0 +1,154 @@
+import numpy as np
+import pytest
+from scipy.signal import lsim
+
+from tests.signals.analysis.oscillator import state_space, stationary_response, transmissibility
+from vehicle.errors import DataError
+from vehicle.signals.analysis.frf import frequency_response
+
+STEP = 1e-3
+
+
+def noise(samples, seed=0):
+    return np.random.default_rng(seed).standard_normal(samples)
+
+
+def test_a_gain_is_found_exactly():
+    excitation = noise(30_000)
+    found = frequency_response(STEP, excitation, [3.0 * excitation, -0.5 * excitation + 20.0])
+    # a constant factor is the same in every segment: only rounding is left; the constant is removed
+    assert found.response[0] == pytest.approx(np.full(197, 3.0), rel=1e-12)
+    assert found.response[1] == pytest.approx(np.full(197, -0.5), rel=1e-10)
+    assert found.coherence == pytest.approx(np.ones((2, 197)), abs=1e-10)
+    assert (found.frequency[0], found.frequency[-1], found.resolution_hz) == (1.0, 50.0, 0.25)
+    assert (found.window, found.estimator, found.segments, found.reasons) == ("hann", "H1", 14, ())
+
+
+def test_a_delay_turns_the_phase_backwards():
+    excitation = noise(60_000)
+    found = frequency_response(STEP, excitation, np.roll(excitation, 5))
+    expected = np.exp(-2j * np.pi * found.frequency * 5 * STEP)
+    # 5 of 4000 samples of each window are new: an error of about sqrt(2 * 5/4000 / 27) = 1 %, three times that allowed
+    assert np.abs(found.response[0] - expected).max() < 0.04
+
+
+def test_an_oscillator_shows_its_analytic_response():
+    excitation = noise(600_000)
+    found = frequency_response(STEP, excitation, stationary_response(excitation, STEP, transmissibility), window_s=16.0)
+    expected = transmissibility(found.frequency)
+    # time constant 0.2 s, window 16 s: bias 13 * (0.2 / 16)^2 = 0.2 %; random error from what
+    # enters and leaves a window: below 1 % at the peak with 70 averages
+    assert np.abs(found.response[0] / expected - 1.0).max() < 0.02
+    assert found.coherence.min() > 0.99
+
+
+def test_an_oscillator_integrated_in_time_shows_the_same():
+    # second derivation: not from the transfer function but from the equation of motion, exact between samples
+    excitation = stationary_response(noise(200_000, 5), STEP, lambda f: 1.0 / (1.0 + (f / 60.0) ** 8))
+    time = np.arange(excitation.size) * STEP
+    _, response, _ = lsim(state_space(), excitation, time)
+    found = frequency_response(STEP, excitation, response, window_s=16.0)
+    # as above with 23 averages, and linear interpolation of the plate between samples: (pi f dt)^2 / 3 = 0.8 % at 50 Hz
+    assert np.abs(found.response[0] / transmissibility(found.frequency) - 1.0).max() < 0.05
+
+
+def leaking_transmissibility(window_s, natural, damping):
+    """Expected H1 under white excitation: transform of the impulse response times the window's autocorrelation."""
+    lines = np.fft.rfftfreq(65_536, STEP)
+    impulse = np.fft.irfft(transmissibility(lines, natural, damping), 65_536)
+    length = round(window_s / STEP)
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(length) / length)
+    padded = np.abs(np.fft.rfft(window, 2 * length)) ** 2
+    correlation = np.fft.irfft(padded)[:length] / (window @ window)
+    return np.exp(-2j * np.pi * natural * np.arange(length) * STEP) @ (impulse[:length] * correlation)
+
+
+def test_leakage_lowers_a_sharp_peak_as_predicted_and_a_longer_window_mends_it():
+    excitation = noise(400_000, 1)
+    response = stationary_response(excitation, STEP, lambda f: transmissibility(f, 20.0, 0.01))
+    gammas = []
+    # the last column is what the docstring of frequency_response says
+    for window_s, stated in ((2.0, 0.53), (4.0, 0.75), (16.0, 0.97)):
+        found = frequency_response(STEP, excitation, response, window_s=window_s)
+        at = int(np.argmin(np.abs(found.frequency - 20.0)))
+        gamma = found.coherence[0, at]
+        scatter = np.sqrt((1 - gamma) / (2 * found.averages[0, 0] * gamma))  # Bendat and Piersol, chapter 9
+        exact = abs(transmissibility(20.0, 20.0, 0.01))
+        predicted = abs(leaking_transmissibility(window_s, 20.0, 0.01))
+        assert predicted / exact == pytest.approx(stated, abs=0.01)
+        assert abs(found.response[0, at]) == pytest.approx(predicted, rel=4 * scatter)
+        gammas.append(gamma)
+    assert gammas == sorted(gammas)
+    assert scatter < 0.05
+    assert abs(leaking_transmissibility(4.0, 28.0, 0.05) / transmissibility(28.0, 28.0, 0.05)) == pytest.approx(
+        0.99, abs=0.002
+    )
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0])
+def test_coherence_shows_the_known_share_of_noise(ratio):
+    excitation = noise(400_000, 2)
+    found = frequency_response(STEP, excitation, excitation + ratio * noise(400_000, 3))
+    averages = found.averages[0, 0]
+    expected = 1.0 / (1.0 + ratio**2)
+    bias = (1.0 - expected) ** 2 / averages  # Bendat and Piersol, chapter 9
+    # standard error of one line sqrt(2) (1 - g) sqrt(g / nd), over 190 lines of which every other is independent
+    scatter = np.sqrt(2.0) * (1 - expected) * np.sqrt(expected / averages / 95)
+    assert found.coherence.mean() == pytest.approx(expected + bias, abs=4 * scatter)
+    # noise on the response does not bias H1
+    assert np.abs(found.response.mean() - 1.0) < 4 * ratio / np.sqrt(2 * averages * 95)
+
+
+def test_doubling_the_input_doubles_the_response_and_keeps_the_frf():
+    excitation = noise(60_000)
+    response = stationary_response(excitation, STEP, transmissibility)
+    once = frequency_response(STEP, excitation, response)
+    both = frequency_response(STEP, 2.0 * excitation, 2.0 * response)
+    alone = frequency_response(STEP, excitation, 2.0 * response)
+    assert both.response == pytest.approx(once.response, rel=1e-12)
+    assert alone.response == pytest.approx(2.0 * once.response, rel=1e-12)
+    assert alone.coherence == pytest.approx(once.coherence, rel=1e-12)
+
+
+def test_a_still_response_is_nan_with_a_reason():
+    excitation = noise(30_000)
+    found = frequency_response(STEP, excitation, [excitation, np.full(30_000, 0.1)], names=("knuckle", "seat"))
+    assert np.isfinite(found.response[0]).all()
+    assert np.isnan(found.response[1]).all()
+    assert np.isnan(found.coherence[1]).all()
+    assert found.reasons == ("seat: constant, so its FRF and its coherence are undefined",)
+
+
+def test_a_still_excitation_is_refused():
+    with pytest.raises(DataError) as refusal:
+        frequency_response(STEP, np.full(30_000, 0.1), noise(30_000))
+    assert str(refusal.value) == (
+        "excitation: constant at 0.1 over all 30000 samples, so no frequency response to it exists; give the channel "
+        "that moves"
+    )
+
+
+def test_lines_without_excitation_are_nan_with_a_reason():
+    time = np.arange(30_000) * STEP
+    sine = np.sin(2 * np.pi * 10.0 * time)
+    found = frequency_response(STEP, sine, 2.0 * sine)
+    known = np.isfinite(found.response[0])
+    # a Hann window spreads a sine of whole periods over three lines
+    assert found.frequency[known] == pytest.approx([9.75, 10.0, 10.25])
+    assert found.response[0, known] == pytest.approx(np.full(3, 2.0), rel=1e-10)
+    assert found.reasons == ("194 lines between 1 and 50 Hz: not excited, so the FRF is undefined",)
+
+
+def test_too_few_averages_are_refused_and_one_gives_no_coherence():
+    excitation = noise(4000)
+    with pytest.raises(DataError, match=r"record too short: 4 s hold 1 effective averages .* at least 20 s"):
+        frequency_response(STEP, excitation, excitation)
+    found = frequency_response(STEP, excitation, excitation, minimum_averages=1.0)
+    assert found.response[0] == pytest.approx(np.ones(197))
+    assert np.isnan(found.coherence).all()
+    assert found.reasons == ("coherence: undefined with 1 averages (a single one gives 1 whatever happens)",)
+
+
+def test_records_of_different_length_are_refused():
+    with pytest.raises(DataError, match="responses: found 29999 samples, the excitation has 30000"):
+        frequency_response(STEP, noise(30_000), noise(29_999))

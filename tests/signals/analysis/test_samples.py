@@ -1,0 +1,37 @@
+"""Rows of signals as they stand, and what is refused of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.errors import DataError
+from vehicle.signals.analysis.samples import checked_rows
+
+
+def test_rows_given_one_by_one_are_taken_without_a_copy():
+    """A long record stands in memory once."""
+    rows = [np.arange(5.0), np.ones(5)]
+    found = checked_rows("responses", rows)
+    assert [row.shape for row in found] == [(5,), (5,)]
+    assert all(np.shares_memory(one, own) for one, own in zip(found, rows, strict=True))
+
+
+@pytest.mark.parametrize("signals", [np.arange(6.0).reshape(2, 3), [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]])
+def test_a_table_is_taken_row_by_row(signals):
+    assert np.array_equal(checked_rows("responses", signals), [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]])
+
+
+def test_one_signal_is_one_row():
+    assert np.array_equal(checked_rows("responses", np.arange(3.0)), [[0.0, 1.0, 2.0]])
+
+
+def test_a_lost_sample_is_named_with_its_row():
+    with pytest.raises(DataError, match="responses 1: found nan at sample 2"):
+        checked_rows("responses", [np.zeros(4), np.array([0.0, 1.0, np.nan, 3.0])])
+
+
+@pytest.mark.parametrize("signals", [[], [np.zeros(0)], [np.zeros((2, 3)), np.zeros((2, 3))]])
+def test_what_is_no_row_of_samples_is_refused(signals):
+    with pytest.raises(DataError, match="responses"):
+        checked_rows("responses", signals)

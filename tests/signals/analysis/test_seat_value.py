@@ -1,0 +1,105 @@
+"""SEAT value: of a known transmissibility in closed form, by the command, in the summary, in a sweep."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from vehicle.commands.comfort import main as comfort
+from vehicle.commands.shaker import main as shaker
+from vehicle.commands.sweep import main as sweep
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.runs.car import Car
+from vehicle.runs.output.run_comfort import NO_SEAT, comfort_notices, seat_values
+from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
+from vehicle.signals.analysis.weighting import weighting
+from vehicle.signals.excitation.signal import Signal, uniform_time
+
+STEP = 1e-3
+TIME = uniform_time(samples=40_000, timestep=STEP)
+FIRST, SECOND = np.sin(2.0 * np.pi * 4.0 * TIME), np.sin(2.0 * np.pi * 10.0 * TIME)
+SEAT, RAIL = 2.0 * FIRST + 0.5 * SECOND, FIRST + SECOND
+
+
+def lines(name, *pairs):
+    """Weighted RMS of sines (amplitude, frequency)."""
+    return np.sqrt(sum(0.5 * (a * float(weighting(name).spectrum_factor(f))) ** 2 for a, f in pairs))
+
+
+@pytest.mark.parametrize(("place", "name"), [("seat", "Wk"), ("seat_bs6841", "Wb")])
+def test_two_sines_in_closed_form(place, name):
+    """After the filters have settled, SEAT^2 = sum (T_i w_i a_i)^2 / sum (w_i a_i)^2."""
+    found = seat_value(STEP, SEAT, RAIL, place=place, skip=10.0)
+    expected = lines(name, (2.0, 4.0), (0.5, 10.0)) / lines(name, (1.0, 4.0), (1.0, 10.0))
+    assert found.rms == pytest.approx(expected, rel=1e-5) and found.weighting == name
+    assert seat_value(STEP, 3.0 * RAIL, RAIL).rms == pytest.approx(3.0, rel=1e-12)
+    assert seat_value(STEP, 3.0 * RAIL, RAIL).vdv == pytest.approx(3.0, rel=1e-12)
+
+
+def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
+    x, y, z, overall = weighted_rms_of(STEP, np.array([SEAT, RAIL, SEAT]), skip=10.0)
+    exact = [lines("Wd", (2.0, 4.0), (0.5, 10.0)), lines("Wd", (1.0, 4.0), (1.0, 10.0))]
+    exact.append(lines("Wk", (2.0, 4.0), (0.5, 10.0)))
+    assert (x, y, z) == pytest.approx(exact, rel=1e-5) and overall == pytest.approx(np.linalg.norm(exact), rel=1e-5)
+
+
+def test_what_is_no_seat_is_refused():
+    with pytest.raises(ConfigurationError, match="found place 'feet', allowed are seat and seat_bs6841"):
+        seat_value(STEP, SEAT, RAIL, place="feet")
+    with pytest.raises(DataError, match="the rail is at rest"):
+        seat_value(STEP, SEAT, 0.0 * RAIL)
+
+
+def test_a_run_says_what_its_seat_does(tmp_path, monkeypatch, capsys):
+    """The summary, the page and the command on the file agree; a car without a seat has none, and says so."""
+    monkeypatch.chdir(tmp_path)
+    road = ["--road", "A", "--speed", "60", "--duration", "4", "--engine", "reduced"]
+    assert shaker([*road, "--vehicle", "focus_road_seated", "--output", "seated"]) == 0
+    value = json.loads((tmp_path / "seated" / "summary.json").read_text())["seat_value"]
+    assert f"SEAT value {value['rms']:.3f} (z, Wk" in capsys.readouterr().out and 0.4 < value["rms"] < 1.0
+    asked = ["--channel", "seat", "--rail", "seat_rail", "--offset", "keep", "--skip", "2", "--json"]
+    assert comfort(["--input", "seated/time.npz", *asked]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["seat_value"] == pytest.approx(value) and NO_SEAT not in err
+    still = Signal(time=TIME[:500], displacement=dict.fromkeys(("fr", "fl", "rr", "rl"), 0.0 * TIME[:500]))
+    bare = Car.load("focus_road").run(still, engine="reduced")
+    assert comfort_notices(bare)[-1] == NO_SEAT and seat_values(bare) is None
+    (tmp_path / "seated" / "summary.json").write_text(json.dumps({"notices": comfort_notices(bare)}))
+    assert comfort(["--input", "seated/time.npz", *asked]) == 0
+    assert f"notice: {NO_SEAT}" in capsys.readouterr().err
+    for wrong, message in (
+        (["--rail", "x=1"], "--rail x=1: the value of a seat is that of z; give z=NAME, or a place"),
+        (["--rail", "seat_rail", "--place", "feet"], "--place feet: --rail asks for the value of a seat"),
+    ):
+        assert comfort(["--input", "seated/time.npz", "--channel", "seat", "--offset", "keep", *wrong]) == 2
+        assert message in capsys.readouterr().err
+
+
+def test_a_measured_file_names_the_channel_of_its_rail(tmp_path, capsys):
+    table = np.column_stack([TIME, 0.1 * SEAT, 0.2 * SEAT, SEAT, RAIL])
+    path, head = tmp_path / "ride.csv", "time [s],a [m/s2],b [m/s2],cushion [m/s2],floor [m/s2]"
+    np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.9g")
+    names = [
+        word
+        for axis, name in zip("xyz", ("a", "b", "cushion"), strict=True)
+        for word in ("--channel", f"{axis}={name}")
+    ]
+    assert comfort(["--input", str(path), *names, "--rail", "z=floor", "--skip", "10"]) == 0
+    expected = seat_value(STEP, SEAT, RAIL, skip=10.0)
+    assert f"SEAT value (z, Wk)       {expected.rms:.4g}, of VDV {expected.vdv:.4g}" in capsys.readouterr().out
+
+
+def test_a_sweep_of_a_car_with_a_seat(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = "seat.driver.bushings.cushion.stiffness.z"
+    arguments = ["--road", "A", "--speed", "60", "--duration", "4", "--vehicle", "focus_road_seated", "--quiet"]
+    assert sweep([*arguments, "--vary", f"{path}=4e4,16e4", "--engine", "reduced", "--output", "out"]) == 0
+    with (tmp_path / "out" / "table.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    values = {key: [float(row[key]) for row in rows] for key in rows[0] if key.startswith("seat_")}
+    value = next(values[key] for key in values if key.startswith("seat_value"))
+    assert value[0] < value[1] < 1.0  # a softer cushion isolates better
+    assert sum(key.startswith("seat_weighted_") for key in values) == 4

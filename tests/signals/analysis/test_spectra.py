@@ -1,0 +1,96 @@
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.spectra import band_rms, periodogram, power_spectral_density
+
+
+@pytest.mark.parametrize("samples", [1000, 1001])
+def test_periodogram_holds_the_mean_square_exactly(samples):
+    signal = 3.0 + np.random.default_rng(1).standard_normal((2, samples))
+    spectrum = periodogram(1e-3, signal)
+    # Parseval's theorem: equal but for rounding
+    assert spectrum.density.sum(axis=1) * spectrum.resolution_hz == pytest.approx((signal**2).mean(axis=1), rel=1e-13)
+
+
+def test_welch_density_of_white_noise_is_flat_at_its_known_value():
+    rng = np.random.default_rng(2)
+    spectrum = power_spectral_density(1e-3, 2.0 * rng.standard_normal(200_000), window_s=1.0)
+    # one-sided density of variance 4 over 500 Hz; the mean over 400 lines x 375 averages scatters by 0.3 %
+    assert spectrum.density[0, 20:420].mean() == pytest.approx(4.0 / 500.0, rel=0.01)
+    assert spectrum.resolution_hz == 1.0
+    # Parseval: the window weighs the samples of each segment unevenly, so equal only within the same scatter
+    assert spectrum.density.sum() * spectrum.resolution_hz == pytest.approx(4.0, rel=0.02)
+
+
+def test_welch_density_of_a_sine_holds_its_mean_square():
+    time = np.arange(8000) * 1e-3
+    spectrum = power_spectral_density(1e-3, 5.0 * np.sin(2 * np.pi * 10.0 * time), window_s=2.0)
+    # whole periods in each window: the Hann window spreads the line over three and keeps the sum
+    assert spectrum.density.sum() * spectrum.resolution_hz == pytest.approx(12.5, rel=1e-12)
+
+
+def test_band_rms_counts_what_lies_in_the_band_and_nothing_else():
+    time = np.arange(10_000) * 1e-3
+    low, inside, high = (np.sin(2 * np.pi * f * time) for f in (1.0, 10.0, 80.0))
+    signal = 7.0 * low + 2.0 * inside + 4.0 * high + 9.81
+    # whole periods in 10 s: RMS of amplitude 2, exact but for rounding
+    assert band_rms(1e-3, signal, (2.0, 50.0)) == pytest.approx([np.sqrt(2.0)], rel=1e-12)
+
+
+@pytest.mark.parametrize("frequency", [2.0, 50.0])
+def test_both_band_edges_belong_to_the_band(frequency):
+    time = np.arange(10_000) * 1e-3
+    assert band_rms(1e-3, np.sin(2 * np.pi * frequency * time), (2.0, 50.0))[0] == pytest.approx(np.sqrt(0.5))
+
+
+def test_doubling_the_signal_doubles_the_rms():
+    signal = np.random.default_rng(3).standard_normal(5000)
+    assert band_rms(1e-3, 2.0 * signal, (2.0, 50.0)) == pytest.approx(2.0 * band_rms(1e-3, signal, (2.0, 50.0)))
+
+
+def test_adjoining_bands_add_in_square():
+    signal = np.random.default_rng(3).standard_normal(5000)
+    # 9.9 Hz lies between the lines 9.8 and 10.0 Hz, so no line counts twice
+    parts = band_rms(1e-3, signal, (2.0, 9.9))[0] ** 2 + band_rms(1e-3, signal, (9.9, 50.0))[0] ** 2
+    assert parts == pytest.approx(band_rms(1e-3, signal, (2.0, 50.0))[0] ** 2, rel=1e-12)
+
+
+def test_slow_sampling_is_refused_with_the_rate_needed():
+    with pytest.raises(DataError) as refusal:
+        band_rms(0.01, np.zeros(1000), (2.0, 50.0))
+    assert str(refusal.value) == (
+        "sampling rate: found 100 Hz, at least 125 Hz is needed to evaluate up to 50 Hz; sample faster or lower the "
+        "band edge to 40 Hz"
+    )
+
+
+@pytest.mark.parametrize("band", [(50.0, 2.0), (2.0, 2.0), (-1.0, 5.0), (2.0, np.nan)])
+def test_an_empty_band_is_refused(band):
+    with pytest.raises(ConfigurationError, match="band: found"):
+        band_rms(1e-3, np.ones(1000), band)
+
+
+def test_a_record_without_a_line_in_the_band_is_refused():
+    with pytest.raises(DataError, match=r"record too short: its lines are 10 Hz apart and none lies in 2 to 5 Hz"):
+        band_rms(1e-3, np.ones(100), (2.0, 5.0))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_value_that_is_not_finite_is_located(bad):
+    signal = np.ones((2, 1000))
+    signal[1, 17] = bad
+    with pytest.raises(DataError, match=rf"found {bad} at sample 17 of signal 1 \(1 values are not finite\)"):
+        periodogram(1e-3, signal)
+
+
+@pytest.mark.parametrize("step", [0.0, -1e-3, np.nan, np.inf])
+def test_a_time_step_that_is_no_time_step_is_refused(step):
+    with pytest.raises(ConfigurationError, match="time step: found"):
+        periodogram(step, np.ones(10))
+
+
+@pytest.mark.parametrize("signal", [[], np.ones((2, 3, 4)), 1.0])
+def test_a_record_of_the_wrong_shape_is_refused(signal):
+    with pytest.raises(DataError, match=r"needed is \(n,\) or \(k, n\)"):
+        periodogram(1e-3, signal)

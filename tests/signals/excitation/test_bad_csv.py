@@ -1,0 +1,375 @@
+"""Items 1 to 12, 14, 17 and 19 of the list of bad inputs: one refusal each, with its whole message or decisive part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.signals.excitation.csv_samples import HEADER, rows, with_row, write
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.excitation.plausibility import band_limited_acceleration
+from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.records import text as csv_text
+
+NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
+
+
+def refused(path: Path, **options: object) -> str:
+    """Message of the refusal without the path in front."""
+    with pytest.raises(DataError) as caught:
+        read_signal(path, **options)  # type: ignore[arg-type]
+    assert caught.value.exit_code == 3
+    message = str(caught.value)
+    assert message.startswith(str(path))
+    return message.removeprefix(str(path))
+
+
+def refused_lines(folder: Path, lines: list[str]) -> str:
+    return refused(write(folder, lines))
+
+
+def test_1_empty_file(tmp_path):
+    path = tmp_path / "empty.csv"
+    path.write_bytes(b"")
+    expected = ": the file is empty; needed are a header line with units and one row per sample"
+    assert refused(path) == expected
+    path.write_bytes(b" \n\n")
+    assert refused(path) == expected
+
+
+def test_1_header_or_comments_only(tmp_path):
+    assert refused_lines(tmp_path, ["# c", HEADER]) == (
+        ":2: the file ends after the header; needed is one row per sample below it"
+    )
+    assert refused_lines(tmp_path, ["# c", "# d"]) == (
+        f": only comments; needed are the columns {NEEDED} in a header line and one row per sample"
+    )
+
+
+def test_1_a_few_rows_are_no_record(tmp_path):
+    assert refused_lines(tmp_path, [HEADER, *rows(31)]) == (
+        ": 31 rows; allowed from 32 rows; this is no record of a vibration"
+    )
+
+
+@pytest.mark.parametrize("cell", ["nan", "NaN", "inf", "-Inf", "", "#N/A", "1e400"])
+def test_2_missing_or_infinite(tmp_path, cell):
+    assert refused_lines(tmp_path, with_row(17, f"0.017000,{cell}")) == (
+        f":19:2: column 'displacement [m]' holds {cell!r}; allowed are finite numbers; repair the cell, or ask for "
+        "interpolation (--interpolate)"
+    )
+
+
+@pytest.mark.parametrize("end", ["\r\n", "\r"])
+def test_2_line_numbers_hold_for_the_line_ends_of_other_systems(tmp_path, end):
+    path = tmp_path / "other.csv"
+    path.write_bytes(end.join(with_row(17, "0.017000,nan")).encode())
+    assert refused(path).startswith(":19:2: column 'displacement [m]' holds 'nan'")
+
+
+def test_2_text_is_not_a_missing_value(tmp_path):
+    path = write(tmp_path, with_row(17, "0.017000,1.5x"))
+    for interpolate in (False, True):
+        assert refused(path, interpolate=interpolate) == (
+            ":19:2: column 'displacement [m]' holds '1.5x'; allowed is a number with a decimal point, such as -1.25e-4"
+        )
+
+
+@pytest.mark.parametrize("cell", ["1_0", "0x10", "1.0D-3", "١"])
+def test_2_only_decimal_numbers_are_numbers(tmp_path, cell):
+    assert f":19:2: column 'displacement [m]' holds {cell!r}" in refused_lines(
+        tmp_path, with_row(17, f"0.017000,{cell}")
+    )
+
+
+@pytest.mark.parametrize("cell", ["nan", "", "#N/A"])
+def test_2_missing_time_is_never_interpolated(tmp_path, cell):
+    path = write(tmp_path, with_row(17, f"{cell},1e-3"))
+    assert refused(path, interpolate=True) == (
+        f":19:1: column 'time [s]' holds {cell!r}; a time stamp is never interpolated; repair or remove the row"
+    )
+
+
+def test_3_non_uniform_time(tmp_path):
+    assert refused_lines(tmp_path, with_row(100, "0.100002,0.001")) == (
+        ":102: time is not uniform: the step of 0.001002 s deviates by 0.002 of the median step 0.001 s; allowed "
+        "0.001; "
+        "write the time with more digits, or set --resample 1000"
+    )
+
+
+def test_3_jitter_within_the_tolerance_is_accepted(tmp_path):
+    lines = with_row(100, f"0.1000005,{rows()[100].split(',')[1]}")
+    assert read_signal(write(tmp_path, lines)).notices == ()
+
+
+def test_4_repeated_and_decreasing_time(tmp_path):
+    assert refused_lines(tmp_path, with_row(100, "0.099000,0.001")) == (
+        ":102: time 0.099 s repeats the time 0.099 s of line 101; time must increase from row to row; were two "
+        "logs put "
+        "behind each other?"
+    )
+    assert refused_lines(tmp_path, [HEADER, *rows(), "# second log", *rows()]) == (
+        ":403: time 0 s goes back behind the time 0.399 s of line 401; time must increase from row to row; were "
+        "two logs "
+        "put behind each other?"
+    )
+
+
+def test_5_no_header(tmp_path):
+    assert refused_lines(tmp_path, rows()) == (
+        f":1:1: no header line: found '0.000000', '0.000000000e+00'; needed are the columns {NEEDED}"
+    )
+
+
+def test_5_unknown_and_missing_columns(tmp_path):
+    assert refused_lines(tmp_path, ["time [s],displacement [m],force [N]", "0,0,0"]) == (
+        ":1: unknown column 'force [N]'; found 'time [s]', 'displacement [m]', 'force [N]'; needed are "
+        f"{NEEDED}; remove the others, or say which one drives a plate: --channel fr=NAME"
+    )
+    assert refused_lines(tmp_path, ["zeit [s],weg [m]", "0,0"]).startswith(
+        ":1: unknown column 'zeit [s]', 'weg [m]'; found"
+    )
+    assert refused_lines(tmp_path, ["displacement [m]", "0"]) == (
+        f":1: no time column; found 'displacement [m]'; needed are {NEEDED}"
+    )
+    assert refused_lines(tmp_path, ["# x", "time [s]", "0"]).startswith(":2: no displacement column; found 'time [s]'")
+
+
+def test_6_duplicate_columns(tmp_path):
+    assert refused_lines(tmp_path, ["time [s],displacement [m],displacement [m]", "0,0,0"]) == (
+        ":1:3: column 'displacement [m]' gives the same quantity as column 2 ('displacement [m]'); each may appear "
+        "once; "
+        "found 'time [s]', 'displacement [m]', 'displacement [m]'"
+    )
+    message = refused_lines(tmp_path, ["time [s],displacement [m],displacement_fr [m]", "0,0,0"])
+    assert message.startswith(":1:3: column 'displacement_fr [m]' gives the same quantity as column 2")
+
+
+def test_6_decimal_comma_is_never_guessed(tmp_path):
+    lines = [HEADER, *(row.replace(",", ";").replace(".", ",").replace(";", ",") for row in rows())]
+    assert refused_lines(tmp_path, lines) == (
+        ":2:3: row has 4 cells, the header 2; with decimal commas the columns must be separated by ';', in the "
+        "header too; "
+        "1,5 is never guessed"
+    )
+
+
+def test_6_thousands_separator_is_refused(tmp_path):
+    lines = [HEADER.replace(",", ";"), *(row.replace(",", ";") for row in rows())]
+    lines[51] = "0.050000;1,5"
+    assert refused_lines(tmp_path, lines) == (
+        ":52:2: column 'displacement [m]' holds '1,5'; line 2 has a decimal point; a comma may be a decimal comma or "
+        "separate thousands; write all numbers with a decimal point and no other sign"
+    )
+
+
+def test_6_rows_with_another_delimiter(tmp_path):
+    assert refused_lines(tmp_path, [HEADER, *(row.replace(",", ";") for row in rows())]) == (
+        ":2:1: row has 1 cells, the header 2; separate the cells by ',' as in the header"
+    )
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        (
+            "time [s],displacement",
+            ":1:2: column 'displacement' has no unit; write it in brackets behind the name, allowed: [m] or [mm]",
+        ),
+        (
+            "time,displacement [m]",
+            ":1:1: column 'time' has no unit; write it in brackets behind the name, allowed: [s]",
+        ),
+        (
+            "time [s],displacement [furlong]",
+            ":1:2: column 'displacement [furlong]' has the unit [furlong]; allowed: [m] or [mm]",
+        ),
+        (
+            "time [s],displacement [cm]",
+            ":1:2: column 'displacement [cm]' has the unit [cm]; allowed: [m] or [mm]; with --channel, as --channel "
+            "fr=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command takes the "
+            "time.npz of its run",
+        ),
+        (
+            "time [ms],displacement [m]",
+            ":1:1: column 'time [ms]' has the unit [ms]; allowed: [s]; with --channel, as --channel "
+            "fr=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command takes the "
+            "time.npz of its run",
+        ),
+    ],
+)
+def test_7_units_are_required_and_known(tmp_path, header, message):
+    assert refused_lines(tmp_path, [header, *rows()]) == message
+
+
+def test_7_displacement_in_millimetres_under_metres(tmp_path):
+    assert refused_lines(tmp_path, [HEADER, *rows(amplitude=0.5)]) == (
+        ": plate fr is displaced by 0.5 m at sample 50 (t = 0.05 s); allowed 0.15 m; looks like mm? The column "
+        "is declared in [m]; write its unit into the header ([m] or [mm]), or remove a constant offset (--remove-mean)"
+    )
+
+
+def test_7_acceleration_beyond_a_shaker(tmp_path):
+    message = refused_lines(tmp_path, [HEADER, *rows(2000, amplitude=0.05, frequency=10.0)])
+    # A/2 (2 pi f)^2 = 98.7 m/s2; at the ends the filter makes a few percent more of it.
+    assert message.startswith(": plate fr accelerates by ")
+    assert abs(float(message.split()[5])) == pytest.approx(98.7, rel=0.1)
+    assert "(below 100 Hz); allowed 50 m/s2; looks like mm?" in message
+
+
+def test_91_one_pothole_is_named_and_no_reason_to_refuse(tmp_path):
+    time = np.arange(20_000) / 1000.0
+    pothole = -0.06 * np.exp(-(((time - 12.0) / 0.012) ** 2))
+    z = 1e-3 * np.sin(2 * np.pi * 3.0 * time) * np.clip(time, 0.0, 1.0) + pothole
+
+    def lines(values):
+        return [HEADER, *(f"{t:.3f},{value:.8f}" for t, value in zip(time, values, strict=True))]
+
+    said = [text for text in read_signal(write(tmp_path, lines(z))).notices if "a pothole" in text]
+    # -2 A / s^2 at its deepest point, below 100 Hz
+    assert len(said) == 1 and "at t = 12" in said[0] and "beyond 50 m/s2" in said[0]
+    # in mm under [m] the whole record is beyond, and a spike of a logger is no pothole
+    assert "looks like mm" in refused_lines(tmp_path, lines(1e3 * z))
+    assert "displaced by 3" in refused_lines(tmp_path, lines(np.where(np.arange(time.size) == 9000, 3.0, z)))
+
+
+def test_7_too_small_to_be_true(tmp_path):
+    message = refused_lines(tmp_path, [HEADER, *rows(amplitude=1e-7)])
+    assert message.startswith(": RMS of plate fr is 3.5")
+    assert "allowed from 1e-07 m; does the column hold metres?" in message
+    still = refused_lines(tmp_path, [HEADER, *(f"{i / 1000},0" for i in range(400))])
+    assert still.startswith(": no plate moves: every column holds one value only")
+
+
+def test_64_a_column_in_millimetres_is_judged_in_millimetres(tmp_path):
+    header = "time [s],displacement [mm]"
+    message = refused_lines(tmp_path, [header, *rows(amplitude=500.0)])
+    assert message.startswith(": plate fr is displaced by 500 mm at sample 50 (t = 0.05 s); allowed 150 mm; ")
+    assert "looks like mm" not in message and "declared in [mm]" in message
+    message = refused_lines(tmp_path, [header, *rows(amplitude=1e-4)])
+    assert "allowed from 0.0001 mm; does the column, declared in [mm], hold metres?" in message
+
+
+def test_7_quantisation_of_a_measured_signal_is_no_acceleration(tmp_path):
+    rng = np.random.default_rng(1)
+    t = np.arange(10000) / 1000.0
+    z = np.round((5e-4 * np.sin(2 * np.pi * 5.0 * t) + 3e-6 * rng.standard_normal(t.size)) / 1e-5) * 1e-5
+    bare = np.diff(z, 2) * 1e6
+    assert np.max(np.abs(bare)) > 20.0
+    # 10 um steps spread over 500 Hz: sqrt(q^2/12 / 500 (2 pi)^4 100^5 / 5) = 0.23 m/s2 RMS, 5 sigma; input 0.49 m/s2.
+    assert np.max(np.abs(band_limited_acceleration(z, 1e-3))) < 3.0
+    # And what is there is found: 0.49 m/s2 from the sine, within the noise.
+    smooth = band_limited_acceleration(5e-4 * np.sin(2 * np.pi * 5.0 * t), 1e-3)
+    assert np.max(np.abs(smooth[500:-500])) == pytest.approx(5e-4 * (10 * np.pi) ** 2, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "header", ["acceleration [m/s2]", "acc_z [g]", "displacement [m/s^2]", "velocity [m/s]", "displacement [g]"]
+)
+def test_9_acceleration_is_refused(tmp_path, header):
+    message = refused_lines(tmp_path, [f"time [s],{header}", *rows()])
+    assert message.startswith(
+        f":1:2: column {header!r} is an acceleration or a velocity; the plate needs a displacement. Drift makes "
+    )
+    assert message.endswith(f" --highpass 0.5; or give {NEEDED}") and "--channel fr='" in message
+
+
+def test_9_a_level_is_no_velocity(tmp_path):
+    assert ":1: unknown column 'level [m]'" in refused_lines(tmp_path, ["time [s],level [m]", *rows()])
+
+
+def test_11_sampling_too_low(tmp_path):
+    lines = [HEADER, *(f"{i / 9},{row.split(',')[1]}" for i, row in enumerate(rows()))]
+    assert refused_lines(tmp_path, lines) == (
+        ": sampling rate 9 Hz; allowed from 10 Hz (usable up to 4 Hz); measure or export with a higher rate"
+    )
+
+
+def test_11_time_in_milliseconds_under_seconds(tmp_path):
+    lines = [HEADER, *(f"{i},{row.split(',')[1]}" for i, row in enumerate(rows()))]
+    assert "sampling rate 1 Hz; allowed from 10 Hz (usable up to 4 Hz); the time looks like ms;" in refused_lines(
+        tmp_path, lines
+    )
+
+
+@pytest.mark.parametrize("ending", ["", ",1e-3"])
+def test_14_columns_of_different_length(tmp_path, ending):
+    lines = ["time [s],displacement_fr [m],displacement_fl [m]", *(f"{row},1e-3" for row in rows())]
+    for index in range(301, 401):
+        lines[index] = f"{(index - 1) / 1000},1e-3," if ending else f"{(index - 1) / 1000},1e-3"
+    path = write(tmp_path, lines)
+    for interpolate in (False, True):
+        assert refused(path, interpolate=interpolate) == (
+            ":302:3: column 'displacement_fl [m]' ends here while others go on: columns of different length; all "
+            "plates need "
+            "the same samples; nothing is cut or filled up; export them over the same time"
+        )
+
+
+def test_14_a_file_cut_off_in_its_last_row(tmp_path):
+    assert refused_lines(tmp_path, [HEADER, *rows(), "0.4"]) == (
+        ":402:1: the last row has 1 cells, the header 2; the file was cut off; remove the row"
+    )
+
+
+def test_17_too_large_is_refused_before_it_is_read(tmp_path):
+    path = tmp_path / "huge.csv"
+    block = ("\n".join([HEADER, *rows(50000)]) + "\n").encode()  # more than the first megabyte
+    with path.open("wb") as file:
+        file.write(block)
+        file.truncate(10 * 10**9)  # sparse: no disk is used
+    message = refused(path)
+    assert message.startswith(": about ")
+    assert "rows in 10 GB need" in message
+    assert "GiB of memory; allowed 2 GiB; cut the record into parts or lower its sampling rate" in message
+    rows_estimated = float(message.split()[2])
+    assert rows_estimated == pytest.approx(10e9 / (len(block) / 50001), rel=0.01)  # rows are equally long
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"time [s],displacement [m]\n0.0,\xe9\n", ":2:5: byte 0xe9 is not UTF-8; save the file as UTF-8 text"),
+        (
+            b"time [s],displacement [m]\n0.0,0\0\n",
+            ":2:6: NUL byte; allowed is UTF-8 text; this is a binary or damaged file",
+        ),
+        ("time [s]".encode("utf-16"), ":1:1: the file is UTF-16; allowed is UTF-8; save it as UTF-8 text"),
+        (
+            b"time [s]," + b"x" * 1_100_000,
+            ":1: line longer than 1000000 characters; allowed is one row per sample; check the line ends",
+        ),
+        (
+            b"time [s],displacement [m]\n" + b"1" * 1_100_000 + b"\n",
+            ":2: line longer than 1000000 characters; allowed is one row per sample; check the line ends",
+        ),
+    ],
+)
+def test_19_not_text(tmp_path, data, message):
+    path = tmp_path / "binary.csv"
+    path.write_bytes(data)
+    assert refused(path) == message
+
+
+def test_19_nul_behind_the_first_megabyte(tmp_path):
+    path = tmp_path / "late.csv"
+    path.write_bytes((HEADER + "\n").encode() + b"0.0,0.0\n" * 200_000 + b"\0")
+    assert refused(path).startswith(":200002:1: NUL byte")
+
+
+def test_missing_file_is_a_wrong_path(tmp_path):
+    with pytest.raises(ConfigurationError, match=r"none\.csv: no such file; give the path of a CSV file"):
+        read_signal(tmp_path / "none.csv")
+
+
+def test_unreadable_file(tmp_path, monkeypatch):
+    path = write(tmp_path, [HEADER, *rows()])
+
+    def refuse(*_: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(csv_text, "_check_memory", refuse)  # stands for a read error: root may read everything
+    assert refused(path) == ": cannot be read (Permission denied); check the file and its permissions"

@@ -1,0 +1,106 @@
+"""Two tracks of ISO 8608: level, relation of the tracks against the integral, delay of the rear, speed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from vehicle.errors import ConfigurationError
+from vehicle.signals.excitation.iso_road import CLASSES, IsoRoad, Side, drive, isotropic_coherence
+
+SPEED, TRACK = 20.0, 1.49
+
+
+def lines(signal, wheel, skip=2.0):
+    """Wavenumber and complex amplitude of the lines of a wheel's road behind the rise."""
+    late = signal.time > skip
+    z = signal.displacement[wheel][late][:-1]
+    window = np.hanning(z.size)
+    return np.fft.rfftfreq(z.size, signal.timestep) / SPEED, np.fft.rfft(z * window) / np.sqrt(np.sum(window**2))
+
+
+def test_each_class_is_four_times_the_one_before():
+    assert CLASSES["A"] == 16e-6 and CLASSES["C"] == 256e-6
+    assert [CLASSES[b] / CLASSES[a] for a, b in zip("ABCDEFG", "BCDEFGH", strict=True)] == [4.0] * 7
+
+
+@pytest.mark.parametrize("n", [0.02, 0.1, 0.5])
+def test_the_isotropic_plane_against_its_integral(n):
+    """Cross spectrum of two parallel tracks as the integral over the cross waves m of an isotropic surface."""
+
+    def surface(m):
+        return (n**2 + m**2) ** -1.5
+
+    across = quad(surface, 0.0, np.inf, weight="cos", wvar=2.0 * np.pi * TRACK)[0]
+    assert isotropic_coherence(np.array([n]), TRACK)[0] == pytest.approx(
+        across / quad(surface, 0.0, np.inf)[0], rel=1e-6
+    )
+
+
+def test_the_level_is_that_of_the_class_and_the_tracks_are_related_as_asked():
+    powers, cross = [], []
+    for seed in range(6):
+        road = IsoRoad(level=CLASSES["C"], seed=seed, track=TRACK)
+        signal = drive(road, speed=SPEED, wheels={"fr": (0.0, "right"), "fl": (0.0, "left")}, duration=60.0)
+        n, right = lines(signal, "fr")
+        _, left = lines(signal, "fl")
+        powers.append(0.5 * (np.abs(right) ** 2 + np.abs(left) ** 2))
+        cross.append((right * left.conj()).real)
+    for low, high in ((0.05, 0.1), (0.1, 0.2), (0.5, 1.0), (2.0, 4.0)):
+        band = (n >= low) & (n < high)
+        # One-sided density over wavenumber: 2 |Z|^2 / rate for the frequency, times the speed.
+        density = 2.0 * np.mean(powers, axis=0)[band] / 1000.0 * SPEED
+        assert np.mean(density * (n[band] / 0.1) ** 2) == pytest.approx(256e-6, rel=0.12)
+        share = np.mean(np.mean(cross, axis=0)[band] * n[band] ** 2) / np.mean(np.mean(powers, 0)[band] * n[band] ** 2)
+        assert share == pytest.approx(np.mean(isotropic_coherence(n[band], TRACK)), abs=0.15)
+
+
+def test_the_rear_meets_the_same_road_later_by_a_part_of_a_step():
+    road = IsoRoad(level=CLASSES["B"], seed=4, track=TRACK, highest=2.0)
+    wheelbase = 2.64 + 0.009
+    wheels: dict[str, tuple[float, Side]] = {"fr": (0.0, "right"), "fl": (wheelbase, "right")}
+    slow = drive(road, speed=SPEED, wheels=wheels, duration=20.0)
+    # Sampled a thousand times finer than the delay's fraction, the front signal is looked up where the rear is.
+    late = wheelbase / SPEED
+    time = slow.time[3000:19000]
+    front = np.array([np.sinc((t - late - slow.time) * 1000.0) @ slow.displacement["fr"] for t in time[::997]])
+    assert slow.displacement["fl"][3000:19000:997] == pytest.approx(front, abs=1e-6 * np.max(np.abs(front)) + 2e-6)
+    assert not slow.displacement["fl"][: int(late * 1000)].any()
+
+
+def test_tracks_can_be_equal_or_unrelated():
+    wheels: dict[str, tuple[float, Side]] = {"fr": (0.0, "right"), "fl": (0.0, "left")}
+    for value in (1.0, 0.0):
+        road = IsoRoad(level=CLASSES["A"], seed=1, track=TRACK, coherence=value)
+        z = drive(road, speed=SPEED, wheels=wheels, duration=30.0).displacement
+        if value:
+            np.testing.assert_array_equal(z["fr"], z["fl"])
+        else:
+            assert abs(np.corrcoef(np.diff(z["fr"]), np.diff(z["fl"]))[0, 1]) < 0.05
+
+
+def test_the_contact_patch_takes_out_waves_of_its_own_length():
+    road = IsoRoad(level=CLASSES["A"], seed=1, track=TRACK, coherence=1.0, patch=0.2)
+    flat = IsoRoad(level=CLASSES["A"], seed=1, track=TRACK, coherence=1.0)
+    steps, step = 20000, 0.01
+    with_patch, without = (np.fft.rfft(r.height(0.0, step, steps, "right", 40.0)) for r in (road, flat))
+    n = np.fft.rfftfreq(steps, step)
+    band = (n > 0.02) & (n < 9.9)
+    ratio = np.abs(with_patch[band] / without[band])
+    assert ratio == pytest.approx(np.abs(np.sinc(0.2 * n[band])), abs=1e-9)
+    assert np.min(ratio) < 1e-9  # a wave of 0.2 m is not felt
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"level": 0.0}, "level of the road 0.0 m3; allowed: positive"),
+        ({"coherence": 1.5}, "coherence 1.5; allowed: 0 to 1"),
+        ({"lowest": 2.0, "highest": 1.0}, "wavenumbers 2.0 to 1.0 cycles/m"),
+        ({"patch": -0.1}, "contact patch -0.1 m"),
+    ],
+)
+def test_refusals(change, message):
+    with pytest.raises(ConfigurationError, match=message):
+        IsoRoad(**{"level": 1e-4, "seed": 1, "track": TRACK, **change})

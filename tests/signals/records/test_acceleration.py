@@ -1,0 +1,132 @@
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.records.acceleration import read_acceleration
+
+
+def xyz_of(record):
+    return np.array([record.channels[axis] for axis in "xyz"])
+
+
+HEADER = "time [s],x [m/s2],y [m/s2],z [m/s2]"
+ROWS = ["0,0.1,0.2,0.3", "0.001,-0.1,0.4,0.5", "0.002,0.2,-0.2,0.1", "0.003,0.3,0.1,-0.4"]
+
+
+@pytest.fixture
+def write(tmp_path):
+    def written(text):
+        path = tmp_path / "ride.csv"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+    return written
+
+
+def lines(*rows, header=HEADER):
+    return "\n".join((header, *rows)) + "\n"
+
+
+def test_a_plain_record_is_read(write):
+    record = read_acceleration(write("# measured in March\n\n" + lines(*ROWS[:2], "# a pause", *ROWS[2:])))
+    assert record.step == pytest.approx(1e-3, rel=1e-12)
+    assert xyz_of(record) == pytest.approx(
+        np.array([[0.1, -0.1, 0.2, 0.3], [0.2, 0.4, -0.2, 0.1], [0.3, 0.5, 0.1, -0.4]])
+    )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param("\ufeff" + lines(*ROWS), id="byte order mark"),
+        pytest.param(lines(*ROWS).replace("\n", "\r\n"), id="CRLF"),
+        pytest.param(lines(*ROWS).replace(",", " , "), id="blanks"),
+        pytest.param(lines(*ROWS).rstrip(), id="no last line end"),
+        pytest.param(lines(*ROWS).replace(",", "\t"), id="tabs"),
+        pytest.param(lines(*ROWS).replace(",", ";").replace(".", ","), id="semicolons and decimal commas"),
+    ],
+)
+def test_harmless_oddities_change_nothing(write, text):
+    plain = read_acceleration(write(lines(*ROWS)))
+    assert xyz_of(read_acceleration(write(text))) == pytest.approx(xyz_of(plain), rel=1e-15)
+
+
+def test_columns_may_stand_in_any_order_and_units(write):
+    rows = [",".join((c[3], c[0], c[2], c[1])) for c in (row.split(",") for row in ROWS)]
+    record = read_acceleration(write(lines(*rows, header="z [g],time [s],y [m/s^2],x [m/s²]")))
+    plain = read_acceleration(write(lines(*ROWS)))
+    assert xyz_of(record)[:2] == pytest.approx(xyz_of(plain)[:2])
+    assert xyz_of(record)[2] == pytest.approx(9.80665 * xyz_of(plain)[2])
+
+
+NEEDED = r"needed are time \[s\], x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\)"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", r"ride.csv: the file is empty; needed are a header line with units and one row per sample"),
+        ("# nothing\n\n", rf"ride.csv: only comments; {NEEDED.replace('needed are', 'needed are the columns')}"),
+        (lines(), r"ride.csv:1: the file ends after the header"),
+        (lines(*ROWS[:2]), r"ride.csv: 2 samples, at least 3 are needed"),
+        (lines(*ROWS, header=""), rf"ride.csv:2: no column 'time \[s\]'; found '0', '0.1', '0.2', '0.3'; {NEEDED}"),
+        (
+            lines(*ROWS, header=HEADER.replace("z", "w")),
+            rf"ride.csv: no column z; found x, y, w; {NEEDED}",
+        ),
+        (lines(*ROWS, header="time [s],x [m/s2],y [m/s2]"), r"ride.csv:2:4: row has 4 cells, the header 3"),
+        (lines(*ROWS, header=HEADER.replace("y", "x")), r"ride.csv:1: column 'x \[m/s2\]' appears twice"),
+        (lines(*ROWS, header=HEADER.replace("y [m/s2]", "x [g]")), r"ride.csv:1: column 'x' appears twice"),
+        (
+            lines(*ROWS, header="time,x,y,z"),
+            rf"ride.csv:1: no column 'time \[s\]'; found 'time', 'x', 'y', 'z'; {NEEDED}",
+        ),
+        (lines(*ROWS, header=HEADER.replace("x [m/s2]", "x [mm/s2]")), r"column 'x' has the unit 'mm/s2', allowed are"),
+        (
+            lines(*ROWS[:2], "0,002,0.2,-0.2,0.1", ROWS[3]),
+            r"ride.csv:4:5: row has 5 cells, the header 4; with decimal commas the columns must be separated by ';'",
+        ),
+        (lines(*ROWS[:2], "0.002,0.2,-0.2", ROWS[3]), r"ride.csv:4:3: row has 3 cells, the header 4"),
+        (
+            lines(*ROWS[:2], "0.002,0.2,nan,0.1", ROWS[3]),
+            r"ride.csv:4:3: column 'y \[m/s2\]' holds 'nan'; allowed are finite numbers; repair",
+        ),
+        (lines(*ROWS[:2], "0.002,inf,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds 'inf'"),
+        (lines(*ROWS[:2], "0.002,,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds ''"),
+        (lines(*ROWS[:2], "0.002,#N/A,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '#N/A'"),
+        (lines(*ROWS[:2], "0.002,1e400,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '1e400'"),
+        (lines(*ROWS[:2], "0.002,1_0,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '1_0'"),
+        (lines(*ROWS, ROWS[0]), r"ride.csv:6: time 0 s goes back behind the time 0.003 s of line 5; .* two logs"),
+        (lines(*ROWS, ROWS[3]), r"ride.csv:6: time 0.003 s repeats the time 0.003 s of line 5"),
+        (
+            lines(*ROWS, "0.0043,0,0,0"),
+            r"ride.csv:6: time is not uniform: the step of 0.0013 s deviates by 0.3 of the median step 0.001 s",
+        ),
+        (
+            lines(*ROWS, "0.004,0,0,980"),
+            r"column 'z' swings by 783\.9 m/s2 about its mean, allowed are 50; looks like mm",
+        ),
+        (b"time [s]\xff", r"ride.csv:1:9: byte 0xff is not UTF-8; save the file as UTF-8"),
+        (b"time [s]\n\0", r"ride.csv:2:1: NUL byte; allowed is UTF-8 text"),
+        (HEADER + "\n" + "1" * 1_000_001, r"ride.csv:2: line longer than 1000000 characters"),
+    ],
+)
+def test_a_damaged_file_is_refused_with_the_place(write, text, message):
+    with pytest.raises(DataError, match=message):
+        read_acceleration(write(text))
+
+
+def test_a_missing_file_and_a_folder_are_refused(tmp_path):
+    with pytest.raises(ConfigurationError, match=r"nix.csv: no such file"):
+        read_acceleration(tmp_path / "nix.csv")
+    with pytest.raises(ConfigurationError, match="no such file"):
+        read_acceleration(tmp_path)
+
+
+def test_a_dead_axis_and_aliased_content_are_noticed(write):
+    time = np.arange(2000) * 1e-3
+    rows = [f"{t:.3f},0.5,{np.sin(2 * np.pi * 450 * t):.6f},{np.sin(2 * np.pi * 8 * t):.6f}" for t in time]
+    assert read_acceleration(write(lines(*rows))).notices == (
+        "x: constant at 0.5 m/s2 (no sensor?)",
+        "y: 100 % of the variance lies above 400 Hz (0.8 of Nyquist); the record may be aliased",
+    )

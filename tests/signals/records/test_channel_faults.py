@@ -1,0 +1,78 @@
+"""Clipped, stuck and copied channels are named; sound ones are not."""
+
+import numpy as np
+import pytest
+
+from tests.benchmarks.record_alignment import made_pair
+from vehicle.signals.excitation.input_files import find_input, shipped_inputs
+from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.records.channel_faults import clipped, copies, faults, stuck
+
+TIME = (np.arange(20000) * 1e-3).astype(np.float64)
+
+
+def random_record(seed=1, band=(0.5, 50.0)):
+    return made_pair(20.0, 0.0, 0.0, band=band, seed=seed)[0]
+
+
+@pytest.mark.parametrize("level", [1.0, 2.0, 3.0])
+@pytest.mark.parametrize("digits", [None, 2])
+def test_a_clipped_record(level, digits):
+    values = np.minimum(random_record(), level)
+    values = values if digits is None else np.round(values, digits)
+    ((side, size, share),) = clipped(values)
+    assert side == "largest value" and size == pytest.approx(level) and share == np.mean(values >= level - 1e-9)
+    assert [one[0] for one in clipped(-values)] == ["smallest value"]
+    (said,) = faults({"z": values}, TIME)
+    assert said.startswith("z: clipped?") and "--from S and --to S" in said
+
+
+RISE = np.clip((TIME - 5.0) / 0.2, 0.0, 1.0)
+SOUND = {
+    "random": random_record(),
+    "random, one digit": np.round(random_record(), 1),
+    "random, eight bits": np.round(random_record() * 32.0) / 32.0,
+    "narrow band": random_record(band=(1.2, 1.6)),
+    "sine": np.sin(2.0 * np.pi * 3.0 * TIME),
+    "sine, two digits": np.round(np.sin(2.0 * np.pi * 0.3 * TIME), 2),
+    "sine with four samples a period": np.sin(2.0 * np.pi * 250.0 * TIME),
+    "bump": np.where(np.abs(TIME - 5.0) < 0.1, 0.5 * (1.0 + np.cos(10.0 * np.pi * (TIME - 5.0))), 0.0),
+    "plateau with smooth flanks": RISE**2 * (3.0 - 2.0 * RISE),
+    "constant": np.full(TIME.size, 2.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_sound_records_are_quiet(name):
+    assert faults({"z": SOUND[name], "x": random_record(seed=9)}, TIME) == []
+    assert clipped(SOUND[name]) == [] and stuck(SOUND[name], TIME) is None
+
+
+def test_a_stuck_sensor():
+    values = random_record()
+    values[8000:11000] = values[8000]
+    assert stuck(values, TIME) == pytest.approx((8.0, 10.999))
+    (said,) = faults({"z": values}, TIME)
+    assert said.startswith("z: constant for 2.999 s, from 8 to 10.999 s: a sensor that sticks")
+    # A slow motion may rest as long.
+    assert stuck(np.where(TIME < 17.0, np.sin(np.maximum(TIME, 14.0) / 2.0), np.sin(8.5)), TIME) is None
+
+
+def test_a_channel_that_ends_while_another_goes_on():
+    values = random_record()
+    values[15000:] = values[15000]
+    assert stuck(values, TIME) is None  # alone it may be at rest
+    assert stuck(values, TIME, [random_record(seed=2)]) == pytest.approx((15.0, 19.999))
+    other = random_record(seed=2)
+    assert faults({"x": values, "y": other}, TIME) == [] != faults({"x": values, "y": other}, TIME, moving="xy")
+
+
+def test_copies_but_for_offset_and_sign():
+    one, other = random_record(), random_record(seed=2)
+    assert copies({"x": one, "y": other, "z": 9.81 - one, "r": np.zeros(one.size)}) == [("x", "z")]
+    assert copies({"x": one, "y": one + 1e-3 * other}) == []
+
+
+@pytest.mark.parametrize("name", shipped_inputs())
+def test_shipped_inputs_are_sound(name):
+    assert not any("clipped" in text or "constant for" in text for text in read_signal(find_input(name)).notices)

@@ -1,0 +1,176 @@
+"""`python -m vehicle optimise` as a user runs it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shlex
+import shutil
+
+import numpy as np
+import pytest
+
+from vehicle.commands.optimise import main
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal_file import write_signal
+from vehicle.studies.optimisation.ride import ride_measure
+from vehicle.studies.sweeps.case import SignalFile, table_cases
+from vehicle.studies.sweeps.evaluation import evaluate
+
+LOOSE = "damper.coulomb_friction=10"
+SKIP = 1.0
+TRADE = ["--minimise", "comfort", "--minimise", "tyre_load"]
+
+
+@pytest.fixture(scope="module")
+def road(tmp_path_factory):
+    path = tmp_path_factory.mktemp("roads") / "road.csv"
+    write_signal(path, random_road(rms=1e-3, seed=1, duration=3.0), ["a road"])
+    return path
+
+
+def arguments(road, output, *more):
+    fixed = ["--input", str(road), "--set", LOOSE, "--skip", str(SKIP), "--output", str(output), "--population", "8"]
+    return [*fixed, "--vary", "damper.viscous=400:6000", *more]
+
+
+@pytest.fixture(scope="module")
+def searched(road, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("search") / "out"
+    assert main(arguments(road, folder, *TRADE, "--cars", "40", "--limit", "travel<=0.05", "--quiet")) == 0
+    return folder
+
+
+def rows_of(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+DAMPING, COMFORT, LOAD = "damper.viscous [N s/m]", "comfort [m/s2]", "tyre_load [-]"
+
+
+def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
+    """One parameter: between the best damper for comfort and the best for the tyre each is a compromise."""
+    damping = np.linspace(500.0, 2500.0, 11)
+    measure = ride_measure(load_vehicle(), ("comfort", "tyre_load"), SKIP)
+    cases = table_cases(["damper.viscous"], [(c,) for c in damping], [SignalFile(path=road, wheel="fl")], fixed=[LOOSE])
+    results = evaluate(cases, measure)
+    best = {}
+    for name in measure.numbers:
+        values = np.array([one.values[name] for one in results])
+        fine = np.linspace(damping[0], damping[-1], 2001)
+        best[name] = float(fine[np.argmin(np.polynomial.Polynomial.fit(damping, values, 4)(fine))])
+    front = rows_of(searched / "front.csv")
+    found = [float(row[DAMPING]) for row in front]
+    # The curves are flat at their minima, and 40 cars are few: 4 % of damping is 0.1 % of comfort.
+    assert found[0] == pytest.approx(best["comfort"], rel=0.04) and found[-1] == pytest.approx(
+        best["tyre_load"], rel=0.04
+    )
+    assert found == sorted(found) and best["comfort"] < 0.9 * best["tyre_load"]
+    least = min(one.values["comfort"] for one in results)
+    assert float(front[0][COMFORT]) <= least * 1.0001
+    assert next(row["name"] for row in front if row["name"]) == "best comfort"
+
+
+def test_files_of_a_search(road, searched):
+    summary = json.loads((searched / "summary.json").read_text(encoding="utf-8"))
+    assert (searched / "front.png").read_bytes()[:4] == b"\x89PNG"
+    assert summary["cars"]["tried"] == 40 == len(rows_of(searched / "cars.csv")) - 1
+    assert set(summary["points"]) == {"best comfort", "best tyre_load", "knee"}
+    # The car as it is: first of all, and with the value of its file.
+    base = rows_of(searched / "cars.csv")[0]
+    assert base[DAMPING] == "" and float(base[COMFORT]) == summary["base"]["comfort"]
+    assert rows_of(searched / "cars.csv")[1][DAMPING] == "2250.0"
+    # A colleague takes the file of the knee, or its overrides, and gets its numbers.
+    knee = summary["points"]["knee"]
+    (alone,) = evaluate(
+        table_cases([], [()], [SignalFile(path=road, wheel="fl")], vehicle=searched / knee["vehicle"]),
+        ride_measure(load_vehicle(), ("comfort",), SKIP),
+    )
+    assert alone.values["comfort"] == pytest.approx(knee["numbers"]["comfort"], rel=1e-9)
+    damping = knee["parameters"]["damper.viscous"]
+    assert knee["overrides"] == [LOOSE, f"front.damper.viscous={damping!r}"]
+
+
+def test_a_search_goes_on_where_it_ended(road, searched, tmp_path, capsys):
+    folder = tmp_path / "out"
+    shutil.copytree(searched, folder)
+    lines = (folder / "cars.csv").read_text(encoding="utf-8").splitlines()
+    (folder / "cars.csv").write_text("\n".join(lines[:37]) + "\n37,5,2", encoding="utf-8")  # cut off
+    more = [*TRADE, "--cars", "40", "--limit", "travel<=0.05", "--quiet"]
+    assert main(arguments(road, folder, *more)) == 2
+    assert "holds finished runs; --resume goes on" in capsys.readouterr().err
+    assert main(arguments(road, folder, *more, "--resume", "--search-seed", "2")) == 2
+    assert "holds another search" in capsys.readouterr().err
+    assert main(arguments(road, folder, *more, "--resume")) == 0
+    for name in ("cars.csv", "front.csv", "knee.toml"):
+        assert (folder / name).read_bytes() == (searched / name).read_bytes()
+
+
+def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
+    more = ["--tolerance", "damper.viscous=20%", "--tolerance", "damper.coulomb_friction=5", "--samples", "2"]
+    folder = tmp_path / "out"
+    given = [*TRADE, *more, "--quantile", "1", "--cars", "8", "--beside", str(searched)]
+    assert main(arguments(road, folder, *given)) == 0
+    said = capsys.readouterr().out
+    assert "each number: worst of 2 cars within the tolerances" in said
+    assert "knee: of 64 new cars " in said and " % are as good in comfort, " in said
+    made = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["made_cars"]
+    assert made["statistic"] == "worst of 2 cars" and made["new_cars"] == 64
+    # Two thirds to three quarters are expected to be no worse than the worst of two.
+    assert 0.3 < made["share_as_good"]["knee"]["comfort"] < 1.0
+    assert f"front of {searched}: hypervolume +" in said
+    assert "8 cars, " in said and "knee: --set damper.coulomb_friction=10 --set front.damper.viscous=" in said
+    for row in rows_of(folder / "front.csv"):
+        assert float(row[COMFORT]) > 0.0 and row["comfort without tolerances [m/s2]"]
+    beside = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["beside"]
+    # With all cars within tolerances the worst of them is worse than the best without.
+    assert beside["hypervolume_change"] > 0.0 and beside["mean_distance"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("more", "code", "said"),
+    [
+        ([], 2, "nothing to optimise"),
+        (["--minimise", "comfrt"], 2, "no number 'comfrt' of focus; there are comfort, comfort_x"),
+        (
+            ["--minimise", "comfort", "--vary", "damper.viscos=1:2"],
+            2,
+            "--vary damper.viscos: no parameter damper.viscos",
+        ),
+        (["--minimise", "comfort", "--vary", "damper.friction_law=1:2"], 2, "no number of a vehicle"),
+        (["--minimise", "comfort", "--vary", "front.damper.viscous=1:2"], 2, "set by 2 of these options"),
+        (
+            ["--minimise", "comfort", "--vary", "body.mass=-5:900"],
+            2,
+            "--vary body.mass=-5:900: body.mass: found -5.0 kg, must be",
+        ),
+        (["--minimise", "comfort", "--cars", "2"], 2, "--cars 2: must be at least 8"),
+        (["--minimise", "comfort", "--samples", "4"], 2, "--samples: belongs to --tolerance PATH=SIZE"),
+        (["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "2"], 2, "--quantile 2: allowed are"),
+        (
+            ["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "0.99", "--samples", "8"],
+            2,
+            "--quantile 0.99: needs at least 128 cars, found --samples 8; give --samples 128",
+        ),
+        (["--minimise", "comfort", "--beside", "nowhere"], 3, "--beside nowhere: holds no front.csv with the columns"),
+        (
+            ["--minimise", "comfort", "--limit", "travel<=1e-9", "--cars", "8"],
+            4,
+            "none of 8 cars keeps all limits; the ",
+        ),
+    ],
+)
+def test_bad_input_is_one_sentence(road, tmp_path, capsys, more, code, said):
+    assert main(arguments(road, tmp_path / "out", *more)) == code
+    error = capsys.readouterr().err
+    assert said in error and error.startswith("error: ") and len(error.splitlines()) == 1
+
+
+def test_help_has_units(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert "travel [m]" in said and "PATH=LOW:HIGH" in said
+    assert shlex.split("--limit 'travel<=0.06'")[1] in said

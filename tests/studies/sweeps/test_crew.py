@@ -1,0 +1,99 @@
+"""Tasks of many cases: their size follows the pace, and of a lost one only the deadly case is blamed."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor, Future
+from concurrent.futures.process import BrokenProcessPool
+
+import pytest
+
+from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
+from vehicle.studies.sweeps.crew import DIED, FILL, LARGEST, PER_WORKER, TASK_S, Crew, in_groups
+from vehicle.studies.sweeps.result import Result
+
+
+class Paced(Executor):
+    """Has every task done at once, at a pace [s a case]; dies of a case, and fails of another."""
+
+    _max_workers = 2
+
+    def __init__(self, pace=0.0, deadly="", wrong=""):
+        self.pace, self.deadly, self.wrong = pace, deadly, wrong
+        self.tasks: list[list[str]] = []
+
+    def submit(self, function, /, *arguments, **named):
+        self.tasks.append([case.label for case in arguments[0]])
+        future: Future[list[Result]] = Future()
+        if self.deadly in self.tasks[-1]:
+            future.set_exception(BrokenProcessPool("killed"))
+        elif self.wrong in self.tasks[-1]:
+            future.set_exception(TypeError("no number"))
+        else:
+            future.set_result([Result(values={"peak": 1.0}, seconds=self.pace) for _ in self.tasks[-1]])
+        return future
+
+
+def many(count, engine="auto"):
+    cases = grid({"damper.viscous": range(count)}, [ShortRoad()], engine=engine)
+    return {case.label: case for case in cases}
+
+
+def worked(todo, executor):
+    found: dict[str, Result] = {}
+    Crew(lambda: executor, Peak()).work(todo, lambda keys, results: found.update(zip(keys, results, strict=True)))
+    assert set(found) == set(todo)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("pace", "engine", "size"),
+    [(0.004 * TASK_S, "auto", 250), (0.2 * TASK_S, "auto", FILL), (2.0 * TASK_S, "auto", 1),
+     (0.2 * TASK_S, "mujoco", 5), (1e-6, "reduced", LARGEST)],
+)  # fmt: skip
+def test_tasks_take_about_a_second(pace, engine, size):
+    executor = Paced(pace)
+    worked(many(3000, engine), executor)
+    sizes = [len(task) for task in executor.tasks]
+    filled = size if engine == "mujoco" or size == 1 else -(-size // FILL) * FILL
+    assert sizes[0] == FILL and sizes[2 * PER_WORKER] == min(filled, LARGEST)
+    # Towards the end they shrink, so that all workers end together.
+    assert sum(sizes) == 3000 and sizes[-1] <= FILL
+
+
+def test_tasks_fill_a_vector_unit_with_cars_that_each_bring_all_their_inputs():
+    roads = [ShortRoad(seed=seed) for seed in range(3)]
+    cases = grid({"damper.viscous": range(100)}, roads, engine="reduced")
+    executor = Paced(0.2 * TASK_S)
+    worked({f"{number} {case.label}": case for number, case in enumerate(cases)}, executor)
+    for task in executor.tasks[: 2 * PER_WORKER]:
+        assert len(task) == 3 * FILL and len({label.partition(", ")[2] for label in task}) == FILL
+
+
+def test_few_cases_are_shared_by_all_workers():
+    executor = Paced()
+    worked(many(6), executor)
+    assert [len(task) for task in executor.tasks] == [3, 2, 1]
+
+
+def test_only_the_deadly_case_is_blamed():
+    todo = many(40)
+    deadly = list(todo)[13]
+    executor = Paced(deadly=deadly)
+    found = worked(todo, executor)
+    assert {key for key, result in found.items() if result.reason} == {deadly}
+    assert found[deadly].reason == DIED
+    assert [deadly] in executor.tasks and max(map(len, executor.tasks)) == FILL
+
+
+def test_an_error_is_that_of_one_case():
+    todo = many(20)
+    wrong = list(todo)[3]
+    found = worked(todo, Paced(wrong=wrong))
+    assert {key: result.reason for key, result in found.items() if result.reason} == {wrong: "TypeError: no number"}
+
+
+def test_cases_of_a_car_stand_together():
+    roads, values = [ShortRoad(seed=1), ShortRoad(seed=2)], {"damper.viscous": [1.0, 2.0]}
+    cases = [*grid(values, roads), *grid(values, roads[:1], engine="mujoco"), *grid(values, roads, fixed=["gravity=9"])]
+    keys = in_groups({str(number): case for number, case in enumerate(cases)})
+    assert list(keys) == ["0", "2", "1", "3", "6", "8", "7", "9", "4", "5"]

@@ -1,0 +1,158 @@
+"""How a sweep deals with its executor: how much it hands out, what it does when it breaks or runs another program."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from threading import Timer
+from typing import ClassVar
+
+import pytest
+
+from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.studies.sweeps import executors
+from vehicle.studies.sweeps.crew import FILL, PER_WORKER
+from vehicle.studies.sweeps.executors import process_pool, workers_of
+from vehicle.studies.sweeps.program import program_digest
+from vehicle.studies.sweeps.result import Result
+from vehicle.studies.sweeps.sweep import case_keys, sweep
+from vehicle.studies.sweeps.worker import carry_out
+
+
+def many(count):
+    return grid({"damper.viscous": [1000.0 + index for index in range(count)]}, [ShortRoad()], engine="reduced")
+
+
+class Slow(Executor):
+    """Finishes nothing while runs are still handed out to it; remembers how many it held."""
+
+    def __init__(self, workers):
+        self._max_workers = workers
+        self.held: list[Future[list[Result]]] = []
+        self.sizes: dict[Future[list[Result]], int] = {}
+        self.most = 0
+        self.quiet: Timer | None = None
+
+    def submit(self, function, /, *arguments, **named):
+        if self.quiet is not None:
+            self.quiet.cancel()
+        future: Future[list[Result]] = Future()
+        self.held.append(future)
+        self.sizes[future] = len(arguments[0])
+        self.most = max(self.most, sum(not one.done() for one in self.held))
+        self.quiet = Timer(0.5, self.finish)
+        self.quiet.start()
+        return future
+
+    def finish(self):
+        for one in list(self.held):
+            if not one.done():
+                one.set_result([Result(values={"peak": 1.0})] * self.sizes[one])
+
+
+class Fails(Executor):
+    """Every run ends in an error, or is cancelled."""
+
+    def __init__(self, error=None):
+        self.error = error
+
+    def submit(self, function, /, *arguments, **named):
+        future: Future[list[Result]] = Future()
+        if self.error is None:
+            future.cancel()
+            future.set_running_or_notify_cancel()
+        else:
+            future.set_exception(self.error)
+        return future
+
+
+def test_what_is_handed_out_follows_the_workers():
+    executor = Slow(3)
+    assert not sweep(many(300), Peak(), executor=executor).failed
+    assert executor.most == 3 * PER_WORKER
+    with ThreadPoolExecutor(5) as threads:
+        assert workers_of(threads) == 5
+    assert workers_of(Fails()) is None
+
+
+def test_an_executor_that_is_given_stays_open():
+    with ThreadPoolExecutor(1) as threads:
+        first = sweep(many(1), Peak(), executor=threads)
+        assert sweep(many(1), Peak(), executor=threads).text() == first.text()
+        assert not first.failed
+
+
+def test_a_given_executor_that_breaks_is_told_and_rows_are_kept(tmp_path):
+    sweep(many(2), Peak(), executor=ThreadPoolExecutor(1), folder=tmp_path)
+    with pytest.raises(SimulationError, match="Give a function that makes the executor"):
+        sweep(many(3), Peak(), executor=Fails(BrokenProcessPool("killed")), folder=tmp_path)
+    assert (tmp_path / "rows.jsonl").read_text(encoding="utf-8").count("\n") == 2
+
+
+def test_a_scheduler_that_is_gone_is_told():
+    with pytest.raises(SimulationError, match="the executor gave up its runs"):
+        sweep(many(2), Peak(), executor=lambda: Fails())
+
+
+def test_an_interruption_keeps_the_rows(tmp_path):
+    def interrupt(fraction):
+        raise KeyboardInterrupt
+
+    cases = many(FILL + 2)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(cases, Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=interrupt)
+    # Those of the first task.
+    assert (tmp_path / "rows.jsonl").read_text(encoding="utf-8").count("\n") == FILL
+    counted: list[float] = []
+    table = sweep(cases, Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=counted.append)
+    assert counted == [0.5, 1.0] and not table.failed
+
+
+def test_a_worker_with_another_program_is_refused():
+    cases = many(1)
+    assert not carry_out(cases, Peak(), program_digest())[0].reason
+    with pytest.raises(ConfigurationError, match="the workers have another program"):
+        carry_out(cases, Peak(), "another")
+    # It is about the worker, not about the run, so it is no row.
+    with pytest.raises(ConfigurationError, match="another program"):
+        sweep(cases, Peak(), executor=Fails(ConfigurationError("another program")))
+
+
+def test_processes_that_do_not_start_are_told_why(monkeypatch):
+    class NoProcesses(Fails):
+        def __init__(self, *arguments, **named):
+            super().__init__(BrokenProcessPool("terminated abruptly"))
+
+    monkeypatch.setattr(executors, "ProcessPoolExecutor", NoProcesses)
+    with pytest.raises(ConfigurationError, match='if __name__ == "__main__"'):
+        process_pool(2)
+
+
+@dataclass(frozen=True)
+class Counting(ShortRoad):
+    """Counts how often it is identified."""
+
+    asked: ClassVar[list[str]] = []
+
+    def identity(self):
+        self.asked.append(self.name)
+        return super().identity()
+
+
+def test_a_shared_input_is_identified_once():
+    road = Counting()
+    keys = case_keys(grid({"damper.viscous": [1.0, 2.0, 3.0]}, [road]), Peak())
+    assert len(set(keys)) == 3
+    assert road.asked == ["short"]
+
+
+def test_the_key_tells_the_source_of_a_measure():
+    def made(text):
+        return type("Measured", (Peak,), {"__repr__": lambda self: text})()
+
+    cases = many(1)
+    # A class without source is told by its repr alone; one with source by both.
+    assert case_keys(cases, made("a")) != case_keys(cases, made("b"))
+    assert case_keys(cases, made(repr(Peak()))) != case_keys(cases, Peak())

@@ -1,0 +1,307 @@
+"""Sweeps: the same table from any number of workers, rows that survive, failures as rows, executors."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from tests.studies.sweeps.pieces import Peak, ShortRoad, grid, threads
+from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.studies.sweeps import executors
+from vehicle.studies.sweeps.case import SignalFile, table_cases
+from vehicle.studies.sweeps.crew import DIED
+from vehicle.studies.sweeps.executors import executor_factory
+from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
+from vehicle.studies.sweeps.sweep import case_keys, sweep
+
+FRICTION = {"damper.coulomb_friction": [100.0, 125.0]}
+ROOT = Path(__file__).parents[3]
+
+
+def two_by_two(engine="reduced", **changes):
+    return grid(FRICTION, [ShortRoad(seed=1, **changes), ShortRoad(seed=2, **changes)], engine=engine)
+
+
+def in_threads():
+    """One worker in this process: the quickest executor."""
+    return ThreadPoolExecutor(1)
+
+
+def test_grid_and_table_put_the_cases_in_order():
+    cases = grid({"a.b": [1.0, 2.0], "c": ["x"]}, [ShortRoad(name="one"), ShortRoad(name="two")], fixed=["d=4"])
+    assert [case.label for case in cases] == [
+        "one, d=4, a.b=1.0, c=x",
+        "one, d=4, a.b=2.0, c=x",
+        "two, d=4, a.b=1.0, c=x",
+        "two, d=4, a.b=2.0, c=x",
+    ]
+    assert cases[1].overrides == ("d=4", "a.b=2.0", "c=x")
+    pairs = table_cases(["a", "b"], [(1.0, 2.0), (3.0, 4.0)], [ShortRoad()], engine="mujoco")
+    assert [case.overrides for case in pairs] == [("a=1.0", "b=2.0"), ("a=3.0", "b=4.0")]
+
+
+def test_numbers_are_those_of_the_run():
+    source = random_road(rms=5e-4, seed=3, duration=3.0, lower_band_edge=2.0)
+    case = grid({"damper.coulomb_friction": [80.0]}, [source], engine="reduced")
+    measure = ComfortMeasure(skip=1.0)
+    table = sweep(case, measure, executor=in_threads)
+    run = Car.load(None, ["damper.coulomb_friction=80"]).run(source, engine="reduced")
+    (swept,) = [result.values for result in table.results]
+    values = measure(run)
+    assert set(values) == set(swept) == {*measure.units, *WAVE_NAMES}
+    # A sweep marches with a longer step (`tests/studies/sweeps/test_evaluation.py`).
+    assert swept["comfort_overall"] == pytest.approx(values["comfort_overall"], rel=2e-3)
+    rate = 1.0 / run.recording.timestep
+    later, limit = run["damper_fr_velocity"][round(rate) :], run.car.vehicle.damper.slip_velocity
+    assert values["slip_share_fr"] == pytest.approx(float((abs(later) > limit).mean()), abs=1e-12)
+    # As in summary.json, of the whole run, and above the same velocity as the share.
+    first = run.time[abs(run["damper_fr_velocity"]) > limit][0]
+    assert values["first_slip_fr"] == pytest.approx(float(first), abs=1e-12) and first < 1.0
+    # Comfort leaves out the first second, so it is near that of the whole run and not the same.
+    assert values["comfort_overall"] == pytest.approx(run.comfort().overall, rel=0.3)
+    assert values["comfort_overall"] != pytest.approx(run.comfort().overall, rel=1e-3)
+    squares = sum(values[f"comfort_{axis}"] ** 2 for axis in "xyz")
+    assert values["comfort_overall"] == pytest.approx(math.sqrt(squares), rel=1e-12)
+    assert 0.0 < values["comfort_error"] < 0.2
+    assert table.results[0].engine == "reduced"
+
+
+def test_one_and_two_workers_make_the_same_table_bit_for_bit(tmp_path):
+    texts = []
+    for jobs in (1, 2):
+        folder = tmp_path / str(jobs)
+        folder.mkdir()
+        table = sweep(two_by_two(), ComfortMeasure(skip=0.2), jobs=jobs, folder=folder)
+        assert not table.failed
+        texts.append((folder / "table.csv").read_bytes())
+    assert texts[0] == texts[1]
+    lines = texts[0].decode().splitlines()
+    assert len(lines) == 5
+    assert lines[0].startswith("input,damper.coulomb_friction,comfort_x [m/s2],")
+    assert lines[0].endswith("seat_rail_weighted_overall [m/s2],engine,failed because")
+    assert ",first_slip_fl [s],seat_rail_weighted_x [m/s2]," in lines[0]
+    made = json.loads((tmp_path / "1" / "sweep.json").read_text(encoding="utf-8"))
+    assert made["runs"] == 4 and made["failed"] == [] and made["engines_asked"] == ["reduced"]
+
+
+def test_a_failed_run_is_a_row_with_its_reason():
+    cases = grid({"damper.coulomb_friction": [-1.0, 125.0], "solver.record_rate": [1000.0]}, [ShortRoad()])
+    table = sweep(cases, Peak(), executor=in_threads)
+    bad, good = table.results
+    assert "coulomb_friction: found -1.0 N, must be at least 0.0" in bad.reason and not bad.values
+    assert not good.reason and good.values["peak"] > 0.0
+    assert [case.label for case, _ in table.failed] == [cases[0].label]
+    assert math.isnan(table.column("peak")[0]) and table.column("peak")[1] == good.values["peak"]
+    with pytest.raises(ConfigurationError, match="no column 'peek'; the table has peak"):
+        table.column("peek")
+
+
+def test_finished_rows_are_not_computed_again(tmp_path):
+    cases = two_by_two()
+    seen: list[float] = []
+    first = sweep(cases[:2], Peak(), executor=in_threads, folder=tmp_path)
+    whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path, progress=seen.append)
+    # Of what is computed now, so that the time left is that of the runs that are left.
+    assert seen == [0.5, 1.0]
+    assert [r.values for r in whole.results[:2]] == [r.values for r in first.results]
+    assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 4
+    # Another measure is another number.
+    sweep(cases, ComfortMeasure(skip=0.0), executor=in_threads, folder=tmp_path)
+    assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 8
+
+
+def test_failed_rows_are_kept_or_tried_again(tmp_path):
+    cases = grid({"damper.coulomb_friction": [-1.0]}, [ShortRoad()])
+    for retry, lines in ((False, 1), (False, 1), (True, 2)):
+        sweep(cases, Peak(), executor=in_threads, folder=tmp_path, retry_failed=retry)
+        assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == lines
+
+
+def test_a_line_cut_off_is_dropped_and_a_damaged_one_is_refused(tmp_path):
+    cases = two_by_two()[:2]
+    whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path)
+    rows = tmp_path / "rows.jsonl"
+    text = rows.read_text(encoding="utf-8")
+    rows.write_text(text[:-20], encoding="utf-8")
+    again = sweep(cases, Peak(), executor=in_threads, folder=tmp_path)
+    assert again.text() == whole.text()
+    assert len(rows.read_text(encoding="utf-8").splitlines()) == 2
+    rows.write_text("{\n" + text, encoding="utf-8")
+    with pytest.raises(DataError, match=r"rows.jsonl, line 1: not a row of a sweep"):
+        sweep(cases, Peak(), executor=in_threads, folder=tmp_path)
+
+
+def test_the_key_tells_car_input_engine_and_measure(tmp_path):
+    (case,) = grid({"damper.viscous": [2000.0]}, [ShortRoad()])
+    file = tmp_path / "a.csv"
+    file.write_text("time [s],displacement [m]\n0,0\n", encoding="utf-8")
+    other = tmp_path / "car.toml"
+    other.write_bytes((ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_bytes())
+    signal = random_road(rms=1e-4, seed=1, duration=1.0)
+    variants = [
+        case,
+        *grid({"damper.viscous": [2001.0]}, [ShortRoad()]),
+        *grid({"damper.viscous": [2000.0]}, [ShortRoad(seed=2)]),
+        *grid({"damper.viscous": [2000.0]}, [ShortRoad()], engine="mujoco"),
+        *grid({"damper.viscous": [2000.0]}, [ShortRoad()], vehicle=other),
+        *grid({"damper.viscous": [2000.0]}, [SignalFile(path=file, wheel="fr")]),
+        *grid({"damper.viscous": [2000.0]}, [signal]),
+    ]
+    keys = case_keys(variants, Peak())
+    assert len(set(keys)) == len(keys)
+    assert case_keys([case], Peak()) == keys[:1]
+    assert case_keys([case], ComfortMeasure()) != keys[:1]
+    other.write_text(other.read_text(encoding="utf-8") + "\n# changed\n", encoding="utf-8")
+    file.write_text("time [s],displacement [m]\n0,1\n", encoding="utf-8")
+    changed = case_keys(variants, Peak())
+    assert [a == b for a, b in zip(keys, changed, strict=True)] == [True, True, True, True, False, False, True]
+
+
+def test_a_killed_worker_takes_nothing_with_it(tmp_path):
+    once = ShortRoad(name="once", kill=str(tmp_path / "flag"))
+    always = ShortRoad(name="always", kill=str(tmp_path / "flag.always"))
+    cases = grid({"damper.coulomb_friction": [125.0]}, [ShortRoad(), once, always, ShortRoad(seed=5)], engine="reduced")
+    folder = tmp_path / "sweep"
+    folder.mkdir()
+    table = sweep(cases, Peak(), jobs=2, folder=folder)
+    assert [result.reason for result in table.results] == ["", "", DIED, ""]
+    assert len((folder / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 4
+
+
+SCRIPT = """
+from pathlib import Path
+from tests.studies.sweeps.pieces import Peak, ShortRoad
+from tests.studies.sweeps.pieces import grid
+from vehicle.studies.sweeps.sweep import sweep
+
+if __name__ == "__main__":
+    roads = [ShortRoad(seed=s, wait=0.1) for s in range(40)]
+    cases = grid({"damper.coulomb_friction": [125.0]}, roads, engine="reduced")
+    sweep(cases, Peak(), jobs=2, folder=Path(FOLDER))
+"""
+
+
+def running(marker):
+    """Processes whose environment holds a marker."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            if (
+                marker.encode() in (place / "environ").read_bytes()
+                and "State:\tZ" not in (place / "status").read_text()
+            ):
+                found.append(int(place.name))
+        except OSError:
+            continue
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="looks for processes in /proc")
+def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
+    folder, script = tmp_path / "sweep", tmp_path / "study.py"
+    folder.mkdir()
+    script.write_text(SCRIPT.replace("FOLDER", repr(str(folder))), encoding="utf-8")
+    marker = f"SWEEP_TEST={tmp_path}"
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "SWEEP_TEST": str(tmp_path)}
+    process = subprocess.Popen([sys.executable, str(script)], env=environment)
+    rows, patience = folder / "rows.jsonl", time.monotonic() + 150.0
+    while time.monotonic() < patience and (not rows.exists() or rows.read_bytes().count(b"\n") < 3):
+        time.sleep(0.05)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    patience = time.monotonic() + 60.0
+    while running(marker) and time.monotonic() < patience:
+        time.sleep(0.1)
+    assert running(marker) == []
+    kept = rows.read_bytes().count(b"\n")
+    assert 3 <= kept < 40
+    cases = grid(
+        {"damper.coulomb_friction": [125.0]}, [ShortRoad(seed=s, wait=0.1) for s in range(kept + 1)], engine="reduced"
+    )
+    counted: list[float] = []
+    table = sweep(cases, Peak(), executor=in_threads, folder=folder, progress=counted.append)
+    # Two workers finish in any order: at most the tasks in their hands are missing, and the one beyond.
+    assert 1 <= len(counted) <= kept
+    assert not table.failed
+
+
+def test_an_executor_of_ones_own():
+    make = executor_factory("tests.studies.sweeps.pieces:threads", 1)
+    table = sweep(two_by_two(), Peak(), executor=make)
+    alone = sweep(two_by_two(), Peak(), executor=in_threads)
+    assert [r.values for r in table.results] == [r.values for r in alone.results]
+    assert isinstance(threads(), ThreadPoolExecutor)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("dusk://host:1", "allowed are dask://host:port and module:factory"),
+        ("nowhere.at_all:make", "No module named 'nowhere'"),
+        ("tests.studies.sweeps.pieces:missing", "has no attribute 'missing'"),
+        ("threads", "allowed are dask://host:port and module:factory"),
+    ],
+)
+def test_bad_executors(text, message):
+    with pytest.raises(ConfigurationError, match=message):
+        executor_factory(text, 1)
+
+
+def test_a_factory_must_return_an_executor():
+    with pytest.raises(ConfigurationError, match=r"returned str, needed is a concurrent\.futures\.Executor"):
+        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.pieces:no_executor", 1))
+
+
+def test_jobs_below_one_are_refused():
+    with pytest.raises(ConfigurationError, match="--jobs 0: must be at least 1"):
+        executor_factory(None, 0)
+
+
+def test_without_dask_the_extra_is_named(monkeypatch):
+    def without(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr("importlib.import_module", without)
+    with pytest.raises(MissingPartError, match=r"needs Dask, of the extra 'cluster' \(pip install distributed\)"):
+        executor_factory("dask://host:8786", 1)
+
+
+def test_a_dask_cluster_makes_the_same_table():
+    """A real scheduler with two workers in processes of their own."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        worker_dashboard_address=None,
+        silence_logs=50,
+    ) as cluster:
+        address = cluster.scheduler_address.removeprefix("tcp://")
+        table = sweep(two_by_two(), Peak(), executor=executor_factory(f"dask://{address}", 1))
+    alone = sweep(two_by_two(), Peak(), executor=partial(executors.process_pool, 1))
+    assert table.text() == alone.text()
+    assert not table.failed
+
+
+def test_a_cluster_that_does_not_answer_is_named(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+
+    def nobody(address, **options):
+        raise OSError("Timed out trying to connect")
+
+    monkeypatch.setattr(distributed, "Client", nobody)
+    with pytest.raises(ConfigurationError, match="dask://nowhere:1: no scheduler answers there"):
+        executor_factory("dask://nowhere:1", 1)()

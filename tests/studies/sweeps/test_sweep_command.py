@@ -1,0 +1,152 @@
+"""`python -m vehicle.sweep` as a user runs it."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+
+from vehicle import Car, Road
+from vehicle.commands.sweep import every_combination, main
+from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.table import read_variations
+
+
+@pytest.fixture
+def signal(tmp_path):
+    from vehicle.signals.excitation.random_road import random_road
+
+    road = random_road(rms=3e-4, seed=1, duration=3.0)
+    path = tmp_path / "road.csv"
+    lines = [f"{t:.3f},{z:.9g}" for t, z in zip(road.time, road.displacement["fr"], strict=True)]
+    path.write_text("time [s],displacement [m]\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def table_of(folder):
+    with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_variations_make_a_table(signal, tmp_path, capsys):
+    output = tmp_path / "out"
+    arguments = ["--input", str(signal), "--output", str(output), "--skip", "0.5", "--engine", "reduced"]
+    arguments += ["--set", "damper.viscous=2000", "--vary", "damper.coulomb_friction=62.5, 250"]
+    assert main([*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]) == 0
+    assert "2 runs, 0 failed" in capsys.readouterr().out
+    rows = table_of(output)
+    varied = ["damper.viscous", "damper.coulomb_friction", "bushings.suspension_mount.stiffness.z"]
+    assert read_variations(output / "table.csv") == (varied, [("2000", "62.5", "7e5"), ("2000", "250", "7e5")])
+    assert [row["damper.coulomb_friction"] for row in rows] == ["62.5", "250"]
+    assert {row["damper.viscous"] for row in rows} == {"2000"} and {row["input"] for row in rows} == {"road"}
+    assert float(rows[0]["comfort_overall [m/s2]"]) != float(rows[1]["comfort_overall [m/s2]"]) > 0.0
+    assert {row["engine"] for row in rows} == {"reduced"}
+    with (output / "differences.csv").open(encoding="utf-8", newline="") as file:
+        first, second = csv.DictReader(file)
+    assert (first["difference [m/s2]"], first["half_width_95 [m/s2]"]) == ("0", "0")
+    comfort = [float(row["comfort_overall [m/s2]"]) for row in rows]
+    assert float(second["difference [m/s2]"]) == pytest.approx(comfort[1] - comfort[0], rel=1e-4)
+    error = float(rows[0]["comfort_error [-]"]) * comfort[0]
+    assert float(first["standard_error [m/s2]"]) == pytest.approx(error, rel=1e-4)
+    assert float(second["standard_error_of_difference [m/s2]"]) > 0.0
+    # A second time it is refused, goes on, or starts anew.
+    again = [*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]
+    assert main(again) == 2
+    assert "holds finished runs; --resume goes on, --force starts anew" in capsys.readouterr().err
+    assert main([*again, "--resume", "--quiet"]) == 0
+    assert "# 0 runs computed" in (output / "timing.csv").read_text(encoding="utf-8")
+    assert table_of(output) == rows
+
+
+def test_a_table_of_variations(tmp_path):
+    file = tmp_path / "variations.csv"
+    file.write_text("damper.viscous, damper.coulomb_friction\n# a remark\n1500,75\n2250,125\n", encoding="utf-8")
+    assert read_variations(file) == (["damper.viscous", "damper.coulomb_friction"], [("1500", "75"), ("2250", "125")])
+    assert every_combination(["a=1,2", "b=x"]) == (["a", "b"], [("1", "x"), ("2", "x")])
+    vectors = every_combination(["a=[1, 2, 3],[4,5,6]", "b=7,8"])[1]
+    assert vectors == [("[1, 2, 3]", "7"), ("[1, 2, 3]", "8"), ("[4,5,6]", "7"), ("[4,5,6]", "8")]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message", "code"),
+    [
+        ([], "give either --vary", 2),
+        (["--vary", "damper.viscous"], "needed is PATH=V1,V2", 2),
+        (["--vary", "damper.viscous=1,,2"], "needed is PATH=V1,V2", 2),
+        (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: allowed is 0 s to less than road, 3 s", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5 s: allowed is 0 s to", 2),
+        (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan s: allowed is 0 s to", 2),
+        (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
+        (["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"], "the nearest is front.damper.viscous", 2),
+        (["--vary", "damper.vicsous=1000"], "varied parameter damper.vicsous=1000: no parameter damper.vicsous", 2),
+        (["--vary", "damper.viscous=1000", "--resume", "--force"], "give one of them", 2),
+        (["--vary", "damper.viscous=1000", "--executor", "here"], "allowed are dask://host:port", 2),
+        (["--table", "missing.csv"], "cannot be read", 3),
+        (["--vary", "damper.viscous=1000", "--executor", "..:x"], "--executor ..:x: TypeError", 2),
+        (["--vary", "damper.viscous=1000", "--executor", "json:nothing"], "has no attribute 'nothing'", 2),
+        (["--vary", "bushings.tyre.stiffness=1e5"], "is a vector; give all as [x, y, z]", 2),
+    ],
+)
+def test_bad_usage(arguments, message, code, signal, tmp_path, capsys):
+    assert main(["--input", str(signal), "--output", str(tmp_path / "out"), *arguments]) == code
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out" / "rows.jsonl").exists()
+
+
+def test_bad_tables(tmp_path, signal, capsys):
+    file = tmp_path / "variations.csv"
+    for text, message in (
+        ("a\n", "at least one row"),
+        ("a,b\n1\n", "row 1: 1 cells, the header has 2"),
+        ("a,b,a\n1,2,3\n", "column a stands there more than once"),
+        ("a\n" + "1" * 200_000 + "\n", "cannot be read (field larger than field limit"),
+    ):
+        file.write_text(text, encoding="utf-8")
+        assert main(["--input", str(signal), "--output", str(tmp_path / "out"), "--table", str(file)]) == 3
+        assert message in capsys.readouterr().err
+
+
+def test_a_folder_with_other_files_is_refused(signal, tmp_path, capsys):
+    output = tmp_path / "out"
+    output.mkdir()
+    (output / "thesis.txt").write_text("mine", encoding="utf-8")
+    assert main(["--input", str(signal), "--output", str(output), "--vary", "damper.viscous=1", "--force"]) == 2
+    assert "holds files that no run wrote: thesis.txt" in capsys.readouterr().err
+
+
+def test_failed_rows_are_no_success(signal, tmp_path, capsys):
+    arguments = ["--input", str(signal), "--vary", "damper.viscous=-1,2000", "--skip", "0.5", "--engine", "reduced"]
+    assert main([*arguments, "--output", str(tmp_path / "out")]) == 4
+    printed = capsys.readouterr()
+    assert "1 of 2 runs failed; the table is written" in printed.err and "2 runs, 1 failed" in printed.out
+    assert [row["failed because"] != "" for row in table_of(tmp_path / "out")] == [True, False]
+    assert main([*arguments, "--output", str(tmp_path / "out"), "--resume", "--allow-failed"]) == 0
+
+
+def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):
+    from vehicle.runs.output.folder import folder_lock
+
+    arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
+    (tmp_path / ".out.lock").write_text("999999\n", encoding="utf-8")  # of a killed process: nobody holds it
+    assert main([*arguments, "--skip", "0.5", "--engine", "reduced"]) == 0
+    assert not (tmp_path / ".out.lock").exists()
+    rows = (tmp_path / "out" / "rows.jsonl").read_bytes()
+    for option in ("--force", "--resume"):
+        with folder_lock(tmp_path / "out"):
+            assert main([*arguments, option]) == 2
+        assert "is writing there; wait for it" in capsys.readouterr().err
+        assert (tmp_path / "out" / "rows.jsonl").read_bytes() == rows
+
+
+def test_an_executor_that_cannot_be_made(signal, tmp_path, capsys):
+    arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
+    assert main([*arguments, "--executor", "json:loads"]) == 2
+    assert "--executor json:loads: TypeError" in capsys.readouterr().err
+
+
+def test_a_varied_parameter_without_effect_is_noted():
+    car, road = Car.load("sedan"), Road("B", speed=80, duration=6)
+    (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000]}, road).notes
+    assert note.startswith("front.damper.viscous=1000: without effect; it belongs to front.damper.viscous_law")
+    assert not plan_sweep(car, {"front.damper.coulomb_friction": [40, 80]}, road).notes

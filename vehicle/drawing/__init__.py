@@ -1,0 +1,1 @@
+"""Plots, films, and the objects of a car in a notebook."""

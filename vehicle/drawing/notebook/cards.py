@@ -1,0 +1,42 @@
+"""A car and a run as a notebook shows them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from vehicle.drawing.notebook.picture import card, frame_drawing, line_drawing
+
+
+def car_card(car: Any) -> str:
+    """A `vehicle.runs.car.Car` as HTML."""
+    from vehicle.drawing.rendering.wireframe import car_wireframe
+
+    own, static = car.vehicle, car.static
+    rows = {
+        "changes": "; ".join(car.overrides) or "none",
+        "mass of the trimmed body": f"{own.body.mass:g} kg",
+        "tyre loads": ", ".join(f"{wheel} {load:.0f} N" for wheel, load in static.tyre_load.items()),
+        "channels": f"{len(own.channels)}, and {len(own.load_channels)} loads",
+    }
+    wire = car_wireframe(car.model)
+    return card(f"Car {own.name}", rows, frame_drawing(wire.points, wire.lines, "seen from the right"))
+
+
+def run_card(run: Any) -> str:
+    """A `vehicle.runs.car.Run` as HTML."""
+    shares = {wheel: run.slip_share(wheel) for wheel in run.car.vehicle.wheels}
+    rows = {
+        "signal": f"{Path(run.signal.source).name}, {run.signal.duration:g} s, "
+        f"RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}",
+        "car": repr(run.car),
+        "tyres": run.car.vehicle.driving.words,
+        "engine": run.recording.statistics.engine,
+        "time in slip": ", ".join(f"{wheel} {100 * share:.1f} %" for wheel, share in shares.items()),
+    }
+    shown = next(name for name in ("seat_rail_acc_z", *run.recording.channels) if name in run.recording.channels)
+    if "seat_rail_acc_x" in run.recording.channels:
+        value = run.comfort()
+        low, high = value.band
+        rows["comfort, seat rail"] = f"{value.overall:.3g} m/s² unweighted RMS, {low:g} to {high:g} Hz; lower is better"
+    return card("Run", rows, line_drawing(run.time, run[shown], f"{shown} over {run.signal.duration:g} s"))

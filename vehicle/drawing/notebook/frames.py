@@ -1,0 +1,81 @@
+"""Time histories and FRFs as tables of pandas and xarray, where they are installed."""
+
+from __future__ import annotations
+
+import io
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from vehicle.engines.simulation.recording import Recording
+from vehicle.errors import MissingPartError
+from vehicle.signals.analysis.frf import FrequencyResponse
+
+
+def _library(name: str, what: str) -> Any:
+    """A library of the extra `notebook`."""
+    try:
+        return import_module(name)
+    except ImportError:
+        raise MissingPartError(
+            f"{what}: needs {name}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
+        ) from None
+
+
+def table_frame(text: str) -> Any:
+    """Return a table of CSV text, header in the first line, as a pandas table.
+
+    Raises:
+        MissingPartError: pandas is not installed.
+    """
+    return _library("pandas", "to_dataframe").read_csv(io.StringIO(text))
+
+
+def recording_frame(recording: Recording) -> Any:
+    """Channels as columns over the time [s]; `attrs["units"]` has the unit of each.
+
+    Raises:
+        MissingPartError: pandas is not installed.
+    """
+    pandas = _library("pandas", "to_dataframe")
+    frame = pandas.DataFrame(dict(recording.channels), index=pandas.Index(recording.time, name="time [s]"))
+    frame.attrs["units"] = dict(recording.units)
+    return frame
+
+
+def recording_dataset(recording: Recording) -> Any:
+    """Channels as variables over the dimension `time`, each with its unit.
+
+    Raises:
+        MissingPartError: xarray is not installed.
+    """
+    xarray = _library("xarray", "to_xarray")
+    time = ("time", recording.time, {"units": "s"})
+    variables = {
+        name: ("time", values, {"units": recording.units[name]}) for name, values in recording.channels.items()
+    }
+    return xarray.Dataset(variables, coords={"time": time})
+
+
+def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
+    """Magnitude, phase [deg], coherence and random error of each channel as columns over the frequency [Hz].
+
+    Args:
+        response: the FRFs [m/s2 per m].
+        names: of its rows.
+
+    Raises:
+        MissingPartError: pandas is not installed.
+    """
+    pandas = _library("pandas", "to_dataframe")
+    columns = {}
+    for row, name in enumerate(names):
+        values = response.response[row]
+        columns[name, "magnitude"] = np.abs(values)
+        columns[name, "phase"] = np.degrees(np.angle(values))
+        columns[name, "coherence"] = response.coherence[row]
+        columns[name, "random error"] = response.random_error[row]
+    frame = pandas.DataFrame(columns, index=pandas.Index(response.frequency, name="frequency [Hz]"))
+    frame.columns.names = ["channel", "value"]
+    return frame

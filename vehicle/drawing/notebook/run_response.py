@@ -1,0 +1,126 @@
+"""The FRFs of a run with the names of their channels: what they look like in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.drawing.notebook.frames import response_frame
+from vehicle.drawing.notebook.picture import Picture, card, line_drawing, picture
+from vehicle.engines.simulation.recording import Recording
+from vehicle.errors import DataError
+from vehicle.signals.analysis.dependence import what_moves
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.input_floor import rounding_step
+from vehicle.signals.analysis.motion_response import MotionResponse, motion_responses
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class RunResponse(FrequencyResponse):
+    """FRFs of a run.
+
+    Attributes:
+        names: channels of the rows.
+        plate: what the responses are to, in words.
+    """
+
+    names: tuple[str, ...]
+    plate: str
+
+    def __repr__(self) -> str:
+        """One line."""
+        shown = ", ".join(self.names[:3]) + (f" and {len(self.names) - 3} more" if len(self.names) > 3 else "")
+        return (
+            f"FRFs of {shown} to {self.plate}: {self.frequency.size} lines, {self.frequency[0]:g} to "
+            f"{self.frequency[-1]:.3g} Hz, {self.estimator}"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = {"to": self.plate, "estimator": self.estimator, "lines": f"{self.frequency.size}"}
+        for row, name in enumerate(self.names[:5]):
+            size = np.abs(self.response[row])
+            if np.isfinite(size).any():
+                top = int(np.nanargmax(size))
+                rows[name] = f"largest {size[top]:.3g} m/s² per m at {self.frequency[top]:.2f} Hz"
+        with np.errstate(divide="ignore"):
+            level = np.log10(np.abs(self.response[0]))
+        label = f"{self.names[0]}, log magnitude over log frequency"
+        return card("Frequency responses", rows, line_drawing(np.log10(self.frequency), level, label))
+
+    def plot(self) -> Picture:
+        """Magnitude, phase and coherence of all rows."""
+        from vehicle.drawing.rendering.response_plot import plot_response
+
+        def draw(path: Path) -> None:
+            plot_response(path, self, self.names, f"Frequency responses to {self.plate}", self.estimator)
+
+        return picture(draw)
+
+    def to_dataframe(self) -> Any:
+        """A pandas table, as of `response_frame`."""
+        return response_frame(self, self.names)
+
+
+def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> RunResponse:
+    """FRFs with their names."""
+    values = {one.name: getattr(response, one.name) for one in fields(FrequencyResponse)}
+    return RunResponse(**values, names=names, plate=plate)
+
+
+def require_moving(recording: Recording, wheel: str | None) -> None:
+    """Refuse a wheel whose plate does not move.
+
+    Raises:
+        DataError: naming it.
+    """
+    moving = recording.excited
+    if moving and wheel is not None and wheel not in moving:
+        raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
+
+
+def of_wheel(found: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...]) -> RunResponse:
+    """The response to one wheel among those to all motions; to the first one by default."""
+    asked = found[0].first if wheel is None else wheel
+    chosen = next(number for number, group in enumerate(found) if asked in group.motion)
+    note = what_moves([group.motion for group in found], chosen)
+    response = found[chosen].response
+    plate = " and ".join(f"plate_{one}_displacement" for one in found[chosen].motion)
+    reasons = (*([note] if note else []), *response.reasons)
+    return named(replace(response, reasons=reasons), names, plate)
+
+
+def responses(
+    recording: Recording, signal: Any, names: tuple[str, ...], band: tuple[float, float], window: float | None
+) -> tuple[MotionResponse, ...]:
+    """FRFs of a run to each plate that moves by itself.
+
+    Args:
+        recording, signal: of the run.
+        names: acceleration channels.
+        band: frequencies [Hz].
+        window: as of `vehicle.runs.car.Run.frf`.
+
+    Raises:
+        DataError: no plate moves, or the record is too short.
+        DependentInputsError: one plate moves as the other some time before.
+    """
+    moving = recording.excited
+    if not moving:
+        raise DataError(
+            f"{signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that moves one"
+        )
+    plates = {one: f"plate_{one}_displacement" for one in moving}
+    return motion_responses(
+        recording.timestep,
+        {one: recording[plate] for one, plate in plates.items()},
+        [recording[name] for name in names],
+        labels=plates,
+        names=names,
+        band=band,
+        rounding={one: rounding_step(signal.displacement[one]) for one in moving},
+        window=window,
+    )

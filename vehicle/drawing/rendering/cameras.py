@@ -1,0 +1,33 @@
+"""Where a film looks from."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from vehicle.drawing.rendering.motion import Motion
+from vehicle.drawing.rendering.recorded_run import hub_of
+from vehicle.model.parameters.vehicle import Vehicle
+
+
+def whole_car(vehicle: Vehicle) -> mujoco.MjvCamera:
+    """Camera in front of the car at its right, as far as the car is long."""
+    wheels = vehicle.composition.wheels
+    standing = [wheel.patch for wheel in wheels]
+    standing += [one.at for one in vehicle.composition.connections if one.ground and one.moving == "body"]
+    front, rear = min(place[0] for place in standing), max(place[0] for place in standing)
+    camera = mujoco.MjvCamera()
+    camera.lookat = [0.5 * (front + rear), 0.05, min(wheel.patch[2] for wheel in wheels) + 0.58]
+    camera.distance, camera.azimuth, camera.elevation = max(2.256 * (rear - front), 4.0), -52.0, -13.0
+    return camera
+
+
+def close_up(motion: Motion, vehicle: Vehicle, wheel: str) -> mujoco.MjvCamera:
+    """Camera on the suspension of a wheel, from outside in front: between its hub and its highest point."""
+    hub = motion.position[motion.model.body(hub_of(vehicle.composition, wheel)).id]
+    top = max((place for name, place in vehicle.points.items() if name.endswith(f"_{wheel}")), key=lambda at: at[2])
+    camera = mujoco.MjvCamera()
+    camera.lookat = np.mean([hub, top], axis=0)
+    camera.distance, camera.elevation = 2.0, -7.0
+    camera.azimuth = -60.0 * np.sign(camera.lookat[1])
+    return camera

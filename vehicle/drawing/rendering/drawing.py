@@ -1,0 +1,50 @@
+"""The car in a state of motion, drawn onto a canvas through one camera after the other."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.body_wireframe import Wireframe
+from vehicle.drawing.rendering.canvas import Canvas
+from vehicle.drawing.rendering.colour_scale import colours
+from vehicle.drawing.rendering.motion import Coil, Motion, State
+from vehicle.model.parameters.composition import Composition
+
+
+class Drawing:
+    """Shapes, coils and coloured wireframe of a car.
+
+    Args:
+        canvas: what it is drawn on.
+        motion: of the bodies of the canvas's model.
+        wireframe: of its flexible body.
+        composition: of the car.
+        scale_top: displacement of the last colour [m].
+    """
+
+    def __init__(
+        self, canvas: Canvas, motion: Motion, wireframe: Wireframe, composition: Composition, scale_top: float
+    ) -> None:
+        self.canvas, self.motion, self.wireframe, self.scale_top = canvas, motion, wireframe, scale_top
+        self.data = mujoco.MjData(canvas.model)
+        # Lights and cameras take their places once; the geoms are then placed frame by frame.
+        for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
+            place(canvas.model, self.data)
+        self.coils = [Coil(motion, composition, spring) for spring in composition.springs]
+
+    def pose(self, state: State, factor: float) -> None:
+        """Put everything into its exaggerated place."""
+        self.data.geom_xpos[:], self.data.geom_xmat[:] = self.motion.geoms(state, factor)
+        for coil in self.coils:
+            coil.write(self.data, coil.places(state, factor))
+            self.canvas.upload(coil.mesh)
+        self.places = self.wireframe.places(state, factor)
+        self.shades = colours(self.wireframe.displacement(state), self.scale_top)
+
+    def see(self, camera: mujoco.MjvCamera, opacity: npt.NDArray[np.float64]) -> None:
+        """Fill the scene of the canvas as a camera sees it; more may be appended to it, then it can be rendered."""
+        self.canvas.model.mat_rgba[:, 3] = opacity
+        self.canvas.update(self.data, camera)
+        self.wireframe.draw(self.canvas.scene, self.places, self.shades)

@@ -1,0 +1,113 @@
+"""Pictures of a drive found from a response: target beside response, the drive itself, and how the error fell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import cycle
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
+from vehicle.drawing.rendering.recorded_run import liveliest
+from vehicle.signals.analysis.spectra import power_spectral_density
+
+Vector = npt.NDArray[np.float64]
+
+DETAIL, WINDOW = 2.0, 4.0
+"""Length of the magnified stretch and of a window of the spectra [s]."""
+
+ERROR, OUTSIDE = "#555555", "#ececec"
+
+
+def _between(values: Vector, low: float, high: float) -> npt.NDArray[np.bool_]:
+    return np.asarray((values >= low) & (values <= high))
+
+
+def plot_replication(
+    path: Path,
+    time: Vector,
+    responses: Mapping[str, tuple[Vector, Vector]],
+    drive: Mapping[str, Vector],
+    band: tuple[float, float],
+    caption: str,
+) -> None:
+    """Write target and response of each channel, and the drive below them: a stretch of time, and the spectrum.
+
+    Args:
+        path: PNG file.
+        time: [s], (n,).
+        responses: channel to target and response [m/s2], (n,) each.
+        drive: wheel to its displacement [m], (n,).
+        band: edges [Hz].
+        caption: line under the picture.
+    """
+    step = float(time[1] - time[0])
+    start = liveliest(time, np.sum([pair[0] for pair in responses.values()], axis=0), DETAIL)
+    shown = (time >= start) & (time <= start + DETAIL)
+    with saved_figure(
+        path, (12.5, 2.4 * (len(responses) + 1) + 1.2), "Response to the drive that was found", caption
+    ) as figure:
+        axes = figure.subplots(len(responses) + 1, 2, sharex="col", width_ratios=(1.7, 1.0), squeeze=False)
+        for (name, (target, response)), (left, right) in zip(responses.items(), axes[:-1], strict=True):
+            looks = (
+                ("target", target, {"color": COLOURS[0], "linewidth": 2.2, "alpha": 0.55}),
+                ("response", response, {"color": COLOURS[1], "linestyle": "--", "linewidth": 1.0}),
+                ("target minus response", target - response, {"color": ERROR, "linestyle": ":", "linewidth": 1.0}),
+            )
+            for label, values, look in looks:
+                left.plot(time[shown], values[shown], label=label, **look)
+                right.plot(*_amplitude(step, values), label=label, **look)
+            left.set(ylabel="acceleration [m/s²]", title=name)
+            right.set(ylabel="[(m/s²)/√Hz]", yscale="log")
+        for wheel, line in zip(drive, cycle(LINES), strict=False):
+            style = {"color": COLOURS[2], "linestyle": line}
+            values = 1e3 * drive[wheel]
+            axes[-1, 0].plot(time[shown], values[shown], label=f"plate {wheel}", **style)
+            axes[-1, 1].plot(*_amplitude(step, values), **style)
+        axes[-1, 0].set(ylabel="displacement [mm]", title="drive", xlabel="time [s]", xlim=(start, start + DETAIL))
+        axes[-1, 1].set(ylabel="[mm/√Hz]", yscale="log", xscale="log", xlabel="frequency [Hz]", title="drive")
+        axes[0, 1].set_title("amplitude spectral density")
+        low, high = 0.5 * band[0], 1.5 * band[1]
+        ticks = [tick for tick in (0.5, 1, 2, 5, 10, 20, 50, 100) if low <= tick <= high]
+        axes[-1, 1].set(xlim=(low, high))
+        axes[-1, 1].set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        for axis in axes[:, 1]:
+            drawn = np.concatenate([line.get_ydata()[_between(line.get_xdata(), *band)] for line in axis.lines])
+            axis.set_ylim(0.5 * drawn[drawn > 0.0].min(), 2.0 * drawn.max())
+            for ends in ((low, band[0]), (band[1], high)):
+                axis.axvspan(*ends, color=OUTSIDE, zorder=0, label="outside the band" if ends[0] == low else None)
+        axes[0, 1].legend(loc="lower right")
+        if len(drive) > 1:
+            axes[-1, 0].legend(loc="upper right", ncols=2)
+        figure.align_ylabels(axes[:, 0])
+
+
+def _amplitude(step: float, values: Vector) -> tuple[Vector, Vector]:
+    """Frequencies and root of the power spectral density."""
+    found = power_spectral_density(step, values, window_s=min(WINDOW, step * (values.size - 1)))
+    return found.frequency[1:], np.sqrt(found.density[0, 1:])
+
+
+def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray[np.bool_], caption: str) -> None:
+    """Write the error of each channel over the runs.
+
+    Args:
+        path: PNG file.
+        errors: channel to RMS of target minus response over RMS of target, in the band [-], (runs,).
+        kept: which runs were better than all before, (runs,).
+        caption: line under the picture.
+    """
+    runs = np.arange(1, kept.size + 1)
+    with saved_figure(path, (8.0, 4.8), "Error over the iteration", caption) as figure:
+        axis = figure.subplots()
+        for (name, values), colour, line in zip(errors.items(), cycle(COLOURS), cycle(LINES), strict=False):
+            axis.plot(runs, 100.0 * values, linestyle=line, color=colour, label=name)
+            axis.plot(runs[kept], 100.0 * values[kept], "o", color=colour)
+            axis.plot(runs[~kept], 100.0 * values[~kept], "o", color=colour, markerfacecolor="white")
+        if not kept.all():
+            axis.plot([], [], "o", color=ERROR, markerfacecolor="white", label="taken back")
+        axis.set(yscale="log", xlabel="run", ylabel="RMS error over RMS of target,\nin the band [%]; lower is better")
+        axis.set_xticks(runs[:: max(1, kept.size // 15)])
+        axis.legend()

@@ -1,0 +1,209 @@
+"""Figures without global state: the Agg canvas, one style, the same bytes for the same data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.grid_lines import bared, draw_grid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLOURS = ("#1a73c4", "#b3261e", "#35ab8f", "#eeaa1c", "#3d1560")
+"""Line colours of every figure and film: blue, red, green, amber, violet. With and without red or green sight any two
+are at least six just noticeable differences apart, and as far from the paper."""
+
+LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
+"""Line styles beside the colours, so that print in black tells curves apart."""
+
+FADING = ((-1.0, 0.5, 0.2), (0.5, 0.8, 0.5), (0.8, 2.0, 1.0))
+"""Coherences from, up to, and how opaque a magnitude is there: what is not caused by the plate is pale."""
+
+FADED = "pale: coherence below 0.8, paler: below 0.5"
+"""What a caption says of it."""
+
+EDGE = 0.06
+"""From the edge of a figure to its title and its caption [inch], where the axes are placed."""
+
+COMPRESSION = 3
+"""Of PNG files: higher ones take three times as long and spare a tenth of the file."""
+
+INK = "#444444"
+"""Colour of captions."""
+
+UNDRIVEN = "#ececec"
+"""Colour of a frequency band without an FRF."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+FRF_BAND = (1.0, 50.0)
+FRF_TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
+"""Frequency axis of an FRF [Hz]."""
+
+STYLE = {
+    "figure.dpi": 110,
+    "font.size": 9,
+    "axes.grid": True,
+    "axes.grid.which": "both",
+    "grid.color": "#d9d9d9",
+    "grid.linewidth": 0.5,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 10,
+    "axes.titleweight": "bold",
+    "lines.linewidth": 1.1,
+    "legend.fontsize": 8,
+    "legend.framealpha": 0.85,
+    "legend.edgecolor": "none",
+    "agg.path.chunksize": 20000,
+}
+
+SVG = {
+    "svg.hashsalt": "vehicle",
+    "svg.fonttype": "none",
+    "path.simplify_threshold": 0.35,
+    "savefig.dpi": 160,
+}
+"""Words stay words, names of elements are the same each time, lines lose what is finer than a third of a dot."""
+
+
+@contextmanager
+def saved_figure(
+    path: Path, size: tuple[float, float], title: str = "", caption: str = "", *, placed: bool = False
+) -> Iterator[Figure]:
+    """Give an empty figure; write it when the block is done.
+
+    Args:
+        path: PNG or SVG file, by its ending.
+        size: width and height [inch].
+        title: above the figure; none if empty.
+        caption: below it; none if empty.
+        placed: the axes are those of `placed_axes`, so that no layout is to be found.
+
+    Yields:
+        The figure.
+    """
+    from matplotlib import rc_context, rcParamsDefault
+    from matplotlib.figure import Figure
+
+    # The reader's own matplotlibrc must not change the files of a run.
+    form = "svg" if path.suffix == ".svg" else "png"
+    with rc_context({**rcParamsDefault, **STYLE, **(SVG if form == "svg" else {})}):
+        figure = Figure(figsize=size, layout=None if placed else "constrained")
+        yield figure
+        parts: list[Any] = [figure, *figure.subfigs]
+        grids = [(axes, bared(axes)) for part in parts for axes in part.axes]
+        edge = EDGE / size[1]
+        if title:
+            figure.suptitle(title, fontsize=12, **({"y": 1.0 - edge} if placed else {}))
+        if caption:
+            figure.supxlabel(caption, fontsize=8.5, color=INK, **({"y": edge} if placed else {}))
+        # The layout is computed once; left to the writer of the file, it costs one more drawing of everything.
+        engine = figure.get_layout_engine()
+        if engine is not None:
+            engine.execute(figure)
+            figure.set_layout_engine(None)
+        for axes, grid in grids:
+            draw_grid(axes, grid)
+        about: dict[str, Any] = {"metadata": dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",))}
+        if form == "png":
+            about["pil_kwargs"] = {"compress_level": COMPRESSION}
+        figure.savefig(path, format=form, **about)
+
+
+def power_of_ten(value: float, _: int | None = None) -> str:
+    """A decade of a logarithmic axis in plain letters: matplotlib's own needs its parser of formulas.
+
+    Args:
+        value: a power of ten.
+        _: number of the tick, which a formatter is given.
+    """
+    return "10" + str(round(np.log10(value))).translate(SUPERSCRIPTS)
+
+
+def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[float, ...]) -> None:
+    """Scales, limits and labels of rows of magnitude, phase and coherence over one logarithmic frequency axis.
+
+    Args:
+        figure: the figure.
+        axes: its axes, (3, columns), y shared by the rows.
+        coherence_ticks: of the coherence axis.
+    """
+    upper, middle, lower = axes[:, 0]
+    upper.set(xscale="log", yscale="log", xlim=FRF_BAND, ylabel="acceleration / plate displacement [(m/s²)/m]")
+    middle.set(ylim=(-180.0, 180.0), yticks=(-180, -90, 0, 90, 180), ylabel="phase [deg]")
+    lower.set(ylim=(0.0, 1.05), yticks=coherence_ticks, ylabel="coherence [-]")
+    upper.yaxis.set_major_formatter(power_of_ten)
+    for axis in axes[2]:
+        axis.set_xlabel("frequency [Hz]")
+        axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
+        axis.set_xticks([], minor=True)
+    figure.align_ylabels(axes[:, 0])
+
+
+def wrapped_phase(response: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Phase [deg] between -180 and 180, with NaN after each jump so that no line crosses the picture.
+
+    Args:
+        response: complex values over frequency, (m,).
+
+    Returns:
+        Phase of a line to draw, (m,); NaN at the first point behind a jump.
+    """
+    phase = np.degrees(np.angle(response))
+    phase[np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1] = np.nan
+    return np.asarray(phase)
+
+
+def fading(
+    axis: Axes,
+    frequency: npt.NDArray[np.float64],
+    values: npt.NDArray[np.float64],
+    coherence: npt.NDArray[np.float64],
+    label: str | None = None,
+    **style: Any,
+) -> None:
+    """Draw a magnitude that is pale where its coherence is low.
+
+    Args:
+        axis: the axis.
+        frequency: [Hz], (m,).
+        values: magnitude, (m,).
+        coherence: gamma^2 [-], (m,); where it is unknown the line is not pale.
+        label: legend text, of the line that is not pale.
+        style: colour and line style.
+    """
+    known = np.where(np.isfinite(coherence), coherence, 1.0)
+    for lowest, highest, opacity in FADING:
+        here = (known >= lowest) & (known < highest)
+        # One point more, so that the pieces meet.
+        joined = here | np.concatenate([[False], here[:-1]])
+        words = label if opacity == 1.0 else None
+        if words or joined.any():
+            axis.plot(frequency, np.where(joined, values, np.nan), alpha=opacity, label=words, **style)
+
+
+def shade(
+    axis: Axes, along: npt.ArrayLike, where: npt.NDArray[np.bool_], colour: str, label: str | None = None
+) -> None:
+    """Colour the whole height of an axis where something holds.
+
+    Args:
+        axis: the axis.
+        along: places on its horizontal scale, (n,).
+        where: whether it holds there, (n,).
+        colour: of the shade.
+        label: legend text.
+    """
+    if not where.any():
+        return
+    transform = axis.get_xaxis_transform()
+    axis.fill_between(along, 0.0, 1.0, where=where, transform=transform, color=colour, zorder=0, label=label)

@@ -1,0 +1,151 @@
+"""The front of a search as a picture: objectives against each other, and where its cars lie in their bounds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
+
+Vector = npt.NDArray[np.float64]
+
+MARKS, DOTS = "*DsP^v", "os^vDP"
+"""Of the named cars, and of parameters."""
+
+BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14)}
+"""Place of the legends: inside, they would cover cars."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FrontPicture:
+    """What is drawn.
+
+    Attributes:
+        objectives: labels with units.
+        tried: objectives of all cars that keep the limits; (n, goals).
+        front: of the front, by the first objective; (f, goals).
+        base: of the car as it is; (goals,).
+        named: label to objectives of the cars with a name.
+        other: label and front of another search; None for none.
+        parameters: labels with units.
+        shares: places of the cars of the front in their bounds, 0 to 1; (f, p).
+        base_shares: of the car as it is, NaN where it has none; (p,).
+    """
+
+    objectives: Sequence[str]
+    tried: Vector
+    front: Vector
+    base: Vector
+    named: Mapping[str, Vector]
+    other: tuple[str, Vector] | None
+    parameters: Sequence[str]
+    shares: Vector
+    base_shares: Vector
+
+
+def plot_front(path: Path, picture: FrontPicture, caption: str) -> None:
+    """Write the picture.
+
+    Args:
+        path: PNG or SVG file.
+        picture: what is drawn.
+        caption: car, inputs, engine, number of cars.
+    """
+    pairs = list(combinations(range(len(picture.objectives)), 2))
+    panels = len(pairs) + 1 if pairs else 2
+    columns = math.ceil(math.sqrt(panels))
+    rows = math.ceil(panels / columns)
+    title = "Compromises that no other car beats" if pairs else "The best car"
+    with saved_figure(path, (5.6 * columns, 5.2 * rows + 0.4), title, caption) as figure:
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axis in axes[panels:]:
+            axis.remove()
+        if pairs:
+            for axis, pair in zip(axes, pairs, strict=False):
+                _objectives(axis, picture, *pair)
+            axes[0].legend(**BELOW, ncols=3)
+            _along(axes[panels - 1], picture)
+        else:
+            _course(axes[0], picture)
+            _bars(axes[1], picture)
+
+
+def _objectives(axis: Any, picture: FrontPicture, x: int, y: int) -> None:
+    """Two objectives against each other."""
+    axis.plot(*picture.tried[:, [x, y]].T, ".", color="#c9c9c9", markersize=3, zorder=1, label="cars tried")
+    line = "-" if len(picture.objectives) == 2 else ""
+    axis.plot(
+        *picture.front[:, [x, y]].T,
+        f"o{line}",
+        color=COLOURS[0],
+        markersize=3.5,
+        linewidth=0.8,
+        zorder=3,
+        label="front",
+    )
+    if picture.other is not None:
+        label, other = picture.other
+        axis.plot(*other[:, [x, y]].T, "x", color=COLOURS[2], markersize=4, zorder=2, label=label)
+    base = picture.base[[x, y]]
+    axis.plot(*base, "o", color="white", markeredgecolor=COLOURS[1], markeredgewidth=1.6, markersize=9, zorder=5)
+    if np.all(np.isfinite(base)):
+        axis.annotate("base car", base, (7, 7), textcoords="offset points", color=COLOURS[1], zorder=6)
+    for mark, (label, values) in zip(MARKS, picture.named.items(), strict=False):
+        axis.plot(*values[[x, y]], mark, color=COLOURS[1], markersize=8, zorder=4, label=label)
+    # Far cars of the first generations would press the front into a corner.
+    shown = np.concatenate([picture.front, picture.base[None], *([picture.other[1]] if picture.other else [])])
+    shown = shown[np.all(np.isfinite(shown), axis=1)]  # a base car that cannot be run has no place
+    for column, limits in ((x, axis.set_xlim), (y, axis.set_ylim)):
+        low, high = np.min(shown[:, column]), np.max(shown[:, column])
+        margin = 0.15 * (high - low) or 0.05 * abs(high) or 1.0
+        limits(low - margin, high + margin)
+    axis.set(xlabel=squared(picture.objectives[x]), ylabel=squared(picture.objectives[y]))
+
+
+def _along(axis: Any, picture: FrontPicture) -> None:
+    """Where the cars of the front lie between their bounds, along the first objective."""
+    for number, label in enumerate(picture.parameters):
+        look = {"color": COLOURS[number % len(COLOURS)], "marker": DOTS[number % len(DOTS)]}
+        axis.plot(picture.front[:, 0], picture.shares[:, number], linestyle="", markersize=4, label=label, **look)
+        axis.plot(
+            picture.base[0], picture.base_shares[number], linestyle="", markersize=8, markerfacecolor="white", **look
+        )
+    axis.set(xlabel=squared(picture.objectives[0]), ylabel="place between the bounds [-]", ylim=(-0.03, 1.03))
+    axis.set_title("parameters along the front (hollow: base car)", color=INK)
+    axis.legend(**BELOW, ncols=2)
+
+
+def _course(axis: Any, picture: FrontPicture) -> None:
+    """How the only objective came to its best value."""
+    values, best = picture.tried[:, 0], picture.front[0, 0]
+    number = np.arange(1, len(values) + 1)
+    so_far = np.minimum.accumulate(np.abs(values - best)) * np.sign(np.mean(values) - best) + best
+    axis.plot(number, values, ".", color="#c9c9c9", markersize=3, label="cars tried")
+    axis.step(number, so_far, where="post", color=COLOURS[0], label=f"best so far, at the end {best:.4g}")
+    axis.axhline(picture.base[0], color=COLOURS[1], linestyle="--", label=f"base car {picture.base[0]:.4g}")
+    axis.set(xlabel="cars that keep the limits [-]", ylabel=squared(picture.objectives[0]))
+    axis.legend(**BELOW, ncols=3)
+
+
+def _bars(axis: Any, picture: FrontPicture) -> None:
+    """Where the best car lies between the bounds."""
+    places = np.arange(len(picture.parameters))
+    axis.barh(places, picture.shares[0], color=COLOURS[0], height=0.4, label="best car")
+    axis.plot(
+        picture.base_shares, places, "o", color="white", markeredgecolor=COLOURS[1], markersize=8, label="base car"
+    )
+    axis.set_yticks(places, picture.parameters)
+    axis.set(xlim=(0.0, 1.0), ylim=(-0.6, len(places) - 0.4), xlabel="place between the bounds [-]")
+    axis.legend(**BELOW, ncols=2)
+
+
+def squared(label: str) -> str:
+    """A label with the unit m/s² as figures write it."""
+    return label.replace("m/s2", "m/s²")

@@ -1,0 +1,52 @@
+"""The picture of an axle's kinematics: camber, toe, paths and load over the wheel travel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.drawing.rendering.figure import COLOURS, saved_figure
+from vehicle.engines.simulation.axle_statics import WheelPose
+
+PANELS: dict[str, dict[str, str]] = {
+    "camber [deg], top outwards +": {"camber_deg": ""},
+    "toe [deg], front inwards +": {"toe_deg": ""},
+    "lateral [mm], outwards +": {"lateral_m": "wheel centre", "patch_lateral_m": "contact point"},
+    "longitudinal [mm], to the rear +": {"longitudinal_m": "wheel centre", "patch_longitudinal_m": "contact point"},
+    "vertical load [N]": {"load_n": ""},
+    "change of spring length [mm]": {"strut_length_m": ""},
+}
+"""Label of each panel to its quantities and their names."""
+
+
+def plot_kinematics(path: Path, poses: Sequence[WheelPose], title: str, caption: str) -> None:
+    """Write the picture.
+
+    Args:
+        path: PNG file.
+        poses: of the wheel on the right, in the order of their travel.
+        title: above the picture.
+        caption: below it.
+    """
+
+    def values(name: str) -> np.ndarray:
+        scale = 1e3 if name.endswith("_m") else 1.0
+        return scale * np.array([getattr(pose, name) for pose in poses])
+
+    panels = {label: lines for label, lines in PANELS.items() if np.isfinite(values(next(iter(lines)))).any()}
+    with saved_figure(path, (11.0, 7.0), title, caption) as figure:
+        grid = figure.subplots(2, 3, sharey=True)
+        for axis, (label, lines) in zip(grid.ravel(), panels.items(), strict=False):
+            for number, (name, line) in enumerate(lines.items()):
+                style = ("-", "--")[number]
+                axis.plot(values(name), values("wheel_travel_m"), style, color=COLOURS[number], label=line)
+            axis.set(xlabel=label)
+            axis.axhline(0.0, color="#888888", linewidth=0.6)
+            if len(lines) > 1:
+                axis.legend()
+        for axis in grid[:, 0]:
+            axis.set(ylabel="wheel travel [mm], upwards +")
+        for axis in grid.ravel()[len(panels) :]:
+            axis.set_visible(False)

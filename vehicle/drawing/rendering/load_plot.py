@@ -1,0 +1,52 @@
+"""The picture of load spectra: how many cycles reach a range, for the strongest loads of each kind."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
+from vehicle.signals.analysis.load_spectrum import LoadSpectrum
+
+PANELS = {
+    "wheels, springs and dampers: range [N]": (r"(tyre_|damper_\w+_force$|\w*spring\w*_force$)", "N", 1.0),
+    "connections: range [N]": (r".*", "N", 1.0),
+    "suspension travel: range [mm]": (r".*", "m", 1e3),
+    "joint springs: range [N m]": (r".*", "N m", 1.0),
+}
+"""Label of each panel to the names, the unit and the scale of its loads; a load is in the first that fits."""
+
+FEWEST = 0.25
+"""Cycles at which the pictures begin: half of the half cycle that a record may hold."""
+
+
+def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
+    """Write the picture.
+
+    Args:
+        path: PNG file.
+        loads: with their cycles; of each panel the strongest are drawn, as many as there are colours.
+        caption: below it.
+    """
+    left = [one for one in loads if one.counted.ranges.size]
+    panels: dict[str, list[LoadSpectrum]] = {}
+    for label, (form, unit, _) in PANELS.items():
+        own = [one for one in left if one.unit == unit and re.match(form, one.name)]
+        left = [one for one in left if one not in own]
+        if own:
+            panels[label] = sorted(own, key=lambda one: -one.equivalent_amplitude)[: len(COLOURS)]
+    with saved_figure(path, (12.0, 8.0), "Load spectra: cycles with at least a range", caption) as figure:
+        for number, (label, own) in enumerate(panels.items()):
+            axis = figure.add_subplot(2 if len(panels) > 2 else 1, 2 if len(panels) > 1 else 1, number + 1)
+            scale = PANELS[label][2]
+            for colour, line, one in zip(COLOURS, LINES, own, strict=False):
+                # The largest range is reached by every smaller number of cycles.
+                cycles, ranges = one.counted.exceeded(), scale * one.counted.ranges
+                axis.step(
+                    [*cycles, FEWEST], [*ranges, ranges[-1]], where="post", color=colour, linestyle=line, label=one.name
+                )
+            axis.set(xscale="log", xlabel="cycles", ylabel=label)
+            axis.set_xlim(left=FEWEST)
+            axis.set_ylim(bottom=0.0)
+            axis.legend()

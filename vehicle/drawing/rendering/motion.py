@@ -1,0 +1,192 @@
+"""Motion about the design position, exaggerated; coil of a spring.
+
+Every body has a design pose (p0, R0) and, in a state of motion, a displacement u and a rotation vector theta. Shown is
+
+    p = p0 + k u,    R = exp(k [theta]) R0.
+
+With k = 1 this is MuJoCo's own kinematics.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from vehicle.drawing.rendering.recorded_run import wheels_of
+from vehicle.engines.simulation.recording import Recording
+from vehicle.model.parameters.composition import Composition, PlacedSpring
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class State:
+    """Motion at one instant.
+
+    Attributes:
+        translation: displacement of each body's origin from the design position [m], (bodies, 3).
+        rotation: rotation vector of each body from the design position [rad], (bodies, 3).
+        modal: modal coordinates of the flexible body [kg^1/2 m], (modes,).
+    """
+
+    translation: Vector
+    rotation: Vector
+    modal: Vector
+
+
+class Motion:
+    """Places of everything on the bodies in a state of motion.
+
+    Args:
+        model: the model, or one with the same joints.
+
+    Attributes:
+        modal: numbers of the joints that are modal coordinates of the flexible body.
+        position, orientation: design pose of every body, (bodies, 3) [m] and (bodies, 3, 3).
+        geom_position, geom_orientation: the same for the geoms inside their bodies.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self.model = model
+        self.modal = [joint for joint in range(model.njnt) if model.joint(joint).name.startswith("mode_")]
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        self.position = data.xpos.copy()
+        self.orientation = data.xmat.reshape(-1, 3, 3).copy()
+        self.geom_position = model.geom_pos.copy()
+        self.geom_orientation = scipy.spatial.transform.Rotation.from_quat(
+            model.geom_quat, scalar_first=True
+        ).as_matrix()
+
+    def poses(self, state: State, factor: float) -> tuple[Vector, Vector]:
+        """Exaggerated poses of all bodies: positions [m], (bodies, 3), and orientations, (bodies, 3, 3)."""
+        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation).as_matrix()
+        return self.position + factor * state.translation, turned @ self.orientation
+
+    def geoms(self, state: State, factor: float) -> tuple[Vector, Vector]:
+        """Exaggerated poses of all geoms: positions [m], (geoms, 3), and orientations, (geoms, 9)."""
+        position, orientation = self.poses(state, factor)
+        body = self.model.geom_bodyid
+        where = position[body] + np.einsum("gij,gj->gi", orientation[body], self.geom_position)
+        return where, (orientation[body] @ self.geom_orientation).reshape(-1, 9)
+
+    def moved(self, state: State, factor: float, body: int, points: Vector) -> Vector:
+        """Exaggerated places [m] of points that sit at `points` [m] in the design position, both (n, 3)."""
+        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
+        arm = points - self.position[body]
+        return np.asarray(self.position[body] + factor * state.translation[body] + arm @ turned.T)
+
+
+class RecordedMotion(Motion):
+    """Motion of every body over a stretch of a recording, smooth between the stored poses.
+
+    Args:
+        model: the model, or one with the same joints.
+        recording: what is replayed.
+        start, end: stretch [s].
+
+    Attributes:
+        time: times of the stored poses of the stretch [s], (f,).
+    """
+
+    def __init__(self, model: mujoco.MjModel, recording: Recording, start: float, end: float) -> None:
+        super().__init__(model)
+        # One pose more on each side keeps the ends of the interpolation out of sight.
+        first = max(int(np.searchsorted(recording.pose_time, start, side="right")) - 2, 0)
+        last = min(int(np.searchsorted(recording.pose_time, end)) + 2, len(recording.pose_time))
+        self.time = recording.pose_time[first:last]
+        columns = model.jnt_qposadr[self.modal]
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        plates = {wheel: int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in wheels_of(recording)}
+        rest, rows = data.mocap_pos.copy(), []
+        for index in range(first, last):
+            data.qpos[:] = recording.poses[index]
+            for wheel, plate in plates.items():
+                lift = np.interp(recording.pose_time[index], recording.time, recording[f"plate_{wheel}_displacement"])
+                data.mocap_pos[plate] = rest[plate] + np.array([0.0, 0.0, lift])
+            mujoco.mj_kinematics(model, data)
+            turned = data.xmat.reshape(-1, 3, 3) @ self.orientation.transpose(0, 2, 1)
+            rotation = scipy.spatial.transform.Rotation.from_matrix(turned).as_rotvec()
+            rows.append(np.concatenate([(data.xpos - self.position).ravel(), rotation.ravel(), data.qpos[columns]]))
+        self.curve = scipy.interpolate.CubicSpline(self.time, np.array(rows), axis=0)
+        self.integral = self.curve.antiderivative()
+
+    def at(self, time: float, exposure: float = 0.0) -> State:
+        """Motion at a time, or its mean over an exposure about that time.
+
+        A film of 30 pictures per second cannot show 28 Hz: sampled, it would look like 2 Hz. As in a camera with an
+        open shutter, the mean over the time between two pictures takes that away.
+
+        Args:
+            time: [s].
+            exposure: [s]; 0 for the instant.
+
+        Returns:
+            The motion.
+        """
+        first, last = float(self.time[0]), float(self.time[-1])
+        begin, end = (float(np.clip(time + half * exposure, first, last)) for half in (-0.5, 0.5))
+        if end > begin:
+            values = (self.integral(end) - self.integral(begin)) / (end - begin)
+        else:
+            values = self.curve(begin)
+        bodies = 3 * self.model.nbody
+        return State(
+            translation=values[:bodies].reshape(-1, 3),
+            rotation=values[bodies : 2 * bodies].reshape(-1, 3),
+            modal=values[2 * bodies :],
+        )
+
+
+def coil_seats(composition: Composition, spring: PlacedSpring) -> list[str]:
+    """Bodies that carry the lower and the upper seat: parts that are drawn to its ends, else those that it acts on."""
+    drawn = [part for part in composition.parts if part.shape != "none"]
+    return [
+        next((part.name for part in drawn if end in part.points.values()), body)
+        for body, end in zip(spring.parts, spring.at, strict=True)
+    ]
+
+
+class Coil:
+    """Coil between its seats.
+
+    A vertex at the share s of the way up moves by (1 - s) times what the lower seat would move it, and s times what
+    the upper one would.
+
+    Args:
+        motion: motion of the bodies.
+        composition: of the car.
+        spring: one of its springs.
+    """
+
+    def __init__(self, motion: Motion, composition: Composition, spring: PlacedSpring) -> None:
+        model = motion.model
+        self.motion = motion
+        self.lower, self.upper = (int(model.body(seat).id) for seat in coil_seats(composition, spring))
+        self.geom = int(model.geom(spring.name).id)
+        self.mesh = int(model.geom_dataid[self.geom])
+        first = int(model.mesh_vertadr[self.mesh])
+        self.rows = slice(first, first + int(model.mesh_vertnum[self.mesh]))
+        body = int(model.geom_bodyid[self.geom])
+        self.origin = motion.position[body] + motion.orientation[body] @ motion.geom_position[self.geom]
+        self.frame = motion.orientation[body] @ motion.geom_orientation[self.geom]
+        self.rest = model.mesh_vert[self.rows] @ self.frame.T + self.origin
+        axis = np.subtract(spring.at[1], spring.at[0])
+        height = self.rest @ (axis / np.linalg.norm(axis))
+        self.share = ((height - height.min()) / np.ptp(height))[:, None]
+
+    def places(self, state: State, factor: float) -> Vector:
+        """Exaggerated places of the vertices [m], (n, 3)."""
+        low, high = (self.motion.moved(state, factor, seat, self.rest) for seat in (self.lower, self.upper))
+        return np.asarray((1.0 - self.share) * low + self.share * high)
+
+    def write(self, data: mujoco.MjData, places: Vector) -> None:
+        """Put the vertices into the model and the geom back to its design pose; OpenGL needs the mesh again."""
+        self.motion.model.mesh_vert[self.rows] = (places - self.origin) @ self.frame
+        data.geom_xpos[self.geom] = self.origin
+        data.geom_xmat[self.geom] = self.frame.ravel()

@@ -1,0 +1,104 @@
+"""The road that passes under the wheels: a strip for each track, as high as the plates that stood for it.
+
+A wheel at x0 whose plate has the height z(t) meets at the time t what lies at x at the time t + (x0 - x) / V, so
+
+    h(x, t) = z(t + (x0 - x) / V),    x to the rear,
+
+and every wheel behind it meets the same. Beyond the record the road goes on level.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.added_geom import add_geom
+from vehicle.engines.simulation.recording import Recording
+from vehicle.model.parameters.composition import PlacedWheel
+
+Vector = npt.NDArray[np.float64]
+
+PIECE = 0.05
+"""Length of a straight piece of the strip [m]."""
+
+REACH = 1.3
+"""Length of the strip before the foremost and behind the last wheel [m]."""
+
+HALF_WIDTH, THICKNESS = 0.15, 0.03
+"""Of the strip [m]."""
+
+COLOURS = np.array([(0.20, 0.21, 0.22, 1.0), (0.47, 0.48, 0.49, 1.0)], dtype=np.float32)
+"""Of the stripes across it, by turns: they show how it moves."""
+
+SHORTEST_STRIPE = 0.25
+"""[m]"""
+
+
+class RoadStrip:
+    """The tracks of a car on a road.
+
+    Args:
+        wheels: of the car.
+        recording: the run, with the displacement of every plate.
+        speed: of the car [m/s].
+        interval: time between two frames [s]; stripes are long enough to be followed.
+    """
+
+    def __init__(self, wheels: Sequence[PlacedWheel], recording: Recording, speed: float, interval: float) -> None:
+        self.time, self.speed = recording.time, speed
+        self.stripe = max(SHORTEST_STRIPE, np.ceil(8.0 * speed * interval) / 4.0)
+        places = [wheel.patch[0] for wheel in wheels]
+        self.ends = min(places) - REACH, max(places) + REACH
+        self.leaders = [
+            min((wheel for wheel in wheels if wheel.side == side), key=lambda wheel: wheel.patch[0])
+            for side in sorted({wheel.side for wheel in wheels})
+        ]
+        step = recording.timestep
+        self.integrals: list[tuple[Vector, Vector]] = []
+        for wheel in self.leaders:
+            height = recording[f"plate_{wheel.name}_displacement"]
+            means = 0.5 * step * (height[1:] + height[:-1])
+            self.integrals.append((height, np.concatenate([[0.0], np.cumsum(means)])))
+
+    def height(self, track: int, x: Vector, time: float, exposure: float) -> Vector:
+        """True height of the road [m] at places x [m], the mean over an exposure [s] about a time [s]."""
+        height, integral = self.integrals[track]
+        at = time + (self.leaders[track].patch[0] - x) / self.speed
+
+        def total(when: Vector) -> Vector:
+            inside = np.clip(when, self.time[0], self.time[-1])
+            level = np.where(when > self.time[-1], height[-1], height[0])
+            return np.asarray(np.interp(inside, self.time, integral) + level * (when - inside))
+
+        exposure = max(exposure, self.time[1] - self.time[0])
+        return (total(at + 0.5 * exposure) - total(at - 0.5 * exposure)) / exposure
+
+    def draw(self, scene: mujoco.MjvScene, time: float, exposure: float, factor: float) -> None:
+        """Append the strips to a scene; heights are exaggerated as all motion is.
+
+        Args:
+            scene: scene that has been updated; must have room.
+            time: [s].
+            exposure: [s], as of the bodies.
+            factor: exaggeration.
+        """
+        for track, wheel in enumerate(self.leaders):
+            # Joints stay with the road, which moves to the rear.
+            moved = self.speed * time
+            first, last = (int(np.floor((end - moved) / PIECE)) for end in self.ends)
+            numbers = np.arange(first, last + 1)
+            x = np.asarray(numbers * PIECE + moved, dtype=np.float64)
+            z = wheel.patch[2] + factor * self.height(track, x, time, exposure)
+            shades = COLOURS[np.floor(numbers[:-1] * PIECE / self.stripe).astype(int) % 2]
+            for number, shade in enumerate(shades):
+                rise = np.array([x[number + 1] - x[number], 0.0, z[number + 1] - z[number]])
+                length = np.linalg.norm(rise)
+                along = rise / length
+                across, up = np.array([0.0, 1.0, 0.0]), np.array([-along[2], 0.0, along[0]])
+                middle = np.array([x[number], wheel.patch[1], z[number]]) + 0.5 * rise - 0.5 * THICKNESS * up
+                size = np.array([0.5 * length, HALF_WIDTH, 0.5 * THICKNESS])
+                frame = np.column_stack([along, across, up]).ravel()
+                add_geom(scene, mujoco.mjtGeom.mjGEOM_BOX, size, middle, shade, frame)

@@ -1,0 +1,264 @@
+"""One excerpt of a run, drawn frame by frame: the car, a close-up, and what is written on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.body_wireframe import Wireframe
+from vehicle.drawing.rendering.cameras import close_up, whole_car
+from vehicle.drawing.rendering.canvas import Canvas
+from vehicle.drawing.rendering.drawing import Drawing
+from vehicle.drawing.rendering.layout import Layout, Picture
+from vehicle.drawing.rendering.motion import Motion, RecordedMotion
+from vehicle.drawing.rendering.overlay import Overlay
+from vehicle.drawing.rendering.recorded_run import (
+    RecordedRun,
+    dampers_of,
+    excerpt_start,
+    hub_channel,
+    hub_of,
+    level_words,
+    wheels_of,
+)
+from vehicle.drawing.rendering.road_strip import RoadStrip
+from vehicle.drawing.rendering.rolling import RollingWheel
+from vehicle.drawing.rendering.rounding import round_factor, round_up
+from vehicle.drawing.rendering.trace_strip import Trace, TraceStrip
+from vehicle.errors import ConfigurationError
+from vehicle.names import side_of
+
+Vector = npt.NDArray[np.float64]
+
+VISIBLE_TRAVEL = 0.08
+"""Travel [m] to which the largest displacement of the excerpt is exaggerated."""
+
+LARGEST_FACTOR = 1000.0
+"""Largest exaggeration that is chosen by itself: a car at rest stays at rest in the film."""
+
+FASTEST_MOTION = 40.0
+"""Frequency [Hz] up to which the car moves visibly; a film with fewer than two frames per period says so."""
+
+VISIBLE_TIME = 2.0
+"""Seconds of the record that the traces show at once in real time; over the root of the slow motion otherwise."""
+
+GHOST_OPACITY = 0.22
+"""The wheel hides the strut in the close-up."""
+
+
+FPS = 30.0
+"""Frames per second of every film [Hz]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Take:
+    """What a film is asked to show.
+
+    Raises:
+        ConfigurationError: a number is out of range.
+    """
+
+    start: float | None = None
+    """first time of the record [s]; the liveliest stretch where it is not given"""
+    duration: float = 10.0
+    """length of the film [s]; it shows duration / slow of the record, less where the record ends"""
+    slow: float = 1.0
+    """how many times slower than the record, at least 1"""
+    exaggeration: float | None = None
+    """factor of all motion; where it is not given, the largest displacement becomes 5 to 8 cm"""
+    speed: float | None = None
+    """speed on the road [m/s], which then passes under the wheels; None on a rig"""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.duration < np.inf:
+            raise ConfigurationError(f"film, duration: found {self.duration:g} s, must be above 0 and finite")
+        if not 1.0 <= self.slow < np.inf:
+            raise ConfigurationError(f"film, slow motion: found {self.slow:g}, must be at least 1")
+        if self.exaggeration is not None and not 0.0 < self.exaggeration < np.inf:
+            raise ConfigurationError(f"film, exaggeration: found {self.exaggeration:g}, must be above 0 and finite")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cut:
+    """What of a record a film shows, and how."""
+
+    start: float
+    """first time [s]"""
+    frames: int
+    """number of frames"""
+    interval: float
+    """time of the record between two frames [s]"""
+    exaggeration: float
+    """factor of all motion"""
+    reason: str
+    """why it starts there"""
+
+    @property
+    def end(self) -> float:
+        """Time of the last frame [s]."""
+        return self.start + (self.frames - 1) * self.interval
+
+
+class Shot:
+    """One excerpt of a run, ready to be drawn frame by frame.
+
+    Args:
+        run: the run.
+        layout: frame.
+        take: what to show.
+
+    Raises:
+        ConfigurationError: the record does not hold the start.
+    """
+
+    def __init__(self, run: RecordedRun, layout: Layout, take: Take) -> None:
+        # What is kept can be sent to another process, so nothing that a compiler of models holds is; there, drawing
+        # imports no shapes.
+        from vehicle.drawing.rendering.stage import stage_model, unveiled
+
+        recording, vehicle = run.recording, run.car.model.vehicle
+        self.recording, self.vehicle, self.wheel = recording, vehicle, run.wheel
+        self.layout, self.composition = layout, vehicle.composition
+        self.wheels, self.dampers, self.hub = (
+            wheels_of(recording),
+            dampers_of(recording),
+            hub_channel(vehicle.composition, run.wheel),
+        )
+        record, interval = float(recording.time[-1]), 1.0 / (FPS * take.slow)
+        self.slip = vehicle.damper.slip_velocity
+        length = take.duration / take.slow
+        if take.start is None:
+            start, reason = excerpt_start(recording, run.wheel, self.hub, self.slip, length)
+        elif 0.0 <= take.start < record:
+            start, reason = take.start, "chosen"
+        else:
+            raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
+        length = min(length, record - start)
+        frames = max(int(length * take.slow * FPS + 1e-9), 1)
+        self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
+        self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes that of the model
+        self.unveiled = unveiled(self.model)
+        self.motion = Motion(self.model)
+        self.wireframe = Wireframe(run.car.model, self.motion)
+        recorded = RecordedMotion(self.model, recording, start, start + length)
+        self.states = [recorded.at(start + number * interval, interval) for number in range(frames)]
+        largest, node = self._largest()
+        factor = round_factor(VISIBLE_TRAVEL / largest) if take.exaggeration is None else take.exaggeration
+        self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=reason)
+        self.road = None if take.speed is None else RoadStrip(self.composition.wheels, recording, take.speed, interval)
+        self.visible = VISIBLE_TIME / np.sqrt(take.slow)
+        self.scale_top = 1e-3 * round_up(1e3 * node)
+        self.overlay = Overlay(
+            layout=layout,
+            heading=self._heading(run, take.slow),
+            scale_top=1e3 * self.scale_top,
+            strip=TraceStrip(layout=layout, time=recording.time, traces=self._traces(), visible=self.visible),
+        )
+
+    def frames(self, backend: str, first: int = 0, every: int = 1) -> Iterator[Picture]:
+        """Draw frames, (height, width, 3) each.
+
+        Args:
+            backend: "osmesa" or "egl".
+            first, every: the first frame and the distance to the next; all by default.
+        """
+        layout, factor = self.layout, self.cut.exaggeration
+        wheels = [
+            RollingWheel(self.motion, wheel, hub_of(self.composition, wheel.name), self.vehicle.driving.speed)
+            for wheel in self.composition.wheels
+        ]
+        views = self._views()
+        with closing(Canvas(self.model, (layout.width, layout.view_height), backend)) as canvas:
+            drawing = Drawing(canvas, self.motion, self.wireframe, self.composition, self.scale_top)
+            for number in range(first, self.cut.frames, every):
+                time = self.cut.start + number * self.cut.interval
+                state = self.states[number]
+                drawing.pose(state, factor)
+                for wheel in wheels:
+                    wheel.turn(drawing.data, state, factor, time)
+                for camera, viewport, opacity in views:
+                    drawing.see(camera, opacity)
+                    if self.road is not None:
+                        self.road.draw(canvas.scene, time, self.cut.interval, factor)
+                    canvas.render(viewport)
+                yield self.overlay.draw(canvas.read(), time, self._lamps(time))
+
+    def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]]:
+        """Camera, viewport and opacity of all materials of each view."""
+        layout, wheel, model = self.layout, self.wheel, self.model
+        cleared = self.unveiled.copy()
+        rolling = next(one.part for one in self.composition.wheels if one.name == wheel)
+        cleared[model.geom_matid[model.geom_bodyid == model.body(rolling).id]] = GHOST_OPACITY
+        right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
+        return [
+            (whole_car(self.vehicle), (0, 0, layout.main_width, layout.view_height), self.opacity),
+            (close_up(self.motion, self.vehicle, wheel), right, cleared),
+        ]
+
+    def _largest(self) -> tuple[float, float]:
+        """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
+        parts, nodes = [], []
+        bodies = [(hub_of(self.composition, wheel.name), wheel.plate) for wheel in self.composition.wheels]
+        moving = [int(self.model.body(name).id) for pair in bodies for name in pair]
+        for state in self.states:
+            parts.append(np.linalg.norm(state.translation[moving], axis=1))
+            nodes.append(self.wireframe.displacement(state))
+        largest = max(float(np.max(parts)), float(np.max(nodes)), VISIBLE_TRAVEL / LARGEST_FACTOR)
+        return largest, float(np.quantile(nodes, 0.97))
+
+    def _heading(self, run: RecordedRun, slow: float) -> list[str]:
+        """Input and level; factors and excerpt."""
+        cut = self.cut
+        level = level_words(run.recording, run.wheel, run.signal.rms(run.wheel))
+        wheel = run.car.model.vehicle.wheel_text(run.wheel, source=False)
+        speed = "real time" if slow == 1.0 else f"slow motion 1 : {slow:g}"
+        highest = 0.5 / cut.interval
+        if highest < FASTEST_MOTION:
+            speed += f" (faster than {highest:g} Hz averages out)"
+        road, exaggerated = [], "motion"
+        if self.road is not None:
+            road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
+            exaggerated = "motion and road"
+        return [
+            f"{Path(run.signal.source).name}: {level} under the {wheel}",
+            f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
+            *road,
+            f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s; tyres "
+            f"{self.vehicle.driving.words}",
+        ]
+
+    def _traces(self) -> list[Trace]:
+        """Traces under the picture, scaled to the excerpt."""
+        recording, wheel = self.recording, self.wheel
+        ahead = 0.5 * self.visible
+        inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
+        found = []
+        for label, channel, scale, band in (
+            ("plate [mm]" if self.road is None else "road [mm]", f"plate_{wheel}_displacement", 1e3, None),
+            ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
+            (f"damper {side_of(wheel, self.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
+        ):
+            if channel not in recording.channels:
+                continue
+            values = scale * recording[channel]
+            top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0)))
+            found.append(Trace(label=label, values=values, top=top, band=band))
+        return found
+
+    def _lamps(self, time: float) -> dict[str, bool]:
+        """Label of each damper, and whether it slipped at any sample of the time between two frames."""
+        recording = self.recording
+        half = max(0.5 * self.cut.interval, 0.5 * recording.timestep)
+        first, last = np.searchsorted(recording.time, [time - half, time + half])
+        part = slice(int(first), max(int(last), int(first) + 1))
+        speeds = {wheel: recording[f"damper_{wheel}_velocity"][part] for wheel in self.dampers}
+        return {
+            f"damper {side_of(wheel, self.wheels)}": bool(np.any(np.abs(speed) > self.slip))
+            for wheel, speed in speeds.items()
+        }

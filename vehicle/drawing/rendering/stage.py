@@ -1,0 +1,73 @@
+"""The scene of a film: the car with its shapes, translucent shell, lights and floor."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.body_wireframe import EMISSION
+from vehicle.drawing.rendering.frame_at_rest import frame_at_rest
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.model.assembly.studio import add_studio
+from vehicle.model.assembly.visuals import add_shapes, visible_shapes
+from vehicle.model.shapes import SHELL
+
+SAMPLES = 0
+"""Multisampling of the picture: four samples take twice as long on a processor; a film halves its colours anyway."""
+
+HIDDEN = ("body_lining",)
+"""Shapes that only matter when the shell is opaque."""
+
+OPACITY = {
+    **dict.fromkeys(SHELL, 0.16),
+    "body_trim": 0.10,
+    "body_plates": 0.10,
+    "body_front_structure": 0.30,
+    "body_floor": 0.45,
+    "body_seats": 0.45,
+    "body_dashboard": 0.35,
+    "body_exhaust": 0.6,
+}
+"""Opacity of the shapes that would hide suspension and wireframe; the close-up leaves them out."""
+
+
+GROUND = -0.002
+"""Height of the floor under a rig [m]."""
+
+BELOW_ROAD = 0.30
+"""Height of the road above the floor, which the exaggerated road does not reach [m]."""
+
+
+def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> mujoco.MjModel:
+    """Compile the visible car: the same bodies and joints as the simulated one, plus shapes, lights and floor.
+
+    Args:
+        car: the simulated car.
+        size: width and height of the largest picture [pixel].
+        road: the car drives: no shakers, no plates, and the floor below the road.
+
+    Returns:
+        The model; generalised positions mean the same as in the simulated one.
+    """
+    spec = car.spec.copy()
+    shapes = {name: shape for name, shape in visible_shapes(car.vehicle, rig=not road).items() if name not in HIDDEN}
+    still = frame_at_rest(car)
+    shapes |= still
+    add_shapes(spec, shapes, car.origins, car.vehicle.composition.springs)
+    for name in shapes:
+        material = spec.material(name)
+        material.rgba = [*material.rgba[:3], OPACITY.get(name, 1.0) * material.rgba[3]]
+    for name in still:
+        spec.material(name).emission = EMISSION
+    patch = min(wheel.patch[2] for wheel in car.vehicle.composition.wheels)
+    add_studio(spec, size, SAMPLES, patch - BELOW_ROAD if road else GROUND)
+    return spec.compile()
+
+
+def unveiled(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
+    """Opacity of all materials of a stage, (materials,), without the shapes that would hide the suspension."""
+    names = {model.mat(number).name: number for number in range(model.nmat)}
+    opacity = model.mat_rgba[:, 3].copy()
+    opacity[[names[name] for name in OPACITY if name in names]] = 0.0
+    return np.asarray(opacity)

@@ -1,0 +1,122 @@
+"""Traces that run along under the picture of a film, with the present in the middle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, ImageDraw
+
+from vehicle.drawing.rendering.figure import COLOURS
+from vehicle.drawing.rendering.layout import INK, PAPER, Layout
+from vehicle.drawing.rendering.rounding import round_up
+
+Vector = npt.NDArray[np.float64]
+
+GRID = (208, 212, 218)
+TRACE_COLOURS = tuple(tuple(bytes.fromhex(COLOURS[place][1:])) for place in (4, 0, 1))
+BAND = (221, 233, 246)
+FINE = 2
+"""Traces are drawn this many times larger and reduced, which smooths their lines."""
+
+AXIS, TICKS = 15, 5
+"""Height of the time axis in a picture of 720 lines [pixel], and about how many times it names."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Trace:
+    """A channel that runs along under the picture."""
+
+    label: str
+    """quantity and unit"""
+    values: Vector
+    """in that unit, (n,)"""
+    top: float
+    """value at the upper edge; the lower edge is its negative"""
+    band: float | None = None
+    """half height of a shaded band"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TraceStrip:
+    """Draws the traces of a run.
+
+    Attributes:
+        layout: where things are.
+        time: sample times of the traces [s], (n,).
+        traces: what runs along.
+        visible: length of the traces on the screen [s].
+    """
+
+    layout: Layout
+    time: Vector
+    traces: Sequence[Trace]
+    visible: float
+
+    @cached_property
+    def backdrop(self) -> Image.Image:
+        """Everything in the strip of the traces that stands still."""
+        px, font = self.layout.px, self.layout.font
+        layout = self.layout
+        image = Image.new("RGB", (layout.width, layout.height), PAPER)
+        pen = ImageDraw.Draw(image)
+        for (top, bottom), trace, colour in zip(self._rows, self.traces, TRACE_COLOURS, strict=False):
+            middle = (top + bottom) / 2
+            pen.text((px(12), middle), trace.label, fill=colour, font=font(14, True), anchor="lm")
+            x = layout.trace_left - px(6)
+            pen.text((x, top), f"{trace.top:g}", fill=INK, font=font(11), anchor="rt")
+            pen.text((x, bottom), f"{-trace.top:g}", fill=INK, font=font(11), anchor="rb")
+        return image
+
+    @cached_property
+    def _rows(self) -> list[tuple[int, int]]:
+        """Upper and lower edge of each trace in the frame [pixel]."""
+        layout, gap = self.layout, self.layout.px(6)
+        height = (layout.height - layout.view_height - gap - self.layout.px(AXIS)) // max(len(self.traces), 1)
+        first = layout.view_height + gap
+        return [(first + height * row, first + height * (row + 1) - gap) for row in range(len(self.traces))]
+
+    def _time_axis(self, image: Image.Image, begin: float, width: int) -> None:
+        """Times of the record under the traces, which run along with them."""
+        px, font = self.layout.px, self.layout.font
+        layout, pen = self.layout, ImageDraw.Draw(image)
+        top = self._rows[-1][1] if self._rows else layout.view_height
+        pen.text((px(12), top + px(1)), "time [s]", fill=INK, font=font(12))
+        step = round_up(self.visible / TICKS)
+        for number in range(int(np.ceil(begin / step)), int((begin + self.visible) / step) + 1):
+            x = layout.trace_left + (number * step - begin) / self.visible * width
+            inside = number >= 0 and number * step <= self.time[-1] and x < layout.width - px(24)
+            if inside:
+                pen.line([(x, top), (x, top + px(3))], fill=INK)
+                pen.text(
+                    (x, top + px(2)),
+                    f"{number * step:.6g}",
+                    fill=INK,
+                    font=font(12),
+                    anchor="ma",
+                )
+
+    def draw(self, image: Image.Image, now: float) -> None:
+        """Traces with the present in the middle."""
+        layout = self.layout
+        width = layout.width - layout.trace_left - self.layout.px(10)
+        begin = now - self.visible / 2
+        first, last = np.searchsorted(self.time, [begin, begin + self.visible])
+        part = slice(max(first - 1, 0), last + 1)
+        across = (self.time[part] - begin) / self.visible * width * FINE
+        self._time_axis(image, begin, width)
+        for (top, bottom), trace, colour in zip(self._rows, self.traces, TRACE_COLOURS, strict=False):
+            height = (bottom - top) * FINE
+            panel = Image.new("RGB", (width * FINE, height), (255, 255, 255))
+            pen = ImageDraw.Draw(panel)
+            if trace.band is not None:
+                half = height / 2 * min(trace.band / trace.top, 1.0)
+                pen.rectangle([0, height / 2 - half, width * FINE, height / 2 + half], fill=BAND)
+            pen.line([(0, height / 2), (width * FINE, height / 2)], fill=GRID, width=FINE)
+            up = height / 2 * (1.0 - trace.values[part] / trace.top)
+            pen.line(list(zip(across.tolist(), up.tolist(), strict=True)), fill=colour, width=FINE + 1)
+            pen.line([(width * FINE / 2, 0), (width * FINE / 2, height)], fill=INK, width=FINE)
+            image.paste(panel.reduce(FINE), (layout.trace_left, top))

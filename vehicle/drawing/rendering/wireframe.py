@@ -1,0 +1,211 @@
+"""The car as points and lines, and how far each point moves with the velocity coordinates: what shows a mode."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.model.parameters.composition import Composition, PlacedPart, PlacedWheel
+from vehicle.signals.analysis.thinned_wireframe import MOST_NODES, thinned
+
+Vector = npt.NDArray[np.float64]
+
+GROUPS = ("body", "mass", "link", "spring", "wheel", "ground")
+"""What a line belongs to."""
+
+SPOKES, TREAD, PLATE = 24, 0.18, 0.22
+"""Corners of a wheel; its width and half the side of a plate [m], as they are drawn."""
+
+BOX_MASS = 40.0
+"""A part from this mass [kg] on that is no wheel is drawn as the box of its mass and moments of inertia too."""
+
+COIL_TURNS, COIL_RADIUS, COIL_POINTS = 5, 0.06, 61
+"""How a spring is drawn [-, m, -]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CarWireframe:
+    """Points of a car, lines between them, and their motion.
+
+    Attributes:
+        points: in the design position [m], (n, 3).
+        lines: pairs of points, (m, 2).
+        groups: of each line, index of `GROUPS`; (m,).
+        motion: displacement of the points over the velocity coordinates, (n, 3, coordinates).
+    """
+
+    points: Vector
+    lines: npt.NDArray[np.intp]
+    groups: npt.NDArray[np.intp]
+    motion: Vector
+
+    def displacement(self, shape: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+        """Displacement of the points [m], (n, 3), in a motion of the velocity coordinates, (coordinates,)."""
+        return np.asarray(self.motion @ shape)
+
+
+def unit_factor(displacement: npt.NDArray[np.complex128]) -> complex:
+    """Number that scales and turns a shape so that its farthest point moves 1, its largest component in phase.
+
+    Args:
+        displacement: of points, (n, 3), not all zero.
+
+    Returns:
+        The number; times the displacements no point moves farther than 1.
+    """
+    size = np.linalg.norm(displacement, axis=1)
+    farthest = displacement[int(np.argmax(size))]
+    largest = farthest[int(np.argmax(np.abs(farthest)))]
+    return complex(np.conj(largest) / np.abs(largest) / size.max())
+
+
+def car_wireframe(car: CarModel) -> CarWireframe:
+    """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, and the plates.
+
+    Args:
+        car: the car.
+
+    Returns:
+        Its points and lines, and J of u_point = J u; plates move with nothing.
+    """
+    pen = _Pen(car)
+    element, own = car.superelement, car.vehicle.composition
+    lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
+    shown = np.unique(lines) if len(lines) else range(min(len(element.positions), MOST_NODES))
+    nodes = {int(node): pen.point(element.positions[node], "body") for node in shown}
+    pen.join([(nodes[int(first)], nodes[int(second)]) for first, second in lines], "body")
+    wheels = {wheel.part for wheel in own.wheels}
+    for part in own.parts:
+        if part.shape != "none" and part.name not in wheels and part.seat is None:
+            _part(pen, own, part)
+    for spring in own.springs:
+        low, high = (np.asarray(at) for at in spring.at)
+        pen.polyline(_coil(low, high), "spring", spring.parts)
+    for wheel in own.wheels:
+        _wheel(pen, wheel)
+    return pen.finished()
+
+
+class _Pen:
+    """Collects points with the part that each sits on, and lines."""
+
+    def __init__(self, car: CarModel) -> None:
+        self.model, self.data = car.model, mujoco.MjData(car.model)
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        self.bodies = {self.model.body(number).name: number for number in range(self.model.nbody)}
+        modal = [j for j in range(self.model.njnt) if self.model.joint(j).name.startswith("mode_")]
+        self.modal = [int(self.model.jnt_dofadr[joint]) for joint in modal]
+        self.nodes = np.asarray(car.superelement.positions)
+        self.shapes = np.asarray(car.superelement.shapes)[: len(modal)]  # (modes, nodes, 3)
+        self.points: list[Vector] = []
+        self.motion: list[Vector] = []
+        self.lines: list[tuple[int, int]] = []
+        self.groups: list[int] = []
+
+    def point(self, at: Sequence[float] | Vector, part: str) -> int:
+        """A point [m] that sits on a part; its number."""
+        self.points.append(np.asarray(at, dtype=float))
+        self.motion.append(self._motion(self.points[-1], part))
+        return len(self.points) - 1
+
+    def _motion(self, at: Vector, part: str) -> Vector:
+        """Displacement of a point of a part over the velocity coordinates, (3, coordinates)."""
+        rows = np.zeros((3, self.model.nv))
+        if part not in self.bodies:
+            return rows
+        mujoco.mj_jac(self.model, self.data, rows, None, at, self.bodies[part])
+        if part == "body" and self.modal:
+            distance = np.linalg.norm(self.nodes - at, axis=1)
+            rows[:, self.modal] = self.shapes[:, int(np.argmin(distance))].T
+        return rows
+
+    def join(self, pairs: Sequence[tuple[int, int]], group: str) -> None:
+        """Lines between points."""
+        self.lines += pairs
+        self.groups += [GROUPS.index(group)] * len(pairs)
+
+    def polyline(self, places: Vector, group: str, parts: tuple[str, str]) -> None:
+        """A line over places (n, 3) that moves at its beginning with one part, at its end with another."""
+        first = len(self.points)
+        for share, at in zip(np.linspace(0.0, 1.0, len(places)), places, strict=True):
+            low, high = (self._motion(end, part) for end, part in zip((places[0], places[-1]), parts, strict=True))
+            self.points.append(at)
+            self.motion.append((1.0 - share) * low + share * high)
+        self.join([(index, index + 1) for index in range(first, len(self.points) - 1)], group)
+
+    def finished(self) -> CarWireframe:
+        """All of it."""
+        return CarWireframe(
+            points=np.array(self.points),
+            lines=np.array(self.lines, dtype=np.intp),
+            groups=np.array(self.groups, dtype=np.intp),
+            motion=np.array(self.motion),
+        )
+
+
+def _part(pen: _Pen, own: Composition, part: PlacedPart) -> None:
+    """A line where a part has two points, a star about its centre of gravity where it has more, a box where heavy."""
+    group = "mass" if part.numbers.mass >= BOX_MASS else "link"
+    places = [part.points[name] for name in part.points]
+    places += [one.at for one in own.connections if part.name in (one.moving, one.carrier)]
+    places += [joint.at for child in own.parts if child.parent == part.name for joint in child.joints[:1]]
+    anchors = [pen.point(at, part.name) for at in dict.fromkeys(tuple(float(x) for x in at) for at in places)]
+    if len(anchors) == 2:
+        pen.join([(anchors[0], anchors[1])], group)
+    elif len(anchors) > 2:
+        middle = pen.point(part.cog, part.name)
+        pen.join([(middle, anchor) for anchor in anchors], group)
+    if group == "mass":
+        _box(pen, part, group)
+
+
+def _box(pen: _Pen, part: PlacedPart, group: str) -> None:
+    """The box of the mass and moments of inertia of a part: Ixx = m (b^2 + c^2) / 12 and so on."""
+    body = pen.bodies[part.name]
+    mass, inertia = float(pen.model.body_mass[body]), np.asarray(pen.model.body_inertia[body])
+    sides = np.sqrt(np.maximum(6.0 / mass * (inertia.sum() - 2.0 * inertia), 0.0))
+    frame = pen.data.ximat[body].reshape(3, 3)
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    corners = [pen.point(pen.data.xipos[body] + frame @ (0.5 * sign * sides), part.name) for sign in signs]
+    edges = [(i, j) for i in range(8) for j in range(i) if np.sum(signs[i] != signs[j]) == 1]
+    pen.join([(corners[i], corners[j]) for i, j in edges], group)
+
+
+def _wheel(pen: _Pen, wheel: PlacedWheel) -> None:
+    """Two circles and their tread about the y axis, four spokes, and the plate below."""
+    centre = np.asarray(wheel.center)
+    radius = float(centre[2] - wheel.patch[2])
+    angle = 2.0 * np.pi * np.arange(SPOKES) / SPOKES
+    circle = np.column_stack([np.cos(angle), np.zeros(SPOKES), np.sin(angle)]) * radius
+    rings = [
+        [pen.point(centre + at + np.array([0.0, side * TREAD / 2, 0.0]), wheel.part) for at in circle]
+        for side in (1.0, -1.0)
+    ]
+    for ring in rings:
+        pen.join(list(zip(ring, [*ring[1:], ring[0]], strict=True)), "wheel")
+    hub = pen.point(centre, wheel.part)
+    pen.join([(rings[0][i], rings[1][i]) for i in range(0, SPOKES, 3)], "wheel")
+    outer = rings[0 if wheel.side > 0 else 1]
+    pen.join([(hub, outer[i]) for i in range(0, SPOKES, SPOKES // 4)], "wheel")
+    corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+    plate = [pen.point(np.add(wheel.patch, (PLATE * x, PLATE * y, 0.0)), "world") for x, y in corners]
+    pen.join(list(zip(plate, [*plate[1:], plate[0]], strict=True)), "ground")
+
+
+def _coil(low: Vector, high: Vector) -> Vector:
+    """A helix between two points [m], (n, 3), with straight ends."""
+    axis = high - low
+    across = np.cross(axis, (1.0, 0.0, 0.0))
+    across /= np.linalg.norm(across)
+    third = np.cross(axis, across) / np.linalg.norm(axis)
+    share = np.linspace(0.0, 1.0, COIL_POINTS)
+    turn = 2.0 * np.pi * COIL_TURNS * share
+    radius = COIL_RADIUS * np.clip(np.minimum(share, 1.0 - share) / 0.08, 0.0, 1.0)
+    round_ = np.outer(np.cos(turn), across) + np.outer(np.sin(turn), third)
+    return np.asarray(low + np.outer(share, axis) + radius[:, None] * round_)

@@ -1,0 +1,80 @@
+"""Which part moves most in a mode of the car, and which parameter holds it: the words of a refusal."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.matrices import CarMatrices
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.layout import numeric
+from vehicle.engines.simulation.rows import Rows, joint_springs
+from vehicle.engines.simulation.standing import element_parameter
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.paths import value_of
+from vehicle.names import AXES
+
+Complex = npt.NDArray[np.complex128]
+
+
+def moving_part(matrices: CarMatrices, shape: Complex) -> str:
+    """Name of the rigid part, or "flexible body", with the largest kinetic energy in a shape (n,)."""
+    energy = {
+        body: float(np.real(np.vdot(rows @ shape, matrices.body_masses[body] @ (rows @ shape))))
+        for body, rows in matrices.body_rows.items()
+    }
+    energy["flexible body"] = float(np.sum(np.abs(shape[matrices.modal]) ** 2))
+    return max(energy, key=lambda name: energy[name])
+
+
+def holding_parameter(car: CarModel, pole: complex, shape: Complex) -> str:
+    """Path and value of the parameter whose element works most in a mode, K |r|2 or |s| B |r|2.
+
+    Args:
+        car: the car.
+        pole: s [rad/s].
+        shape: displacements; (n,).
+
+    Returns:
+        As "bushings.suspension_mount.stiffness.z (3e+07)".
+    """
+    rows = Rows(car.model, car.static.preload)
+    data = mujoco.MjData(car.model)
+    with installed(rows):
+        mujoco.mj_forward(car.model, data)
+    e, b, dampers = rows.layout, rows.layout.bushings, rows.layout.dampers
+    jacobian = data.efc_J.reshape(e.row_count, car.model.nv)
+    square = np.abs(jacobian @ shape) ** 2
+    speed = abs(pole)
+    work: dict[str, float] = {}
+    for name, own, k, c, k2 in zip(rows.names, b.rows, b.stiffness, b.damping, b.branch_stiffness, strict=True):
+        for axis, r, stiffness, drag in zip(AXES, own, k + k2, speed * c, strict=True):
+            kind = "stiffness" if stiffness >= drag else "damping"
+            work[element_parameter(car.vehicle, name, kind, axis)] = float(max(stiffness, drag) * square[r])
+    turned = rows.rotation_jacobian(data) @ shape
+    resisting = [name for name in rows.names if numeric(car.model, f"law/{name}")[12] > 0.0]  # type: ignore[index]
+    for name, stiffness, turn in zip(resisting, e.rotations.stiffness, turned, strict=True):
+        work[element_parameter(car.vehicle, name, "rotational_stiffness", "")] = float(
+            stiffness * np.sum(np.abs(turn) ** 2)
+        )
+    strained = e.springs.stiffness * square[e.springs.rows]
+    slid = speed * dampers.laws["viscous_damping"] * np.abs(shape[dampers.dofs]) ** 2
+    placed = car.vehicle.composition
+    listed = [(f"{one.path}.stiffness", value) for one, value in zip(placed.springs, strained, strict=True)]
+    listed += [(f"{one.path}.viscous", value) for one, value in zip(placed.dampers, slid, strict=True)]
+    for path, value in listed:
+        work[path] = max(work.get(path, 0.0), float(value))
+    inside = joint_springs(car.model) * np.abs(shape) ** 2
+    # Unscaled modes are as stiff as their file says.
+    scaled = car.vehicle.body.frequency_scale != 1.0
+    modes = "body.frequency_scale" if scaled else f"the modes of body.superelement = {car.vehicle.body.superelement}"
+    work[modes] = float(np.sum(inside[e.modes.velocities]))
+    for spring in placed.joint_springs:
+        work[f"{spring.path}.{spring.parameter}"] = float(inside[car.model.joint(spring.joint).dofadr[0]])
+    path = max(work, key=lambda name: work[name])
+    try:
+        return f"{path} ({value_of(car.vehicle, path):g})"
+    except ConfigurationError:
+        return path

@@ -1,0 +1,37 @@
+"""Loads as outputs of the poles: u = Re(modal xi), u' = Re(modal s xi), u'' = Re(modal s xi') with xi' of the poles.
+
+xi' = s xi + b_z z + b_c z' + e f: what plates and damper forces add to xi' reaches u'' at once, and no other load.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.load_rows import LoadRows
+from vehicle.engines.reduced.pole_model import Outputs, PoleModel
+
+Vector = npt.NDArray[np.float64]
+
+
+def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:
+    """Rows of loads over the poles and the plates, without their static values and `direct_forces`.
+
+    Args:
+        model: the car.
+        loads: its loads.
+    """
+    rate = model.modal * model.poles
+    return Outputs(
+        poles=loads.displacement @ model.modal
+        + loads.velocity @ rate
+        + loads.acceleration @ (rate * model.poles)
+        + loads.branch @ model.branch,
+        height=loads.height + (loads.acceleration @ (rate @ model.height)).real,
+        velocity=loads.height_rate + (loads.acceleration @ (rate @ model.velocity)).real,
+    )
+
+
+def direct_forces(model: PoleModel, loads: LoadRows) -> Vector:
+    """Rows of loads over the nonlinear damper forces of the same instant; (loads, d)."""
+    return np.asarray(loads.friction + (loads.acceleration @ (model.modal * model.poles @ model.force)).real)

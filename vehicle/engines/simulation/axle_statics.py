@@ -1,0 +1,269 @@
+"""Kinematics and compliance of an axle: the body is held, the wheels are lifted, everything else is in equilibrium.
+
+The position q of the parts of the axle satisfies
+
+    sum of J_e' f_e(q) + J_g' m g + J_p' (F, M, N) + A' lambda = 0,   c(q) = 0,   z_w(q) = z_w0 + travel
+
+with the forces f_e of bushings, springs and the stabilizer at large displacements (r and angle in the axes of the
+carrier, which turn with it), forces F and moments M on the wheels at their contact points, the ideal joints c, and the
+vertical loads N that hold the wheel centres at their heights. Newton's method with K = sum of J' K_e J: the geometric
+stiffness that is left out costs iterations, not accuracy. With ideal connections all of them are joints, and the least
+motion that satisfies the constraints is taken: forces do not matter then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.axle_parts import Spring, Tie, axle_parts
+from vehicle.errors import SimulationError
+from vehicle.model.parameters.composition import PlacedWheel
+
+Vector = npt.NDArray[np.float64]
+
+ITERATIONS = 100
+"""Newton steps at most for one position."""
+TOLERANCE = 1e-10
+"""Largest step of a coordinate [m or rad] that ends the iteration."""
+
+CONDITION = 1e-12
+"""Smallest singular value of the system, as a share of the largest, that counts as resistance or as a constraint."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WheelPose:
+    """How a wheel stands against its design position; a wheel on the left as its mirror image.
+
+    Attributes:
+        wheel_travel_m: of the wheel centre, upwards [m].
+        lateral_m, longitudinal_m: of the wheel centre, outwards and to the rear [m].
+        patch_lateral_m, patch_longitudinal_m: of the contact point, a point of the wheel, likewise [m].
+        camber_deg: top outwards [deg].
+        toe_deg: front inwards [deg].
+        load_n: its vertical load [N]; nan for ideal connections.
+        strut_length_m: change of the distance between the seats of its spring [m].
+    """
+
+    wheel_travel_m: float
+    lateral_m: float
+    longitudinal_m: float
+    patch_lateral_m: float
+    patch_longitudinal_m: float
+    camber_deg: float
+    toe_deg: float
+    load_n: float
+    strut_length_m: float
+
+
+class AxleStatics:
+    """The parts of an axle in a compiled and trimmed car."""
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        preload: Vector,
+        *,
+        wheels: Sequence[PlacedWheel],
+        ideal: bool = False,
+        standing: bool = False,
+    ) -> None:
+        """Find the parts; arguments as of `axle_parts`.
+
+        Args:
+            model: the car.
+            preload: as of the trim.
+            wheels: of the axle.
+            ideal: every connection to be an ideal ball joint.
+            standing: the wheels stand, with the horizontal force and the torque of tyres that were set down; else
+                their patches roll freely.
+        """
+        self.model, self.data, self.ideal = model, mujoco.MjData(model), ideal
+        self.parts = axle_parts(model, np.asarray(preload), [wheel.part for wheel in wheels], ideal=ideal)
+        self.wheels, self.columns = self.parts.wheels, self.parts.columns
+        self.ground = self.parts.standing if standing else np.zeros_like(self.parts.standing)
+        mujoco.mj_forward(model, self.data)
+        self.at_rest = [(np.array(wheel.center), np.array(wheel.patch)) for wheel in wheels]
+        self.offsets = [
+            [self.data.xmat[number].reshape(3, 3).T @ (point - self.data.xpos[number]) for point in points]
+            for number, points in zip(self.wheels, self.at_rest, strict=True)
+        ]
+
+    def solve(self, travel: Sequence[float], loads: Vector | None = None) -> list[WheelPose]:
+        """Equilibrium with the wheel centres at given heights, from the last one found.
+
+        Args:
+            travel: of each wheel [m], upwards.
+            loads: force [N] and moment [N m] on each wheel at its contact point, (wheels, 6); none by default.
+
+        Returns:
+            Where each wheel stands.
+
+        Raises:
+            SimulationError: there is no such position, or the parts are not held.
+        """
+        model, data = self.model, self.data
+        loads = self.ground if loads is None else self.ground + loads
+        count, reactions = self.columns.size, np.zeros(0)
+        for _ in range(ITERATIONS):
+            force, stiffness = self._forces(loads)
+            constraints, reacting, gaps = self._constraints(travel)
+            rows = len(gaps)
+            system = np.block([[stiffness, reacting.T], [constraints, np.zeros((rows, rows))]])
+            scale = np.ones(count + rows)
+            scale[:count] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
+            solution = np.linalg.lstsq(
+                system * scale[:, None] * scale, scale * np.concatenate([force, -gaps]), rcond=CONDITION
+            )[0]
+            step, reactions = (scale * solution)[:count], (scale * solution)[count:]
+            full = np.zeros(model.nv)
+            # A fifth of a radian at a time at the most: the linear step of a turned part is no better than that.
+            full[self.columns] = step * min(1.0, 0.2 / max(np.max(np.abs(step)), 1e-300))
+            mujoco.mj_integratePos(model, data.qpos, full, 1.0)
+            if np.max(np.abs(step)) < TOLERANCE:
+                break
+        else:
+            raise SimulationError(
+                f"axle: no position with wheel travels {[round(1e3 * value, 3) for value in travel]} mm; ask for less, "
+                "in smaller steps"
+            )
+        mujoco.mj_fwdPosition(model, data)
+        _, _, gaps = self._constraints(travel)
+        if np.max(np.abs(gaps)) > 1e-7:
+            raise SimulationError(
+                f"axle: its joints leave a gap of {1e3 * np.max(np.abs(gaps)):.3g} mm at wheel travels "
+                f"{[round(1e3 * value, 3) for value in travel]} mm, which the linkage cannot reach: ask for less travel"
+                + (", or let its bushings give way (without --ideal)" if self.ideal else "")
+            )
+        # K dq + B' lambda = f: lambda opposes the force, and the load is its negative.
+        loads_now = -reactions[-len(self.wheels) :]
+        return [self._pose(index, float(load)) for index, load in enumerate(loads_now)]
+
+    def _length(self, spring: Spring) -> tuple[float, Vector]:
+        """Length of a spring [m] and its derivative by the coordinates, (columns,)."""
+        place, bodies = self.data.site_xpos, self.model.site_bodyid
+        line = place[spring.upper] - place[spring.lower]
+        length = float(np.linalg.norm(line))
+        upper, lower = (self.jacobian(int(bodies[site]), place[site])[0] for site in (spring.upper, spring.lower))
+        return length, (line / length) @ (upper - lower)
+
+    def jacobian(self, body: int, point: Vector) -> tuple[Vector, Vector]:
+        """Of a point of a body: displacement and rotation, (3, columns) each."""
+        moved, turned = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
+        mujoco.mj_jac(self.model, self.data, moved, turned, point, body)
+        return moved[:, self.columns], turned[:, self.columns]
+
+    def _relative(self, tie: Tie) -> tuple[Vector, Vector, Vector, Vector]:
+        """Displacement r [m] and sin(angle) n of the moving part against the carrier in its axes, and Jacobians."""
+        data, bodies = self.data, self.model.site_bodyid
+        one, other = tie.moving, tie.carrier
+        # Forces along the directions of the law, turns about the axes of the car.
+        frame = data.site_xmat[other].reshape(3, 3)
+        own = frame if tie.directions is None else frame @ tie.directions.T
+        # Seen from the carrier: its own point is the one that lies under the moving part.
+        moved, turned = self.jacobian(int(bodies[one]), data.site_xpos[one])
+        carried, rotated = self.jacobian(int(bodies[other]), data.site_xpos[one])
+        gap = own.T @ (data.site_xpos[one] - data.site_xpos[other])
+        relative = frame.T @ data.site_xmat[one].reshape(3, 3)
+        # sin(angle) n, the law of the runs (`vehicle.engines.simulation.rotations`).
+        angle = 0.5 * np.array([relative[i, j] - relative[j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
+        return gap, angle, own.T @ (moved - carried), frame.T @ (turned - rotated)
+
+    def _forces(self, loads: Vector) -> tuple[Vector, Vector]:
+        """Generalised force and stiffness of the elements at the present position."""
+        model, data = self.model, self.data
+        mujoco.mj_fwdPosition(model, data)
+        count = self.columns.size
+        stiffness, force = np.zeros((count, count)), np.zeros(count)
+        if self.ideal:
+            return force, np.eye(count)
+        for body in self.parts.bodies:
+            moved, _ = self.jacobian(body, data.xipos[body])
+            force += moved.T @ (model.body_mass[body] * model.opt.gravity)
+        for tie in self.parts.ties:
+            if tie.stiffness is None:
+                continue
+            gap, angle, moved, turned = self._relative(tie)
+            pull, slope = tie.pull(gap)
+            force += moved.T @ pull
+            stiffness += moved.T @ (slope[:, None] * moved)
+            if tie.twist > 0.0:
+                force += turned.T @ (tie.torque - tie.twist * angle)
+                stiffness += tie.twist * turned.T @ turned
+        for spring in self.parts.springs:
+            length, row = self._length(spring)
+            along, rate = spring.pull(length - spring.length)
+            force += row * along
+            stiffness += rate * np.outer(row, row)
+        for strut in self.parts.struts:
+            column = int(np.flatnonzero(self.columns == model.jnt_dofadr[strut.joint])[0])
+            along, rate = strut.pull(float(data.qpos[model.jnt_qposadr[strut.joint]]))
+            force[column] += along
+            stiffness[column, column] += rate
+        for joint in self.parts.joints:
+            column = int(np.flatnonzero(self.columns == model.jnt_dofadr[joint])[0])
+            rate = float(np.ravel(model.jnt_stiffness[joint])[0])
+            place = model.jnt_qposadr[joint]
+            force[column] += rate * (model.qpos_spring[place] - data.qpos[place])
+            stiffness[column, column] += rate
+        for index, (wheel, load) in enumerate(zip(self.wheels, loads, strict=True)):
+            moved, turned = self.jacobian(wheel, self.places(index)[1])
+            force += moved.T @ load[:3] + turned.T @ load[3:]
+        return force, stiffness
+
+    def _constraints(self, travel: Sequence[float]) -> tuple[Vector, Vector, Vector]:
+        """Jacobian, directions of the reactions and gaps of the ideal joints and, last, of the heights of the wheels.
+
+        The height is that of the wheel centre, its reaction the load on the contact point.
+        """
+        rows, reacting, gaps = [], [], []
+        for tie in self.parts.ties:
+            if tie.stiffness is None:
+                gap, _, moved, _ = self._relative(tie)
+                rows.append(moved)
+                reacting.append(moved)
+                gaps.append(gap)
+        for index, (wheel, height) in enumerate(zip(self.wheels, travel, strict=True)):
+            center, patch = self.places(index)
+            rows.append(self.jacobian(wheel, center)[0][2:])
+            reacting.append(self.jacobian(wheel, patch)[0][2:])
+            gaps.append(center[2:] - self.at_rest[index][0][2] - height)
+        return np.vstack(rows), np.vstack(reacting), np.concatenate(gaps)
+
+    def places(self, index: int) -> tuple[Vector, Vector]:
+        """Where the centre of a wheel and its contact point, a point of the wheel, are now [m]."""
+        position, frame = self.data.xpos[self.wheels[index]], self.data.xmat[self.wheels[index]].reshape(3, 3)
+        center, patch = (position + frame @ offset for offset in self.offsets[index])
+        return center, patch
+
+    def _pose(self, index: int, load: float) -> WheelPose:
+        center, patch = (now - then for now, then in zip(self.places(index), self.at_rest[index], strict=True))
+        side = float(np.sign(self.at_rest[index][0][1]))
+        # Outwards; along y in the design position.
+        axle = side * self.data.xmat[self.wheels[index]].reshape(3, 3)[:, 1]
+        return WheelPose(
+            wheel_travel_m=float(center[2]),
+            lateral_m=float(side * center[1]),
+            longitudinal_m=float(center[0]),
+            patch_lateral_m=float(side * patch[1]),
+            patch_longitudinal_m=float(patch[0]),
+            camber_deg=float(np.degrees(np.arcsin(-axle[2]))),
+            toe_deg=float(np.degrees(np.arctan2(-axle[0], side * axle[1]))),
+            load_n=float("nan") if self.ideal else load,
+            strut_length_m=self._shortened(index),
+        )
+
+    def _shortened(self, index: int) -> float:
+        """Change of the length of the spring that stands nearest to a wheel [m]; nan where the axle has none."""
+        away = [
+            float(np.linalg.norm(self.data.site_xpos[spring.lower] - self.data.xpos[self.wheels[index]]))
+            for spring in self.parts.springs
+        ]
+        if not away:
+            return float("nan")
+        spring = self.parts.springs[int(np.argmin(away))]
+        return self._length(spring)[0] - spring.length

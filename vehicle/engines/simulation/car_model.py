@@ -1,0 +1,74 @@
+"""A car ready to be stepped: assembled, compiled and trimmed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.rows import Rows
+from vehicle.engines.simulation.standing import require_body_modes, require_standing
+from vehicle.engines.simulation.static_trim import StaticTrim, trim
+from vehicle.errors import SimulationError
+from vehicle.model.assembly.spec import assemble
+from vehicle.model.flexbody.superelement import Superelement
+from vehicle.model.parameters.vehicle import Vehicle
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CarModel:
+    """Compiled model of a car with its preloads; the model is as generated, `prepare_model` comes with a run.
+
+    Attributes:
+        vehicle: parameters.
+        superelement: flexible body with the masses that are fixed to it.
+        spec: specification the model was compiled from.
+        origins: where each body frame sits in the design position [m], by body name.
+        model: compiled and trimmed model.
+        static: its preloads and loads.
+    """
+
+    vehicle: Vehicle
+    superelement: Superelement
+    spec: mujoco.MjSpec
+    origins: Mapping[str, Vector]
+    model: mujoco.MjModel
+    static: StaticTrim
+
+
+def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
+    """Assemble, compile and trim a car.
+
+    Args:
+        vehicle: parameters.
+        trimmed_body: superelement of its body.
+
+    Returns:
+        The car model.
+
+    Raises:
+        ConfigurationError: no such car can be; the message names the parameter.
+        SimulationError: MuJoCo refuses the model, or the car is not held.
+    """
+    require_body_modes(vehicle, trimmed_body)
+    assembly = assemble(vehicle, trimmed_body)
+    try:
+        model = assembly.spec.compile()
+    except ValueError as error:
+        raise SimulationError(f"MuJoCo refuses the generated car: {' '.join(str(error).split())}") from None
+    rows = Rows(model)
+    static = trim(rows)
+    require_standing(vehicle, rows, static)
+    return CarModel(
+        vehicle=vehicle,
+        superelement=assembly.superelement,
+        spec=assembly.spec,
+        origins=assembly.origins,
+        model=model,
+        static=static,
+    )

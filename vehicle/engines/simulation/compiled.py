@@ -1,0 +1,228 @@
+"""MuJoCo's callbacks and the stepping loop as compiled code: how they find their records, and only their own model.
+
+`mjData.userdata` of a simulation holds the address of its records, as the compiler holds them, and a stamp. This module
+imports numba at its head: it is loaded only by a run that compiles.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+from llvmlite import ir
+
+from vehicle.compiler import OPTIONS, numba_module, stamp
+from vehicle.engines.simulation.kernel import damper_force, rewrite
+from vehicle.engines.simulation.record_pointers import at, packed
+from vehicle.engines.simulation.recorder import Recorder
+from vehicle.engines.simulation.records import Efc, Simulation, Ticket
+from vehicle.engines.simulation.rows import Rows
+from vehicle.engines.simulation.sampling import Loop, Plates, copy_row, keep_sample, move_plates
+from vehicle.engines.simulation.structures import pointer_offsets, scalar_offsets, step_address, user_size_offset
+
+numba = numba_module()
+types, intrinsic = numba.types, numba.extending.intrinsic
+
+USER_SIZE = 2
+"""Numbers of userdata that the callbacks need: address of the records, stamp."""
+
+
+def _address_as_void_pointer(typing_context: Any, address: Any) -> Any:
+    """An integer address as a pointer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
+
+    return types.voidptr(types.int64), generate
+
+
+def _call_step(typing_context: Any, function: Any, model: Any, data: Any) -> Any:
+    """Call a C function `void f(mjModel*, mjData*)` that is known by its address."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        pointer = ir.IntType(8).as_pointer()
+        kind = ir.FunctionType(ir.VoidType(), [pointer, pointer])
+        target = builder.inttoptr(arguments[0], kind.as_pointer())
+        builder.call(target, [builder.inttoptr(argument, pointer) for argument in arguments[1:]])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.int64), generate
+
+
+simulation_at, loop_at = at(Simulation), at(Loop)
+as_pointer, call_step = intrinsic(_address_as_void_pointer), intrinsic(_call_step)
+
+
+@numba.njit
+def words(address, size):  # type: ignore[no-untyped-def]
+    """Whole numbers at an address."""
+    return numba.carray(as_pointer(address), size, numba.int64)
+
+
+@numba.njit
+def vector(address, size):  # type: ignore[no-untyped-def]
+    """Numbers at an address."""
+    return numba.carray(as_pointer(address), size, numba.float64)
+
+
+@numba.njit
+def record_address(model, data, user_size, user_data, mark):  # type: ignore[no-untyped-def]
+    """Address of the records of the simulation that a callback is called for; 0 where the model is another's."""
+    if words(model + user_size, 1)[0] < USER_SIZE:
+        return 0
+    user = vector(words(data + user_data, 1)[0], USER_SIZE)
+    if user[1] != mark:
+        return 0
+    address = int(user[0])
+    return address if words(address, 1)[0] == model else 0
+
+
+@numba.njit
+def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
+    """The fields over the rows, where they lie now."""
+    n, o = t.rows, t.efc
+    return Efc(
+        vector(words(data + o[0], 1)[0], n * velocities).reshape(n, velocities),
+        vector(words(data + o[1], 1)[0], 4 * n).reshape(n, 4),
+        vector(words(data + o[2], 1)[0], n),
+        vector(words(data + o[3], 1)[0], n),
+        vector(words(data + o[4], 1)[0], n),
+        vector(words(data + o[5], 1)[0], n),
+        vector(words(data + o[6], 1)[0], n),
+        vector(words(data + o[7], 1)[0], n),
+    )
+
+
+@functools.cache
+def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any]:
+    """`mjcb_control`, `mjcb_act_gain`, `mjcb_act_bias` as C functions.
+
+    They close over the offsets of `nuserdata` in mjModel and `userdata` in mjData and over the stamp, for these are the
+    key of the compiler's cache.
+    """
+
+    def control(model: int, data: int) -> None:
+        address = record_address(model, data, user_size, user_data, mark)
+        if address == 0:
+            return
+        one = simulation_at(address)
+        if numba.carray(as_pointer(data + one.ticket.row_count), 1, numba.int32)[0] != one.ticket.rows:
+            # Other rows than those the records were made for: the guard of the run finds a state that is not finite.
+            one.fields.qfrc_applied[:] = np.nan
+            return
+        efc = rows_at(data, one.ticket, one.fields.qvel.shape[0])
+        rewrite(vector(data + one.ticket.time, 1)[0], one.fields, efc, one.layout, one.weights, one.state)
+
+    def gain(model: int, data: int, index: int) -> float:
+        return 0.0
+
+    def bias(model: int, data: int, index: int) -> float:
+        address = record_address(model, data, user_size, user_data, mark)
+        if address == 0:
+            return 0.0
+        one = simulation_at(address)
+        return damper_force(index, one.fields, one.layout, one.state)
+
+    word = types.intp
+    law = types.float64(word, word, types.int32)
+    return (
+        numba.cfunc(types.void(word, word), cache=True, **OPTIONS)(control),
+        numba.cfunc(law, cache=True, **OPTIONS)(gain),
+        numba.cfunc(law, cache=True, **OPTIONS)(bias),
+    )
+
+
+@functools.cache
+def _loop(mark: int) -> Any:
+    """The compiled loop; `mark` makes the compiler's cache notice a change of the sources."""
+
+    def advance(address: int, first: int, last: int, row: int) -> int:
+        """Take the steps first..last and return the number of poses that were kept."""
+        loop = loop_at(address)
+        order, s, b = loop.order, loop.sources, loop.samples
+        posed = 0 if mark else -1
+        for index in range(first, last + 1):
+            move_plates(index, loop.plates)
+            recorded = index % order.every == 0
+            if recorded and (index // order.every) % order.pose_every == 0:
+                copy_row(b.poses[posed], s.position)
+                posed += 1
+            call_step(order.step, order.model, order.data)
+            if recorded:
+                # The constraint forces live in the arena, where each step may put them elsewhere.
+                solved = vector(words(order.data + order.force_offset, 1)[0], b.solved.shape[1])
+                keep_sample(row, order.half, order, s, solved, b)
+                row += 1
+        return posed
+
+    word = types.int64
+    return numba.njit(word(word, word, word, word), cache=True, nogil=True, **OPTIONS)(advance)
+
+
+class CompiledRows:
+    """The compiled callbacks of one simulation; they work on the records of its rows.
+
+    Args:
+        rows: of a model with `nuserdata` of at least two.
+        probe: any state of that model after a forward evaluation.
+
+    Raises:
+        LookupError: MuJoCo's structures are not as declared, or the model has no user data.
+    """
+
+    def __init__(self, rows: Rows, probe: mujoco.MjData) -> None:
+        model = rows.model
+        if model.nuserdata < USER_SIZE:
+            raise LookupError("mjModel.nuserdata, which is too small")
+        self.rows, self.model = rows, model
+        time, count = scalar_offsets(probe)
+        names = [f"efc_{name}" for name in Efc._fields]
+        self.offsets = pointer_offsets(probe, (*names, "efc_force", "userdata"))
+        efc = np.array([self.offsets[name] for name in names], dtype=np.int64)
+        self.ticket = Ticket(model._address, rows.layout.row_count, count, time, efc)
+        self.attached: list[tuple[mujoco.MjData, Simulation, npt.NDArray[np.int64]]] = []
+        self.step_address = step_address()
+        functions = _callbacks(user_size_offset(model), self.offsets["userdata"], stamp())
+        self.control, self.gain, self.bias = (function.ctypes for function in functions)
+
+    def attach(self, data: mujoco.MjData) -> None:
+        """Let the callbacks act on a state of the model, with the present state of the rows."""
+        rows = self.rows
+        simulation = Simulation(self.ticket, rows.fields(data), rows.layout, rows.weights, rows.state)
+        memory = packed(simulation)
+        data.userdata[:USER_SIZE] = memory.ctypes.data, stamp()
+        # The memory holds addresses of these arrays.
+        self.attached.append((data, simulation, memory))
+
+    def detach(self) -> None:
+        """Leave no address behind in a state."""
+        for data, _, _ in self.attached:
+            data.userdata[:USER_SIZE] = 0.0
+        self.attached.clear()
+
+    def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        """Rewrite the rows of an attached state."""
+        self.control(model._address, data._address)
+
+    def step(self, data: mujoco.MjData) -> None:
+        """One step of an attached state, the way the compiled loop takes it."""
+        ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.step_address)(self.model._address, data._address)
+
+    def loop(self, recorder: Recorder, plates: Plates) -> Callable[[int, int], int]:
+        """What takes steps first..last of an attached state into a recorder and returns how many poses it kept."""
+        order = recorder.order._replace(step=self.step_address, force_offset=self.offsets["efc_force"])
+        compiled, loop = _loop(stamp()), Loop(order, plates, recorder.sources, recorder.buffers)
+        memory = packed(loop)
+
+        def advance(first: int, last: int) -> int:
+            # The closure keeps the arrays whose addresses the memory holds.
+            return int(compiled(memory.ctypes.data, first, last, recorder.filled)) if loop else 0
+
+        # No step at all: compiling is no part of the time of the run.
+        advance(1, 0)
+        return advance

@@ -1,0 +1,316 @@
+"""The element laws as constraint rows: what `mjcb_control` writes before MuJoCo solves. One source for both forms.
+
+MuJoCo answers a quadratic row with f = D (aref - J a). The callback rewrites each row of an element so that, with
+the explicit part f0 given to the generalised forces,
+
+    f = f0 - D J a,    f0 = preload - K r - B r' - f2,    D = B h/2 + beta K h2 + branch,
+
+r' being the rate at the middle of the past step: B (r' + h a/2) is the damping at the present time (centred, second
+order), and beta = 1/12 makes the step of a linear system fourth order in its frequencies (Fox and Goodwin, Numerov);
+stiff local springs take up to beta = 1/4, which is stable at any step (Newmark; see `step_weights`). The friction
+row of a damper is f = -clamp(c (v + h a)): D = c h, aref = -v/h, its limit the friction force: set-valued in effect,
+sticking is exact. With c = (2/pi) Fd eps it is a line through zero, clamped at the limit Fd: the slope at rest of the
+published Fd (2/pi) atan(eps v), without its tail (`vehicle.model.laws.friction`).
+Every steeper piece of the curve of a damper, clamp(e (v - m), e w), is a friction row too (`vehicle.model.laws.curve`).
+It has no jump, so that it is centred like the viscous one: D = e h/2, aref = -2 (v - m)/h, second order, at any slope.
+The two forces of a bushing are opposite and act each at the point of its own part, in the axes of the carrier; the
+moment r x f of their distance r is left out, which changes no frequency by more than 0.05 %.
+Rotations need no rows: their torques are given explicitly (`vehicle.engines.simulation.rotations`).
+
+Modal coordinates q of the flexible body move node n by d = R Phi_n q, R being the rotation of the body. They enter a
+row there as r -> r +- d, and its derivative by the coordinates as J -> J +- (R Phi_n, -[d]x on what turns the body):
+without the second part the body would miss the torque d x F of every force at a node. The line of a main spring goes
+through the displaced seat: n = (x_up + d - x_low) / length, r = length - L0, J = n' (J_up + R Phi - [d]x - J_low).
+Without d in n, the transverse stiffness F / length of a loaded spring would not act on the modes.
+
+The functions are compiled (`vehicle.engines.simulation.compiled`), or run as they stand where there is no compiler.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vehicle.compiler import jitable
+from vehicle.engines.simulation.control import control
+from vehicle.engines.simulation.element_records import Layout, Tables
+from vehicle.engines.simulation.modal_rows import modal_rows
+from vehicle.engines.simulation.modal_space import advance_modes, modal_forces
+from vehicle.engines.simulation.records import Efc, Fields, State, Weights
+from vehicle.engines.simulation.rolling import headings, rolling_forces, rolling_rows
+from vehicle.engines.simulation.rotations import rotations
+from vehicle.model.laws.curve import curve_force
+from vehicle.model.laws.damper import friction_limit
+from vehicle.model.laws.friction import slope_at_rest
+
+EMPTY_ROW = 1e-9
+"""Impedance [kg] of a row without damping and stiffness: small against every mass, and not zero."""
+
+
+@jitable
+def bent(k: int, displacement: float, stiffness: float, t: Tables, s: State) -> float:
+    """What a curve has beside the tangent at its operating point, F(at + x) - F(at) - K x [N]."""
+    s.stretch[k] = t.at[k] + displacement
+    force: float = curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
+    force -= curve_force(t.at[k], t.edges[k], t.slopes[k], t.offsets[k])
+    return force - stiffness * displacement
+
+
+@jitable
+def stops(d: Fields, e: Layout, s: State) -> None:
+    """Forces of the stops of dampers on their joints, known with the positions; after the forces of the rows."""
+    t = e.tables
+    for k in range(t.kinds.shape[0]):
+        if t.kinds[k] == 2:
+            dof, place = e.dampers.dofs[t.elements[k]], e.dampers.places[t.elements[k]]
+            s.stretch[k] = d.qpos[place]
+            d.qfrc_applied[dof] -= curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
+
+
+@jitable
+def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Main springs: the line through the displaced seat, its derivatives, and the elastic force."""
+    own, m = e.springs, e.modes
+    modes, column, place, turn = m.size, m.first_velocity, m.first_position, d.xmat[m.body]
+    for spring in range(own.rows.shape[0]):
+        row = own.rows[spring]
+        ends, line = s.ends[2 * spring : 2 * spring + 2], s.line[spring]
+        for i in range(3):
+            ends[0, i] = d.site_xpos[own.sites[spring, 0], i]
+            ends[1, i] = d.site_xpos[own.sites[spring, 1], i]
+            for j in range(3):
+                for k in range(modes):
+                    ends[1, i] += turn[3 * i + j] * own.shapes[spring, j * modes + k] * d.qpos[place + k]
+            line[i] = ends[1, i] - ends[0, i]
+        length = np.sqrt(line[0] * line[0] + line[1] * line[1] + line[2] * line[2])
+        for i in range(3):
+            line[i] /= length
+        for dof in range(efc.J.shape[1]):
+            efc.J[row, dof] = 0.0
+        for j in range(3):
+            along = line[0] * turn[j] + line[1] * turn[3 + j] + line[2] * turn[6 + j]
+            for k in range(modes):
+                efc.J[row, column + k] += along * own.shapes[spring, j * modes + k]
+        s.explicit[row] = c.preload[row] - own.stiffness[spring] * (length - own.lengths[spring])
+        for k in range(e.tables.kinds.shape[0]):
+            if e.tables.kinds[k] == 1 and e.tables.elements[k] == spring:
+                s.explicit[row] -= bent(k, length - own.lengths[spring], own.stiffness[spring], e.tables, s)
+        efc.D[row] = c.spring_impedance[spring]
+        efc.aref[row] = 0.0
+    for entry in range(own.dofs.shape[0]):
+        spring, end, dof, tree = own.dofs[entry, 0], own.dofs[entry, 1], own.dofs[entry, 2], own.dofs[entry, 3]
+        line, point, centre, motion = s.line[spring], s.ends[2 * spring + end], d.subtree_com[tree], d.cdof[dof]
+        # MuJoCo refers the motion of a tree to its centre of mass.
+        x, y, z = point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]
+        velocity = (
+            line[0] * (motion[3] + motion[1] * z - motion[2] * y)
+            + line[1] * (motion[4] + motion[2] * x - motion[0] * z)
+            + line[2] * (motion[5] + motion[0] * y - motion[1] * x)
+        )
+        efc.J[own.rows[spring], dof] += (2 * end - 1) * velocity
+
+
+@jitable
+def oblique_rows(d: Fields, efc: Efc, e: Layout) -> None:
+    """Rows along directions of their own, P R' (J, r, r'), instead of the axes of the world."""
+    b = e.bushings
+    for k in range(b.oblique.shape[0]):
+        n = b.oblique[k]
+        frame, way, row = d.xmat[b.carriers[n]], b.directions[k], b.rows[n, 0]
+        for column in range(efc.J.shape[1] + 2):
+            if column < efc.J.shape[1]:
+                x, y, z = efc.J[row, column], efc.J[row + 1, column], efc.J[row + 2, column]
+            elif column == efc.J.shape[1]:
+                x, y, z = efc.pos[row], efc.pos[row + 1], efc.pos[row + 2]
+            else:
+                x, y, z = efc.vel[row], efc.vel[row + 1], efc.vel[row + 2]
+            u = frame[0] * x + frame[3] * y + frame[6] * z
+            v = frame[1] * x + frame[4] * y + frame[7] * z
+            w = frame[2] * x + frame[5] * y + frame[8] * z
+            for i in range(3):
+                along = way[3 * i] * u + way[3 * i + 1] * v + way[3 * i + 2] * w
+                if column < efc.J.shape[1]:
+                    efc.J[row + i, column] = along
+                elif column == efc.J.shape[1]:
+                    efc.pos[row + i] = along
+                else:
+                    efc.vel[row + i] = along
+
+
+@jitable
+def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
+    """Residual and rate of every element in its own axes, with the velocity of the plates taken off."""
+    b = e.bushings
+    for n in range(b.rows.shape[0]):
+        for i in range(3):
+            s.force[n, i] = efc.vel[b.rows[n, i]]
+    for tyre in range(e.tyres.shape[0]):
+        for i in range(3):
+            s.force[e.tyres[tyre], i] -= s.plate_velocity[tyre, i]
+    for n in range(b.rows.shape[0]):
+        frame = d.xmat[b.carriers[n]]
+        x, y, z = efc.pos[b.rows[n, 0]], efc.pos[b.rows[n, 1]], efc.pos[b.rows[n, 2]]
+        u, v, w = s.force[n, 0], s.force[n, 1], s.force[n, 2]
+        for i in range(3):
+            s.residual[n, i] = frame[i] * x + frame[3 + i] * y + frame[6 + i] * z
+            s.rate[n, i] = frame[i] * u + frame[3 + i] * v + frame[6 + i] * w
+    for k in range(b.oblique.shape[0]):
+        n = b.oblique[k]
+        for i in range(3):
+            s.residual[n, i], s.rate[n, i] = efc.pos[b.rows[n, i]], efc.vel[b.rows[n, i]]
+
+
+@jitable
+def advance_branches(time: float, c: Weights, s: State) -> None:
+    """Carry the Maxwell branches over the step that has just been completed."""
+    last = s.last_time[0]
+    if time == last:
+        return
+    for n in range(s.rate.shape[0]):
+        for i in range(3):
+            rate = s.rate[n, i]
+            if last >= 0.0:
+                acceleration = (rate - s.last_rate[n, i]) / c.timestep
+                s.branch_force[n, i] = s.branch_past[n, i] + c.slope[n, i] * acceleration
+                s.branch_past[n, i] = c.decay[n, i] * s.branch_force[n, i] + c.gain[n, i] * rate
+            s.last_rate[n, i] = rate
+    s.last_time[0] = time
+
+
+@jitable
+def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """f0 = preload - K r - B r' - f2, turned into world axes; impedance and reference of the rows.
+
+    The known part of the branch force is f2 + beta (f2(+h) - 2 f2 + f2(-h)) without what the acceleration adds.
+    """
+    b = e.bushings
+    for n in range(b.rows.shape[0]):
+        for i in range(3):
+            rate, past = s.rate[n, i], s.branch_past[n, i]
+            curvature = (c.decay[n, i] - 2.0) * past + c.gain[n, i] * rate + s.branch_force[n, i]
+            branch = past + c.average[n, i] * curvature
+            elastic = b.stiffness[n, i] * s.residual[n, i]
+            s.force[n, i] = c.preload[b.rows[n, i]] - elastic - b.damping[n, i] * rate - branch
+    t = e.tables
+    for k in range(t.kinds.shape[0]):
+        if t.kinds[k] == 0:
+            n, i = t.elements[k], t.axes[k]
+            s.force[n, i] -= bent(k, s.residual[n, i], b.stiffness[n, i], t, s)
+    for k in range(b.one_sided.shape[0]):
+        n = b.one_sided[k]
+        s.contact[0, k] = max(0.0, s.force[n, 2] + b.damping[n, 2] * s.rate[n, 2])
+    for tyre in range(e.tyres.shape[0]):
+        for i in range(3):
+            s.force[e.tyres[tyre], i] += c.inertial[tyre, i] * s.plate_acceleration[tyre, i]
+    for n in range(b.rows.shape[0]):
+        frame = d.xmat[b.carriers[n]]
+        x, y, z = s.force[n, 0], s.force[n, 1], s.force[n, 2]
+        for i in range(3):
+            row = b.rows[n, i]
+            s.explicit[row] = frame[3 * i] * x + frame[3 * i + 1] * y + frame[3 * i + 2] * z
+            efc.D[row] = c.impedance[n, i]
+            efc.aref[row] = 0.0
+    for k in range(b.oblique.shape[0]):
+        n = b.oblique[k]
+        for i in range(3):
+            s.explicit[b.rows[n, i]] = s.force[n, i]
+    lift_off(efc, e, c, s)
+
+
+@jitable
+def lift_off(efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """One-sided contacts give max(0, f0 - D J a) along z: a row that would pull at the last J a is empty now.
+
+    The force is continuous, so a row that is wrong for one step changes a velocity by h2 at most: second order.
+    Carriers are the ground and the plates, which do not turn: rows are element axes.
+    """
+    b = e.bushings
+    for k in range(b.one_sided.shape[0]):
+        n = b.one_sided[k]
+        row, rate = b.rows[n, 2], s.rate[n, 2]
+        if s.force[n, 2] - c.impedance[n, 2] * (rate - s.contact[1, k]) / c.timestep <= 0.0:
+            s.explicit[row] = 0.0
+            efc.D[row] = EMPTY_ROW
+        s.contact[1, k] = rate
+
+
+@jitable
+def ideal_joints(efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Ball joints without a law: MuJoCo's own reference, which it made before it knew of the modal coordinates."""
+    for n in range(e.joints.shape[0]):
+        for i in range(3):
+            row = e.joints[n, i]
+            s.explicit[row] = c.preload[row]
+            efc.aref[row] = -efc.KBIP[row, 1] * efc.vel[row] - efc.KBIP[row, 0] * efc.KBIP[row, 2] * efc.pos[row]
+
+
+@jitable
+def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Viscous, friction and valve rows of the dampers."""
+    own = e.dampers
+    for n in range(own.rows.shape[0]):
+        efc.D[own.rows[n]] = c.damper_impedance[n]
+        efc.aref[own.rows[n]] = 0.0
+        row, sliding = own.frictions[n], d.qvel[own.dofs[n]]
+        limit = friction_limit(own.laws[n], sliding)
+        efc.D[row] = max(slope_at_rest(limit, own.laws[n]["smoothing"]) * c.timestep, EMPTY_ROW)
+        efc.aref[row] = -sliding / c.timestep
+        efc.frictionloss[row] = limit
+    for n in e.controls.dampers:
+        efc.D[own.rows[n]] = max(0.5 * c.timestep * s.coefficient[n], EMPTY_ROW)
+    for n in range(own.valves.shape[0]):
+        row, damper = own.valves[n, 0], own.valves[n, 1]
+        efc.D[row] = c.valve_impedance[n]
+        efc.aref[row] = -2.0 * (d.qvel[own.dofs[damper]] - own.pieces[n, 1]) / c.timestep
+        efc.frictionloss[row] = own.pieces[n, 2]
+
+
+@jitable
+def generalised_forces(d: Fields, efc: Efc, e: Layout, s: State) -> None:
+    """R = 1 / D, and the explicit forces of the rows on the coordinates that they reach, J' f0."""
+    total = d.qfrc_applied
+    total[:] = 0.0
+    for row in range(efc.D.shape[0]):
+        efc.R[row] = 1.0 / efc.D[row]
+    for entry in range(e.reach.shape[0]):
+        row, rows, first, last = e.reach[entry, 0], e.reach[entry, 1], e.reach[entry, 2], e.reach[entry, 3]
+        # Views spare the inner loop the look for negative indices.
+        part = total[first:last]
+        if rows == 3:
+            x, y, z = s.explicit[row], s.explicit[row + 1], s.explicit[row + 2]
+            jx, jy, jz = efc.J[row, first:last], efc.J[row + 1, first:last], efc.J[row + 2, first:last]
+            for j in range(last - first):
+                part[j] += x * jx[j] + y * jy[j] + z * jz[j]
+        else:
+            force, along = s.explicit[row], efc.J[row, first:last]
+            for j in range(last - first):
+                part[j] += force * along[j]
+
+
+@jitable
+def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
+    """Rewrite the rows of one state."""
+    advance_modes(time, d, e, c, s)
+    if e.modes.size > 0:
+        modal_rows(d, efc, e, s)
+    oblique_rows(d, efc, e)
+    rolling_rows(d, efc, e)
+    local_axes(d, efc, e, s)
+    headings(time, d, e, s)
+    control(time, d, e, s)
+    advance_branches(time, c, s)
+    elements(d, efc, e, c, s)
+    springs(d, efc, e, c, s)
+    ideal_joints(efc, e, c, s)
+    dampers(d, efc, e, c, s)
+    generalised_forces(d, efc, e, s)
+    modal_forces(d, e, s)
+    rotations(d, e, c, s)
+    rolling_forces(d, efc, e, c, s)
+    stops(d, e, s)
+
+
+@jitable
+def damper_force(damper: int, d: Fields, e: Layout, s: State) -> float:
+    """Force of a user actuator [N]: -D v at the present velocity, or -c v, and what is constant in the law."""
+    force: float = -s.coefficient[damper] * d.actuator_velocity[damper] - e.dampers.laws[damper]["shift"]
+    return force

@@ -1,0 +1,339 @@
+"""Model -> rows: where the elements of a compiled car stand in its rows and columns, and their constants."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.element_records import (
+    Bushings,
+    Controls,
+    Dampers,
+    Index,
+    Indices,
+    Layout,
+    ModalSpace,
+    Modes,
+    Rolling,
+    Rotations,
+    Springs,
+    Table,
+    Vector,
+)
+from vehicle.engines.simulation.law_numbers import law_names, laws_of, model_numbers, with_numbers
+from vehicle.engines.simulation.tables import tables_through
+from vehicle.model.assembly.law_numbers import TURNING
+from vehicle.model.laws.damper import unpack
+from vehicle.model.laws.semi_active import in_steps
+
+
+def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
+    """A custom numeric field of the model, None where it does not exist."""
+    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, name)
+    if index < 0:
+        return None
+    start = model.numeric_adr[index]
+    return np.array(model.numeric_data[start : start + model.numeric_size[index]])
+
+
+def read_layout(model: mujoco.MjModel) -> Layout:
+    """Collect the elements from the custom fields of a compiled car.
+
+    Args:
+        model: made by `vehicle.model.assembly`, or loaded from its MJCF file.
+
+    Returns:
+        The arrays, in the order of the constraint rows.
+    """
+    kinds, law, numbers = mujoco.mjtEq, law_names(model), model_numbers(model)
+    names, springs, laws = law.bushings, law.springs, laws_of(law, numbers)
+    types = [kinds(kind) for kind in model.eq_type]
+    heights = [3 if kind == kinds.mjEQ_CONNECT else 1 for kind in types]
+    first_rows = np.cumsum([0, *heights])
+    equalities = {str(model.equality(index).name): index for index in range(model.neq)}
+    joints = _modal_joints(model)
+    modes = len(joints)
+    modal = range(int(model.jnt_dofadr[joints[0]]), int(model.jnt_dofadr[joints[0]]) + modes) if joints else range(0)
+    ends: dict[str, tuple[int, int]] = {}  # sites of a connection, or of a spring
+    for name, index in equalities.items():
+        if types[index] == kinds.mjEQ_CONNECT:
+            ends[name] = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
+        elif types[index] == kinds.mjEQ_TENDON:
+            ends[name] = model.site(f"{name}/lower").id, model.site(f"{name}/upper").id
+    rolling = [name for name in names if f"rolling/{name}" in numbers]
+    spins = {name: _spin(model, ends[name]) for name in rolling}
+    reach = [
+        run
+        for name, sites in ends.items()
+        for run in _reach(model, sites, (*modal, *spins.get(name, ())), equalities[name], first_rows)
+    ]
+
+    def rows_of(chosen: Sequence[str]) -> Index:
+        return _whole([first_rows[equalities[name]] for name in chosen])
+
+    balls = [name for name in ends if name not in springs]
+    carriers = _whole([model.site_bodyid[ends[name][1]] for name in names])
+    turning = [name for name, own in zip(names, laws, strict=True) if own[TURNING] > 0.0]
+    none = np.zeros(0)
+    plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
+    empty = np.zeros((0, 3))
+    layout = Layout(
+        bushings=Bushings(
+            rows=_triples(rows_of(names)),
+            carriers=carriers,
+            stiffness=empty,
+            damping=empty,
+            branch_stiffness=empty,
+            branch_time=empty,
+            averaged=_whole([]),
+            one_sided=_whole([]),
+            oblique=_whole([]),
+            directions=np.zeros((0, 9)),
+        ),
+        rotations=Rotations(
+            sites=_whole([ends[name] for name in turning], 2),
+            stiffness=np.zeros(0),
+            turning=_turning(model, [ends[name] for name in turning]),
+            **_node_rotations(model, turning, ends, modes),
+        ),
+        springs=Springs(
+            rows=rows_of(springs),
+            stiffness=np.zeros(0),
+            lengths=np.array([model.tendon_length0[model.eq_obj1id[equalities[name]]] for name in springs]),
+            sites=_whole([ends[name] for name in springs], 2),
+            shapes=_shapes(model, springs, modes),
+            dofs=_spring_dofs(model, [ends[name] for name in springs]),
+        ),
+        dampers=_dampers(model, rows_of, int(first_rows[-1])),
+        controls=_controls(model, [name for name in law.dampers if f"control/{name}" in numbers], modes),
+        tables=tables_through([]),
+        modes=_modes(
+            model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal
+        ),
+        space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
+        rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
+        joints=_triples(rows_of([name for name in balls if name not in names])),
+        tyres=_whole(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
+        reach=_whole(reach, 4),
+        row_count=int(first_rows[-1]) + int(np.count_nonzero(model.dof_frictionloss > 0.0)) + len(law.valves),
+        velocity_count=int(model.nv),
+    )
+    return with_numbers(layout, law, numbers, float(model.opt.timestep))
+
+
+def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
+    """Names of the wheels of a car, in the order of their plates."""
+    plates = sorted((int(place), index) for index, place in enumerate(model.body_mocapid) if place >= 0)
+    return tuple(str(model.body(index).name).removeprefix("plate_") for _, index in plates)
+
+
+def places_of(model: mujoco.MjModel) -> tuple[str, ...]:
+    """Names of the recorded places of a car, in the order of their sensors."""
+    return tuple(str(model.sensor(index).name).removesuffix("_acc") for index in range(model.nsensor))
+
+
+def _whole(values: Any, columns: int = 0) -> Index:
+    """Integers; rows of as many columns as given."""
+    array = np.array(values, dtype=np.int64, order="C")
+    return array.reshape(-1, columns) if columns else array.reshape(-1)
+
+
+def _triples(first: Index) -> Indices:
+    return np.ascontiguousarray(first[:, None] + np.arange(3))
+
+
+def _modal_joints(model: mujoco.MjModel) -> list[int]:
+    """Ids of the joints that hold the modal coordinates."""
+    found: list[int] = []
+    while True:
+        index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"mode_{len(found) + 1}")
+        if index < 0:
+            return found
+        found.append(index)
+
+
+def _shapes(model: mujoco.MjModel, names: Sequence[str], modes: int) -> Table:
+    """Modal shapes of elements, zero where they are rigid; (names, 3 modes)."""
+    found = [numeric(model, f"shape/{name}") for name in names]
+    return np.array([np.zeros(3 * modes) if one is None else one for one in found]).reshape(len(names), 3 * modes)
+
+
+def _modes(
+    model: mujoco.MjModel,
+    names: Sequence[str],
+    ends: dict[str, tuple[int, int]],
+    rows_of: Callable[[Sequence[str]], Index],
+    modal: range,
+) -> Modes:
+    """The flexible body, and what its modes do to the rows of connections at its nodes."""
+    joints, body = _modal_joints(model), max(int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "body")), 0)
+    # The residual is moving less carrier: the body's own shape counts with the sign of its role.
+    signs = [1.0 if model.site_bodyid[ends[name][0]] == body else -1.0 for name in names]
+    shapes = np.reshape(signs, (-1, 1)) * _shapes(model, names, len(modal))
+    by_node = shapes.reshape(len(names), 3, len(modal))
+    dofs = np.array(_above(model, body), dtype=np.int64)
+    return Modes(
+        body=body,
+        size=len(modal),
+        first_velocity=modal.start,
+        first_position=int(model.jnt_qposadr[joints[0]]) if joints else 0,
+        turns=dofs[_turns(model)[dofs]],
+        rows=np.ascontiguousarray(_triples(rows_of(names)).T),
+        node_shapes=by_node.transpose(1, 0, 2).reshape(3, len(names) * len(modal)),
+        mode_shapes=by_node.transpose(2, 1, 0).reshape(len(modal), 3 * len(names)),
+    )
+
+
+def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int) -> Dampers:
+    """The dampers: user actuators on joints, each with an equality row of its name."""
+    own = _damper_actuators(model)
+    joints = [int(model.actuator_trnid[index, 0]) for index in own]
+    dofs = _whole([model.jnt_dofadr[joint] for joint in joints])
+    tendons = np.flatnonzero(model.tendon_frictionloss > 0.0)
+    wrapped = [joints.index(int(model.wrap_objid[model.tendon_adr[tendon]])) for tendon in tendons]
+    # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
+    valves = [(first + len(own) + index, damper) for index, damper in enumerate(wrapped)]
+    return Dampers(
+        laws=unpack(np.zeros((0, 10))),
+        rows=rows_of([str(model.actuator(index).name) for index in own]),
+        frictions=first + np.argsort(np.argsort(dofs)),
+        dofs=dofs,
+        places=_whole([model.jnt_qposadr[joint] for joint in joints]),
+        valves=_whole(valves, 2),
+        pieces=np.zeros((0, 3)),
+    )
+
+
+def _damper_actuators(model: mujoco.MjModel) -> list[int]:
+    return [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
+
+
+def _controls(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> Controls:
+    """The controlled dampers, each with the sites of its sensors."""
+    places = [(f"sensor/{name}/lower", f"sensor/{name}/upper") for name in chosen]
+    sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in places]
+    return Controls(
+        dampers=_whole([]),
+        laws=in_steps(np.zeros((0, 8)), 1.0),
+        sites=_whole(sites, 2),
+        shapes=_shapes(model, [place for both in places for place in both], modes),
+        dofs=_spring_dofs(model, sites),
+    )
+
+
+def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:
+    """Which coordinates turn the moving part (+1) and the carrier (-1) of each element; both cancel."""
+    signs = np.zeros((len(sites), model.nv), dtype=np.int64)
+    for row, (moving, carrier) in zip(signs, sites, strict=True):
+        row[_moved_by(model, moving)] += 1
+        row[_moved_by(model, carrier)] -= 1
+    signs[:, ~_turns(model)] = 0
+    pairs = np.argwhere(signs)
+    return _whole(np.column_stack([pairs, signs[tuple(pairs.T)]]), 3)
+
+
+def _node_rotations(
+    model: mujoco.MjModel, names: Sequence[str], ends: dict[str, tuple[int, int]], modes: int
+) -> dict[str, Any]:
+    """Elements on nodes of the body whose rotation in the modes is known: which, on which side, and the rotation."""
+    body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "body")
+    read = [numeric(model, f"rotation/{name}") for name in names]
+    known = [(n, psi) for n, psi in enumerate(read) if psi is not None]
+    sides = [int(model.site_bodyid[ends[names[n]][0]] != body) for n, _ in known]
+    return {
+        "nodes": _whole([(n, side) for (n, _), side in zip(known, sides, strict=True)], 2),
+        "shapes": np.reshape([psi for _, psi in known], (len(known), 3 * modes)).astype(float),
+    }
+
+
+def _turns(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
+    """Which velocity coordinates turn a body: all but slides and the first three of free bodies; (nv,)."""
+    found = np.ones(model.nv, dtype=np.bool_)
+    kinds = mujoco.mjtJoint
+    for joint in range(model.njnt):
+        shifts = {int(kinds.mjJNT_SLIDE): 1, int(kinds.mjJNT_FREE): 3}.get(int(model.jnt_type[joint]), 0)
+        found[model.jnt_dofadr[joint] : model.jnt_dofadr[joint] + shifts] = False
+    return found
+
+
+def _spring_dofs(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:
+    """Spring, end, velocity coordinate and its tree, for all coordinates that move an end of a spring."""
+    found = [
+        (spring, end, dof, int(model.body_rootid[model.dof_bodyid[dof]]))
+        for spring, ends in enumerate(sites)
+        for end, site in enumerate(ends)
+        for dof in _moved_by(model, site)
+    ]
+    return _whole(found, 4)
+
+
+def _moved_by(model: mujoco.MjModel, site: int) -> list[int]:
+    """Velocity coordinates that move a site."""
+    return _above(model, int(model.site_bodyid[site]))
+
+
+def _above(model: mujoco.MjModel, body: int) -> list[int]:
+    """Velocity coordinates that move a body, from itself down to the world."""
+    found: list[int] = []
+    while body > 0:
+        first = int(model.body_dofadr[body])
+        found += range(first, first + int(model.body_dofnum[body]))
+        body = int(model.body_parentid[body])
+    return found
+
+
+def _spin(model: mujoco.MjModel, sites: tuple[int, int]) -> tuple[int]:
+    """Velocity coordinate about the axle of the wheel on a plate."""
+    wheel = str(model.body(model.site_bodyid[sites[1]]).name).removeprefix("plate_")
+    return (int(model.joint(f"spin_{wheel}").dofadr[0]),)
+
+
+def _rolling(
+    model: mujoco.MjModel, wheels: Sequence[tuple[int, tuple[int, int], int]], plates: dict[int, Any]
+) -> Rolling:
+    """The rolling tyres: position among the bushings, sites and spin of each; their numbers are zero."""
+    order = sorted(int(place) for place in plates.values() if place >= 0)
+    hubs = [int(model.site_bodyid[sites[0]]) for _, sites, _ in wheels]
+    inertias = []
+    for _, _, spin in wheels:
+        turning = np.flatnonzero(model.body_weldid == model.dof_bodyid[spin])
+        frames = np.zeros((len(turning), 9))
+        for frame, body in zip(frames, turning, strict=True):
+            mujoco.mju_quat2Mat(frame, model.body_iquat[body])
+        inertias.append(float(np.sum(frames.reshape(-1, 3, 3)[:, 1] ** 2 * model.body_inertia[turning])))
+    count, course, rest = len(wheels), np.zeros(0), np.zeros(0)
+    if count:
+        joint = model.joint("body")
+        first, place = int(joint.dofadr[0]), int(joint.qposadr[0])
+        course, rest = np.array([first, first + 1, first + 5, place, place + 1]), model.qpos0[place : place + 2].copy()
+    return Rolling(
+        tyres=_whole([index for index, _, _ in wheels]),
+        plates=_whole([order.index(int(plates[index])) for index, _, _ in wheels]),
+        sites=_whole([sites[0] for _, sites, _ in wheels]),
+        hubs=_whole(hubs),
+        spins=_whole([spin for _, _, spin in wheels]),
+        arms=np.zeros((count, 3)),
+        speeds=np.zeros(count),
+        trails=np.zeros(count),
+        inertias=np.array(inertias),
+        dofs=_whole(
+            [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 3
+        ),
+        course=_whole(course),
+        rest=rest,
+        hold=np.zeros(0),
+    )
+
+
+def _reach(
+    model: mujoco.MjModel, sites: tuple[int, int], further: Sequence[int], equality: int, first_rows: Index
+) -> list[tuple[int, int, int, int]]:
+    """Rows, and the runs of columns in which the motion of two sites has derivatives."""
+    columns = np.unique([*_moved_by(model, sites[0]), *_moved_by(model, sites[1]), *further])
+    runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
+    row, rows = int(first_rows[equality]), int(first_rows[equality + 1] - first_rows[equality])
+    return [(row, rows, int(run[0]), int(run[-1]) + 1) for run in runs if len(run)]

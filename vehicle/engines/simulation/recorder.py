@@ -1,0 +1,370 @@
+"""Collects the state of every recorded step and turns it into channels and energies, a chunk at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.acceleration import AHEAD, acceleration
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.layout import numeric
+from vehicle.engines.simulation.loads import LoadPlaces, spring_coordinates
+from vehicle.engines.simulation.plate_arrays import PlateArrays
+from vehicle.engines.simulation.recording import Energies, Recording, Statistics
+from vehicle.engines.simulation.rows import Rows, joint_dampers
+from vehicle.engines.simulation.sampling import Order, Samples, Sources, keep_sample
+from vehicle.engines.simulation.tables import curve_of
+from vehicle.names import AXES, channel_units
+from vehicle.signals.excitation.signal import Signal, uniform_time
+
+Vector = npt.NDArray[np.float64]
+
+CHUNK = 512
+"""Recorded samples between two flushes of the buffers, two checks of the state and two calls of the progress."""
+
+
+class Recorder:
+    """Buffers of one run.
+
+    Args:
+        car: the car that runs.
+        model, data: its prepared model and state.
+        rows: its rows.
+        samples: number of recorded samples.
+        every: steps between two recorded samples.
+        pose_every: samples between two stored poses.
+        requested: names of the channels on request to be recorded beside the others.
+    """
+
+    def __init__(
+        self,
+        car: CarModel,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        rows: Rows,
+        *,
+        samples: int,
+        every: int,
+        pose_every: int,
+        requested: Sequence[str] = (),
+    ) -> None:
+        self.car, self.model, self.data, self.rows = car, model, data, rows
+        self.step = model.opt.timestep
+        self.samples, self.every, self.pose_every = samples, every, pose_every
+        e, modes = rows.layout, rows.layout.modes
+        self.shapes = {}
+        self.places = [output.name for output in car.vehicle.composition.outputs]
+        self.wheels, self.dampers = car.vehicle.wheels, [damper.name for damper in car.vehicle.composition.dampers]
+        for place in self.places:
+            shape = numeric(car.model, f"shape/place/{place}")
+            if shape is not None:
+                self.shapes[place] = shape.reshape(3, -1)
+        self.settings = [name for name in requested if name in car.vehicle.setting_channels]
+        loads = [name for name in requested if name not in self.settings]
+        self.loads = LoadPlaces(car, rows, loads) if loads else None
+        bodies = np.zeros(0, dtype=np.int64) if self.loads is None else self.loads.bodies
+        joints = spring_coordinates(car, model)
+        self.sites = np.array([model.site(f"place/{place}").id for place in self.places], dtype=np.int64)
+        self.buffers = Samples(
+            places=np.zeros((CHUNK, 3 * len(self.sites))),
+            turn=np.zeros((CHUNK, 9)),
+            modal_position=np.zeros((CHUNK, rows.state.modal.shape[1])),
+            modal_velocity=np.zeros((CHUNK, rows.state.modal.shape[1])),
+            modal_pull=np.zeros(len(rows.state.modal_pull)),
+            damper_velocity=np.zeros((CHUNK, len(e.dampers.dofs))),
+            coefficient=np.zeros((CHUNK, len(e.dampers.dofs))),
+            actuator=np.zeros((CHUNK, model.nu)),
+            solved=np.zeros((CHUNK, e.row_count)),
+            explicit=np.zeros((CHUNK, e.row_count)),
+            rate=np.zeros((CHUNK, *e.bushings.rows.shape)),
+            branch=np.zeros((CHUNK, *e.bushings.rows.shape)),
+            poses=np.zeros((CHUNK, model.nq)),
+            frames=np.zeros((CHUNK, 12 * len(bodies))),
+            springs=np.zeros((CHUNK, 2 * len(joints))),
+            contact=np.zeros((CHUNK, len(e.bushings.one_sided))),
+            heading=np.zeros((CHUNK, len(e.rolling.tyres))),
+            pushed=np.zeros(CHUNK),
+        )
+        self.sources = Sources(
+            position=data.qpos,
+            velocity=data.qvel,
+            acceleration=data.qacc,
+            orientation=data.xmat,
+            site_positions=data.site_xpos,
+            coefficient=rows.state.coefficient,
+            actuator=data.actuator_force,
+            explicit=rows.state.explicit,
+            rate=rows.state.rate,
+            branch=rows.state.branch_past,
+            modal=rows.state.modal,
+            modal_force=rows.state.modal_force,
+            sites=self.sites,
+            dampers=e.dampers.dofs,
+            origins=data.xpos,
+            bodies=bodies,
+            springs=joints,
+            contact=rows.state.contact,
+            heading=rows.state.heading,
+            push=rows.state.push,
+            space=e.space,
+        )
+        self.order = Order(
+            step=0,
+            model=model._address,
+            data=data._address,
+            force_offset=0,
+            every=every,
+            pose_every=pose_every,
+            body=modes.body,
+            first_velocity=modes.first_velocity,
+            half=-0.5 * self.step,
+        )
+        self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
+        self.channels |= {name: np.zeros(samples) for name in requested}
+        # Positions until the end of the run, which makes accelerations of them.
+        self.channels |= {name: np.zeros(samples + AHEAD) for name in car.vehicle.acceleration_channels}
+        # All that are finished, the samples of all, and those of the samples in the buffers.
+        self.poses = np.zeros((-(-samples // pose_every), car.model.nq))
+        self.pose_index: list[int] = []
+        self.new_poses: list[Vector] = []
+        self.filled = 0
+        self.done = 0
+        self.work_in = 0.0
+        self.lifting = 0.0
+        self.dissipated = 0.0
+        self.last_powers: tuple[float, float] | None = None
+        self.lowest_load = dict.fromkeys(self.wheels, (np.inf, 0.0))
+        self.energy_at_start: float | None = None
+
+    def before_step(self) -> None:
+        """Keep what the step will overwrite: the present pose."""
+        if (self.done + self.filled) % self.pose_every == 0:
+            self.new_poses.append(self.data.qpos.copy())
+            self.pose_index.append(self.done + self.filled)
+
+    def after_step(self, *, moved: bool) -> None:
+        """Keep the sample of the present time; `moved` where a step has been taken."""
+        half = self.order.half if moved else -self.order.half
+        keep_sample(self.filled, half, self.order, self.sources, self.data.efc_force, self.buffers)
+        self.filled += 1
+        if self.energy_at_start is None or not moved:
+            energy = self._stored_energy(half)
+            if self.energy_at_start is None:
+                self.energy_at_start = energy
+            self.energy_at_end = energy
+
+    def keep(self, last: int, posed: int) -> None:
+        """Count the samples up to a step that a compiled loop has written into the buffers, and take over its poses."""
+        samples = np.arange(self.done + self.filled, last // self.every + 1)
+        self.filled += len(samples)
+        self.new_poses.extend(self.buffers.poses[:posed].copy())
+        self.pose_index.extend(int(sample) for sample in samples[samples % self.pose_every == 0])
+
+    def finite_samples(self) -> int:
+        """Number of buffered samples before the first one that is not finite."""
+        finite = np.all(np.isfinite(self.buffers.solved[: self.filled]), axis=1)
+        return self.filled if finite.all() else int(np.argmin(finite))
+
+    def last_pose(self, good: int) -> tuple[float, Vector]:
+        """Time [s] and position of the last stored pose among the finished and the first `good` buffered samples."""
+        last = max(self.done + good - 1, 0)
+        index = max((i for i, sample in enumerate(self.pose_index) if sample <= last), default=0)
+        return self.pose_index[index] / self.car.vehicle.solver.record_rate, self._pose(index)
+
+    def _pose(self, index: int) -> Vector:
+        """A stored pose with all modal coordinates; of a sample in the buffers they are there."""
+        new = index - (len(self.pose_index) - len(self.new_poses))
+        if new < 0:
+            return np.array(self.poses[index])
+        return self.rows.whole(self.new_poses[new], self.buffers.modal_position[self.pose_index[index] - self.done])
+
+    def _stored_energy(self, half: float) -> float:
+        """Kinetic, elastic and gravity energy [J] at the present time."""
+        # The armature of the integration is not a mass of the car, so the model as generated is asked.
+        model, rows = self.car.model, self.rows
+        e, state, preload = rows.layout, rows.state, rows.weights.preload
+        b, springs = e.bushings, e.springs
+        data = mujoco.MjData(model)
+        last = self.filled - 1
+        modal = self.buffers.modal_position[last], self.buffers.modal_velocity[last]
+        data.qpos[:] = rows.whole(self.data.qpos if half > 0.0 else self.new_poses[-1], modal[0])
+        data.qvel[:] = rows.whole(self.data.qvel + half * self.data.qacc, modal[1])
+        data.mocap_pos[:] = self.data.mocap_pos
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_energyPos(model, data)
+        mujoco.mj_energyVel(model, data)
+        residual, ground = state.residual.copy(), b.one_sided
+        # What lifts off keeps the energy with which its spring was without force.
+        residual[ground, 2] = np.minimum(residual[ground, 2], preload[b.rows[ground, 2]] / b.stiffness[ground, 2])
+        elastic = 0.5 * np.sum(b.stiffness * residual**2) - np.sum(preload[b.rows] * residual)
+        turned, frames = rows.rotation(self.data)
+        twist = np.einsum("nji,nj->ni", frames, turned)
+        elastic += 0.5 * np.sum(e.rotations.stiffness[:, None] * twist**2) - np.sum(
+            preload[e.row_count :] * twist.ravel()
+        )
+        lines = state.ends[1::2] - state.ends[::2]
+        extension = np.sqrt(np.sum(lines**2, axis=1)) - springs.lengths
+        elastic += np.sum(0.5 * springs.stiffness * extension**2 - preload[springs.rows] * extension)
+        for k, (kind, element, axis) in enumerate(zip(e.tables.kinds, e.tables.elements, e.tables.axes, strict=True)):
+            curve, at, x = curve_of(e.tables, k), e.tables.at[k], state.stretch[k]
+            elastic += curve.energy(x) - curve.energy(at)
+            if kind < 2:
+                own = b.stiffness[element, axis] if kind == 0 else springs.stiffness[element]
+                elastic -= float(curve.force(at)) * (x - at) + 0.5 * own * (x - at) ** 2
+        branch = self._branch_force(self.data.efc_force[None, :], state.branch_past[None])[0]
+        present = b.branch_stiffness > 0.0
+        elastic += 0.5 * np.sum(branch[present] ** 2 / b.branch_stiffness[present])
+        return float(data.energy[0] + data.energy[1] + elastic)
+
+    def _row_acceleration(self, solved: Vector) -> Vector:
+        """Acceleration of the element rows, from f = -D J a; (chunk, n, 3)."""
+        return -self._local(solved) / self.rows.weights.impedance
+
+    def _branch_force(self, solved: Vector, past: Vector) -> Vector:
+        """Force of the Maxwell branches; (chunk, n, 3)."""
+        return past + self.rows.weights.slope * self._row_acceleration(solved)
+
+    def _local(self, forces: Vector) -> Vector:
+        """Forces of the element rows; the car turns too little for world and element axes to differ here."""
+        return np.asarray(forces[:, self.rows.layout.bushings.rows])
+
+    def flush(self, motion: PlateArrays, index: int, every: int) -> None:
+        """Turn the buffered samples into channels and add up the energies."""
+        count, b = self.filled, Samples(*(array[: self.filled] for array in self.buffers))
+        here = slice(self.done, self.done + count)
+        steps = slice(index - (count - 1) * every, index + 1, every)
+        self._keep_positions(here, b.places, b.turn, b.modal_position)
+        for pose in range(len(self.pose_index) - len(self.new_poses), len(self.pose_index)):
+            self.poses[pose] = self._pose(pose)
+        self.new_poses.clear()
+        e, bushings = self.rows.layout, self.rows.layout.bushings
+        total = b.solved + b.explicit
+        damper_force = -(b.actuator + total[:, e.dampers.rows] + total[:, e.dampers.frictions])
+        for row, damper in e.dampers.valves:
+            damper_force[:, damper] -= total[:, row]
+        velocity = motion.velocity[steps]
+        tyre = total[:, bushings.rows[e.tyres][:, 2]]
+        for column, damper in enumerate(self.dampers):
+            self.channels[f"{damper}_velocity"][here] = b.damper_velocity[:, column]
+            self.channels[f"{damper}_force"][here] = damper_force[:, column]
+        for column, wheel in enumerate(self.wheels):
+            self.channels[f"tyre_{wheel}_force_z"][here] = tyre[:, column]
+            self.channels[f"plate_{wheel}_displacement"][here] = motion.displacement[steps, column]
+            lowest = int(np.argmin(tyre[:, column]))
+            if tyre[lowest, column] < self.lowest_load[wheel][0]:
+                when = (self.done + lowest) * every * self.step
+                self.lowest_load[wheel] = (float(tyre[lowest, column]), when)
+        for name in self.settings:
+            self.channels[name][here] = b.coefficient[:, self.dampers.index(name.removesuffix("_coefficient"))]
+        if self.loads is not None:
+            for name, values in self.loads.channels(total, b.frames, b.springs).items():
+                self.channels[name][here] = values
+        # What lifts the weight is known without any quadrature, and is a multiple of what the dampers take.
+        static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]
+        power_in = np.sum((tyre - static) * velocity, axis=1)
+        if self.done == 0:
+            self.start = motion.displacement[0].copy()
+        self.lifting = float(static @ (motion.displacement[index] - self.start))
+        rate = b.rate + 0.5 * self.step * self._row_acceleration(b.solved)
+        # The damping of a tyre answers the averaged velocity of its plate and works along the true one.
+        true_rate = rate.copy()
+        true_rate[:, e.tyres, 2] += (motion.row_velocity - motion.velocity)[steps]
+        losses = bushings.damping * rate * true_rate
+        # Of a contact that lifts off, what the elastic force has more than the whole one.
+        ground = bushings.one_sided
+        losses[:, ground, 2] = (b.contact - total[:, bushings.rows[ground, 2]]) * true_rate[:, ground, 2]
+        loss = np.sum(losses, axis=(1, 2))
+        branch = self._branch_force(b.solved, b.branch)
+        # Of a rolling car what keeps it on its way: slope, moments and hold by all velocities, side slip by V psi.
+        power_in = power_in + b.pushed
+        power_in = power_in + np.sum(branch[:, e.rolling.tyres, 1] * b.heading * e.rolling.speeds, axis=1)
+        present = bushings.branch_stiffness > 0.0
+        dashpots = (bushings.branch_stiffness * bushings.branch_time)[present]
+        loss = loss + np.sum(branch[:, present] ** 2 / dashpots, axis=1)
+        loss = loss + np.sum(damper_force * b.damper_velocity, axis=1)
+        modal_damping = e.space.damping if e.space.damping.size else joint_dampers(self.model)[e.modes.velocities]
+        loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
+        loss = loss + b.springs[:, 1::2] ** 2 @ joint_dampers(self.model)[self.sources.springs[:, 1]]
+        self._add_work(power_in, loss, every)
+        self.done += count
+        self.filled = 0
+
+    def _keep_positions(self, here: slice, places: Vector, turn: Vector, modal: Vector) -> None:
+        """Positions of all places with their modal displacement; (chunk, 3 places), (chunk, 9), (chunk, modes)."""
+        for place, value in zip(self.places, np.split(places, len(self.sites), axis=1), strict=True):
+            if place in self.shapes:
+                value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[place].T)
+            for axis, name in enumerate(AXES):
+                self.channels[f"{place}_acc_{name}"][here] = value[:, axis]
+
+    def keep_ahead(self, sample: int) -> None:
+        """Keep the positions of a sample beyond the end of the record, the first of which is 0."""
+        data, rows = self.data, self.rows
+        mujoco.mj_kinematics(self.model, data)
+        here = slice(self.samples + sample, self.samples + sample + 1)
+        turn, modal = data.xmat[rows.layout.modes.body][None], rows.modal_positions(data)[None]
+        self._keep_positions(here, data.site_xpos[self.sites].reshape(1, -1), turn, modal)
+
+    def _add_work(self, power_in: Vector, loss: Vector, every: int) -> None:
+        """Trapezoidal rule across chunks."""
+        if self.last_powers is not None:
+            power_in = np.concatenate([[self.last_powers[0]], power_in])
+            loss = np.concatenate([[self.last_powers[1]], loss])
+        interval = self.step * every
+        self.work_in += float(np.trapezoid(power_in) * interval)
+        self.dissipated += float(np.trapezoid(loss) * interval)
+        self.last_powers = (float(power_in[-1]), float(loss[-1]))
+
+    def energies(self) -> Energies:
+        """Energy balance of the whole run."""
+        assert self.energy_at_start is not None
+        return Energies(
+            work_in=self.work_in + self.lifting,
+            dissipated=self.dissipated,
+            stored=self.energy_at_end - self.energy_at_start,
+        )
+
+    def warnings(self) -> tuple[str, ...]:
+        """A sentence for each tyre that pulled on its plate."""
+        found = []
+        e = self.rows.layout
+        for (wheel, (load, when)), tyre in zip(self.lowest_load.items(), e.tyres, strict=True):
+            if load < 0.0 and tyre not in e.bushings.one_sided:
+                first = self.channels[f"tyre_{wheel}_force_z"]
+                start = int(np.argmax(first < 0.0)) / self.car.vehicle.solver.record_rate
+                found.append(
+                    f"tyre {wheel} would lift off its plate at t = {start:.3f} s (lowest load {load:.0f} N at "
+                    f"{when:.3f} s); the model pulls there, so the result is out of its validity"
+                )
+        return tuple(found)
+
+    def notices(self) -> tuple[str, ...]:
+        """A sentence for each one-sided tyre that left its plate."""
+        found, e, rate = [], self.rows.layout, self.car.vehicle.solver.record_rate
+        for wheel, tyre in zip(self.wheels, e.tyres, strict=True):
+            away = self.channels[f"tyre_{wheel}_force_z"] <= 0.0
+            if tyre in e.bushings.one_sided and away.any():
+                found.append(
+                    f"tyre {wheel} left its plate at t = {int(np.argmax(away)) / rate:.3f} s, for "
+                    f"{np.count_nonzero(away) / rate:.3g} s in all"
+                )
+        return tuple(found)
+
+    def recording(self, signal: Signal, statistics: Statistics) -> Recording:
+        """The finished recording."""
+        interval = 1.0 / self.car.vehicle.solver.record_rate
+        time = uniform_time(samples=self.samples, timestep=interval)
+        for name in self.car.vehicle.acceleration_channels:
+            self.channels[name] = acceleration(self.channels[name], interval)
+        return Recording(
+            time=time,
+            channels=self.channels,
+            units=channel_units(self.channels),
+            excited=tuple(wheel for wheel in self.wheels if np.any(signal.displacement.get(wheel, np.zeros(1)) != 0.0)),
+            pose_time=time[self.pose_index],
+            poses=self.poses,
+            statistics=statistics,
+        )

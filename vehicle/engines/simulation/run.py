@@ -1,0 +1,206 @@
+"""The one stepping loop: plates in, recording out, guarded against everything MuJoCo would pass over in silence."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.acceleration import AHEAD
+from vehicle.engines.simulation.callbacks import compiled_rows, installed
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.judgement import judge_energy
+from vehicle.engines.simulation.plate_arrays import PlateArrays, PlateBlock
+from vehicle.engines.simulation.recorder import CHUNK, Recorder
+from vehicle.engines.simulation.recording import Recording, Statistics
+from vehicle.engines.simulation.rows import Rows
+from vehicle.engines.simulation.run_model import run_model
+from vehicle.engines.simulation.sampling import Plates, move_plates
+from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
+from vehicle.signals.excitation.signal import Signal
+
+if TYPE_CHECKING:
+    from vehicle.engines.simulation.compiled import CompiledRows
+
+Vector = npt.NDArray[np.float64]
+Progress = Callable[[float], None]
+
+POSE_RATE = 100.0
+"""Rate [Hz] of the poses kept for films."""
+
+
+LARGEST_STATE = 1e8
+"""Velocity or acceleration beyond which a state is lost, long before it is infinite; the limit of MuJoCo is higher."""
+
+
+def simulate(
+    car: CarModel,
+    signal: Signal,
+    *,
+    progress: Progress | None = None,
+    native: bool | None = None,
+    requested: Sequence[str] = (),
+) -> Recording:
+    """Run a car on its shaker plates.
+
+    Args:
+        car: compiled and trimmed car.
+        signal: displacement of the plates.
+        progress: called with the finished fraction [-] now and then.
+        native: True for the compiled form of the element laws, False for the Python form; by default the compiled
+            one where it can be had, with a notice where not.
+        requested: names of channels to be recorded beside the usual ones: loads, settings.
+
+    Returns:
+        The recording, sampled at `solver.record_rate`.
+
+    Raises:
+        ConfigurationError: the recording rate is no whole fraction of the step rate.
+        MissingPartError: `native` is True and the compiled form cannot be had; the message says why.
+        SimulationError: the state is no longer finite, MuJoCo warned, or the energy balance does not close; the
+            message says when and where.
+    """
+    every = record_every(car)
+    model, space = run_model(car)
+    data = mujoco.MjData(model)
+    rows = Rows(model, car.static.preload, space)
+    step = model.opt.timestep
+    count = int(np.floor(signal.duration / step + 1e-6))
+    count -= count % every
+    pose_every = max(round(1.0 / (POSE_RATE * step * every)), 1)
+    mocap = [int(model.body_mocapid[model.body(wheel.plate).id]) for wheel in car.vehicle.composition.wheels]
+    level = data.mocap_pos[mocap, 2].copy()
+    unit = every * pose_every
+    motion = partial(PlateArrays.of, signal, step, count, car.vehicle.wheels, AHEAD * every)
+    block = PlateBlock(motion, count + 1 + AHEAD * every, level, unit=unit, least=(CHUNK + 1) * every + unit)
+    plates = Plates(
+        height=block.height,
+        velocity=block.velocity,
+        acceleration=block.acceleration,
+        mocap=np.array(mocap, dtype=np.int64),
+        mocap_position=data.mocap_pos,
+        row_velocity=rows.state.plate_velocity,
+        row_acceleration=rows.state.plate_acceleration,
+    )
+    compiled, notices = _compiled(rows, native)
+    recorder = Recorder(
+        car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
+    )
+    advance = None
+    if compiled is not None:
+        compiled.attach(data)
+        advance = compiled.loop(recorder, plates)
+    started = clock.perf_counter()
+    with installed(rows, compiled):
+        index = 0
+        while index <= count:
+            # The first and the last sample also ask for the energy of the car, so they are taken one by one.
+            last = every * min(recorder.done + CHUNK - 1, count // every - 1)
+            loop = advance if 0 < index <= last else None
+            # From the first of the samples in the buffers on, which are evaluated together.
+            offset = block.reach(min(index, every * recorder.done), last if loop else index)
+            if loop is not None:
+                recorder.keep(last, loop(index - offset, last - offset))
+                index = last
+            else:
+                move_plates(index - offset, plates)
+                _step(model, data, recorder, recorded=index % every == 0, moved=index < count)
+            if index == count or recorder.filled == CHUNK:
+                _check_state(model, data, recorder, every * step)
+                recorder.flush(block.motion, index - offset, every)
+                if progress is not None:
+                    progress(index / count)
+            index += 1
+        for index in range(count, count + AHEAD * every):
+            move_plates(index - block.reach(index, index), plates)
+            mujoco.mj_step(model, data)
+            if (index + 1) % every == 0:
+                recorder.keep_ahead((index + 1 - count) // every - 1)
+    wall = clock.perf_counter() - started
+    warnings = _warnings(data)
+    if warnings:
+        raise SimulationError(f"MuJoCo warned during the run: {'; '.join(warnings)}; no result of it may be used")
+    energies = recorder.energies()
+    statistics = Statistics(
+        engine="mujoco",
+        callback="python" if compiled is None else "native",
+        timestep=step,
+        steps=count,
+        wall_time=wall,
+        warnings=(*recorder.warnings(), *judge_energy(energies, 1.0 / (every * step))),
+        energies=energies,
+        notices=(*notices, *recorder.notices()),
+    )
+    return recorder.recording(signal, statistics)
+
+
+def _compiled(rows: Rows, native: bool | None) -> tuple[CompiledRows | None, tuple[str, ...]]:
+    """The compiled callbacks, and a notice where they were wished for and cannot be had."""
+    if native is False:
+        return None, ()
+    found = compiled_rows(rows)
+    if not isinstance(found, str):
+        return found, ()
+    if native:
+        raise MissingPartError(found)
+    return None, (found,)
+
+
+def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, recorded: bool, moved: bool) -> None:
+    """One step, or the evaluation that ends the run; recorded where asked."""
+    if recorded:
+        recorder.before_step()
+    if moved:
+        mujoco.mj_step(model, data)
+    else:
+        mujoco.mj_forward(model, data)
+    if recorded:
+        recorder.after_step(moved=moved)
+
+
+def record_every(car: CarModel) -> int:
+    """Number of steps between two recorded samples.
+
+    Raises:
+        ConfigurationError: the two rates do not divide.
+    """
+    rate, step = car.vehicle.solver.record_rate, car.vehicle.solver.step
+    every = 1.0 / (rate * step)
+    if abs(every - round(every)) > 1e-6 or round(every) < 1:
+        raise ConfigurationError(
+            f"solver.record_rate: found {rate:g} Hz, must be the step rate {1.0 / step:g} Hz or a whole fraction of it"
+        )
+    return round(every)
+
+
+def _check_state(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, interval: float) -> None:
+    """Stop at the first state that is not finite; MuJoCo itself would go on."""
+    good = recorder.finite_samples()
+    state = np.concatenate([data.qvel, data.qacc])
+    if good == recorder.filled and np.all(np.isfinite(state)) and np.max(np.abs(state)) < LARGEST_STATE:
+        return
+    bad = np.flatnonzero(~np.isfinite(data.qacc) | (np.abs(data.qacc) > LARGEST_STATE))
+    joint = model.joint(model.dof_jntid[bad[0] if len(bad) else int(np.argmax(np.abs(data.qacc)))]).name
+    pose_time, pose = recorder.last_pose(good)
+    raise SimulationError(
+        f"the state is no longer finite at t = {(recorder.done + good) * interval:.4f} s (joint {joint}); "
+        "the step answers the car at rest, so it is this motion that it cannot hold: check the input, and the "
+        "parameters that you changed",
+        state={"time": np.array(pose_time), "qpos": pose},
+    )
+
+
+def _warnings(data: mujoco.MjData) -> list[str]:
+    """Warnings MuJoCo counted during the run."""
+    kinds = mujoco.mjtWarning
+    found = []
+    for kind in range(int(kinds.mjNWARNING)):
+        number = int(data.warning[kind].number)
+        if number:
+            found.append(f"{kinds(kind).name} ({number} times)")
+    return found

@@ -1,0 +1,70 @@
+"""The model that a run steps: that of the car, prepared for its step, with no more modal coordinates than are seen."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.element_records import ModalSpace
+from vehicle.engines.simulation.law_numbers import model_numbers
+from vehicle.engines.simulation.layout import read_layout
+from vehicle.engines.simulation.rows import joint_dampers, joint_springs, prepare_model
+from vehicle.model.assembly.spec import assemble_on
+from vehicle.model.flexbody.superelement import attached_nodes
+
+Vector = npt.NDArray[np.float64]
+
+SEEN = 1e-10
+"""Singular value over the largest one below which a combination of modes does not move the attachments: round-off."""
+
+
+def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
+    """The model of a run.
+
+    Args:
+        car: compiled and trimmed car.
+
+    Returns:
+        The prepared model; what the callbacks need to know of the modes where they integrate these themselves.
+    """
+    model = prepared(car.spec, car.model.qpos_spring)
+    modes = read_layout(model).modes
+    if not modes.size:
+        return model, None
+    numbers = model_numbers(model)
+    shapes = [found.reshape(3, modes.size) for name, found in numbers.items() if _is_seen(name)]
+    mass = model.dof_M0[modes.velocities]
+    scaled = np.concatenate([np.zeros((0, modes.size)), *shapes]) / np.sqrt(mass)
+    _, values, basis = np.linalg.svd(scaled, full_matrices=False)
+    count = int(np.count_nonzero(values > SEEN * np.max(values, initial=0.0)))
+    if count >= modes.size:
+        return model, None
+    spread = np.ascontiguousarray(basis[:count].T / np.sqrt(mass)[:, None])
+    space = ModalSpace(
+        mass=mass.copy(),
+        stiffness=joint_springs(model)[modes.velocities],
+        damping=joint_dampers(model)[modes.velocities],
+        rest=car.model.qpos_spring[modes.positions].copy(),
+        spread=spread,
+    )
+    nodes = attached_nodes(car.superelement, car.vehicle.composition.attachments())
+    fewer = assemble_on(car.vehicle, car.superelement.combined(spread, dict.fromkeys(nodes.values())))
+    before, after = np.split(car.model.qpos_spring, [modes.positions.start, modes.positions.stop])[::2]
+    return prepared(fewer.spec, np.concatenate([before, np.zeros(count), after])), space
+
+
+def _is_seen(name: str) -> bool:
+    """Whether a field holds the shape of a node where something acts on the body, or is sensed by it."""
+    return name.startswith(("shape/", "rotation/")) and not name.startswith("shape/place/")
+
+
+def prepared(spec: mujoco.MjSpec, rest: Vector) -> mujoco.MjModel:
+    """A specification compiled and prepared for its step; `rest`: unstrained places of the joint springs."""
+    model = spec.compile()
+    model.qpos_spring[:] = rest
+    prepare_model(model)
+    # The recorder takes accelerations from positions; the sensors are for those who load the model elsewhere.
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+    return model

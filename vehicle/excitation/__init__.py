@@ -1,1 +1,0 @@
-"""Plate excitation: signal files and generated signals, always a `vehicle.excitation.signal.Signal`."""

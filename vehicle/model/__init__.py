@@ -1,0 +1,1 @@
+"""The car as data: parameters, templates, force laws, flexible body, visible shapes, MJCF."""

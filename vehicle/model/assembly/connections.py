@@ -1,0 +1,150 @@
+"""Force laws of the connections of the car: the published bushings, with the local stiffness of the body in series."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.model.assembly.coupled_attachment import STRUCTURAL_LOSS_TIME, coupled_law, is_coupled
+from vehicle.model.flexbody.superelement import Superelement, attached_nodes
+from vehicle.model.laws.kelvin import Kelvin
+from vehicle.model.laws.maxwell import Maxwell
+from vehicle.model.laws.series import in_series
+from vehicle.model.parameters.body import TrimmedBody
+from vehicle.model.parameters.composition import PlacedConnection
+from vehicle.model.parameters.elements import Bushing, Hydromount, Tyre
+from vehicle.names import AXES
+
+Vector = npt.NDArray[np.float64]
+
+
+def _zeros() -> Vector:
+    return np.zeros(3)
+
+
+def _rigid() -> Vector:
+    return np.full(3, np.inf)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ElementLaw:
+    """f = -K r - B r' - f2 along each axis, with f2' = K2 r' - f2 / tau (Maxwell branch); torque = -K_rot angle.
+
+    Attributes:
+        stiffness: K [N/m], shape (3,).
+        damping: B [N s/m], shape (3,).
+        branch_stiffness: K2 [N/m], shape (3,); zero where there is no branch.
+        branch_time: tau [s], shape (3,); zero where there is no branch.
+        rotational_stiffness: K_rot [N m/rad].
+        averaged: True where the stiffness is too high for the explicit step and is averaged over three steps
+            (Newmark with beta 1/4); False for the fourth-order average (beta 1/12).
+        local: stiffness of the attachment [N/m], in series with what is a table; (3,).
+        directions: P, the directions that replace the axes, a row each; (3, 3). None: the axes of the carrier.
+    """
+
+    stiffness: Vector
+    damping: Vector
+    branch_stiffness: Vector = field(default_factory=_zeros)
+    branch_time: Vector = field(default_factory=_zeros)
+    rotational_stiffness: float = 0.0
+    averaged: bool = False
+    local: Vector = field(default_factory=_rigid)
+    directions: Vector | None = None
+
+
+def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> ElementLaw | None:
+    """Law of a connection; None of an ideal ball joint where nothing gives way.
+
+    Args:
+        connection: as composed.
+        body: parameters of the trimmed body.
+        superelement: its model; gives the local stiffness of its attachment nodes.
+
+    Raises:
+        DataError: the body has no node there.
+
+    Source: Bommer 2006, section 3.1.3.
+    """
+    if connection.rolling is not None and isinstance(connection.law, Tyre):
+        return _rolling_law(connection.law, connection.rolling.speed)
+    local = None
+    if body.attachment_flexibility and "body" in (connection.moving, connection.carrier):
+        node = attached_nodes(superelement, {connection.point: connection.at}).get(connection.at, "")
+        flexibility = superelement.residual.get(node)
+        if flexibility is not None and (connection.axes is not None or is_coupled(flexibility)):
+            stiffness, damping, branch, time, directions = coupled_law(connection, flexibility)
+            return ElementLaw(
+                stiffness=stiffness,
+                damping=damping,
+                branch_stiffness=branch,
+                branch_time=time,
+                rotational_stiffness=0.0 if connection.law is None else connection.law.rotational_stiffness,
+                averaged=connection.law is None,
+                directions=directions,
+            )
+        local = None if flexibility is None else 1.0 / np.diag(flexibility)
+    if connection.law is not None:
+        law = _bushing_law(connection.law, local)
+        return law if connection.axes is None else replace(law, directions=np.array(connection.axes))
+    return None if local is None else ElementLaw(stiffness=local, damping=STRUCTURAL_LOSS_TIME * local, averaged=True)
+
+
+def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
+    """Law of a tyre that rolls: slip C/V in series with the carcass along x and y, the standing one along z."""
+    slip = np.array([tyre.slip_stiffness, tyre.cornering_stiffness, 0.0], dtype=float)
+    carcass = np.array([tyre.carcass_longitudinal, tyre.carcass_lateral, 0.0], dtype=float)
+    time = np.divide(slip, speed * carcass, out=np.zeros(3), where=carcass > 0.0)
+    vertical = np.array([0.0, 0.0, 1.0])
+    return ElementLaw(
+        stiffness=vertical * tyre.stiffness,
+        damping=vertical * tyre.damping,
+        branch_stiffness=carcass,
+        branch_time=time,
+    )
+
+
+def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> ElementLaw:
+    """Law of a bushing, with the local stiffness of its attachment point in series, exactly."""
+    stiffness = np.array(parameters.stiffness)
+    damping = np.array(parameters.damping)
+    branch = np.zeros((2, 3))  # K2 [N/m] and tau [s]
+    if isinstance(parameters, Hydromount) and parameters.maxwell_stiffness > 0.0 and parameters.maxwell_damping > 0.0:
+        time = parameters.maxwell_damping / parameters.maxwell_stiffness
+        branch[:, 2] = parameters.maxwell_stiffness, time
+    if local is not None:
+        for axis, name in enumerate(AXES):
+            if getattr(parameters, f"table_{name}", None) is not None:
+                # Behind a table the spring of the attachment is in its points, and the damper stays beside both.
+                continue
+            # A dashpot beside the branch (Dz1, zero in the source) stays outside the series.
+            elastomer = float(branch[0, axis]), float(branch[0, axis] * branch[1, axis])
+            own = (float(stiffness[axis]), *(elastomer if elastomer[0] > 0.0 else (float(damping[axis]),)))
+            damping[axis] = damping[axis] if elastomer[0] > 0.0 else 0.0
+            stiffness[axis], joined, time = _behind(float(local[axis]), own)
+            if time > 0.0:
+                branch[:, axis] = joined, time
+    return ElementLaw(
+        stiffness=stiffness,
+        damping=damping,
+        branch_stiffness=branch[0],
+        branch_time=branch[1],
+        rotational_stiffness=parameters.rotational_stiffness,
+        local=_rigid() if local is None else local,
+    )
+
+
+# The two sides of a car, and all cars of a sweep that leave an axis alone, ask for the same again and again.
+@lru_cache(maxsize=4096)
+def _behind(local: float, own: tuple[float, ...]) -> tuple[float, float, float]:
+    """Stiffness, branch stiffness and branch time of a bushing K, B or an elastomer K1, K2, D2 behind a spring."""
+    element = (
+        Kelvin(stiffness=own[0], damping=own[1])
+        if len(own) == 2
+        else Maxwell(stiffness=own[0], branch_stiffness=own[1], branch_damping=own[2])
+    )
+    joined = in_series(local, element)
+    time = float(joined.relaxation_time) if float(joined.branch_damping) > 0.0 else 0.0
+    return float(joined.stiffness), float(joined.branch_stiffness), time

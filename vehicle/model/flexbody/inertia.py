@@ -1,0 +1,123 @@
+"""Rigid-body mass properties: products of inertia as integrals, the move to the CoG, the nearest physical tensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.flexbody.beam import FloatArray
+
+_FLOOR = 1e-6
+"""Smallest principal second moment of a repaired tensor over their sum: round-off never breaks the inequality again."""
+
+
+def inertia_tensor(*, ixx: float, iyy: float, izz: float, ixy: float, izx: float, iyz: float) -> FloatArray:
+    """Inertia tensor from moments and from products given as integrals: off-diagonal terms are -int x y dm.
+
+    Args:
+        ixx: int (y^2 + z^2) dm [kg m2], and iyy, izz alike.
+        iyy: see ixx.
+        izz: see ixx.
+        ixy: int x y dm [kg m2], and izx, iyz alike.
+        izx: see ixy.
+        iyz: see ixy.
+
+    Returns:
+        Tensor [kg m2], shape (3, 3), about the point that the integrals are taken about.
+
+    Source: Bommer 2006, section 3.1.2; its Izx = 1800 is positive because m x z = 1773 is.
+    """
+    return np.array([[ixx, -ixy, -izx], [-ixy, iyy, -iyz], [-izx, -iyz, izz]])
+
+
+def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> FloatArray:
+    """Parallel axis theorem: I_c = I_0 - m (|c|^2 1 - c c^T).
+
+    Args:
+        inertia_about_origin: tensor [kg m2], shape (3, 3).
+        mass: mass [kg].
+        cog: centre of gravity [m], shape (3,).
+
+    Returns:
+        Tensor about the CoG [kg m2], shape (3, 3).
+    """
+    c = np.asarray(cog, dtype=float)
+    return np.asarray(np.asarray(inertia_about_origin) - mass * (c @ c * np.eye(3) - np.outer(c, c)))
+
+
+def second_moments(inertia: ArrayLike) -> FloatArray:
+    """Second moment matrix int r r^T dm = tr(I)/2 1 - I [kg m2], shape (3, 3): positive definite for a real body."""
+    tensor = np.asarray(inertia, dtype=float)
+    return np.asarray(np.trace(tensor) / 2.0 * np.eye(3) - tensor)
+
+
+def triangle_shortfall(inertia: ArrayLike) -> float:
+    """By how much the two smaller principal moments fall short of the largest [kg m2]; 0 for a physical tensor."""
+    low, middle, high = np.linalg.eigvalsh(np.asarray(inertia, dtype=float))
+    return max(0.0, float(high - low - middle))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PhysicalInertia:
+    """A physical inertia tensor and what had to change to get it."""
+
+    inertia: FloatArray
+    """about the CoG [kg m2], shape (3, 3)"""
+    change: FloatArray
+    """repaired minus given [kg m2], shape (3, 3); zero where nothing was wrong"""
+    shortfall: float
+    """triangle shortfall of the given tensor [kg m2]"""
+
+    @property
+    def repaired(self) -> bool:
+        """Whether the given tensor was not physical."""
+        return bool(np.any(self.change))
+
+    def describe(self) -> str:
+        """One sentence for a report."""
+        if not self.repaired:
+            return "The inertia tensor is physical and used as given."
+        largest = float(np.abs(self.change).max())
+        return (
+            f"The inertia tensor breaks the triangle inequality of principal moments by {self.shortfall:.3g} kg m2; "
+            f"the nearest physical tensor is used (largest change of a component {largest:.3g} kg m2)."
+        )
+
+
+def nearest_physical(inertia: ArrayLike) -> PhysicalInertia:
+    """Nearest physical tensor: negative principal second moments are raised to a small positive floor.
+
+    S = tr(I)/2 1 - I must be positive definite, which is the triangle inequality. Clipping its eigenvalues is the
+    smallest change of S in the Frobenius norm, and I' = tr(S') 1 - S'.
+
+    Args:
+        inertia: tensor about the CoG [kg m2], shape (3, 3), symmetric.
+
+    Returns:
+        The physical tensor, the change and the shortfall.
+
+    Raises:
+        ConfigurationError: not a finite symmetric (3, 3) tensor, or no positive second moment at all.
+
+    Source: N. J. Higham, Computing a nearest symmetric positive semidefinite matrix, 1988, theorem 2.1.
+    """
+    tensor = np.asarray(inertia, dtype=float)
+    if tensor.shape != (3, 3) or not np.all(np.isfinite(tensor)) or not np.allclose(tensor, tensor.T, rtol=1e-9):
+        raise ConfigurationError(
+            f"inertia tensor {tensor.tolist()}: it must be a finite symmetric 3 x 3 matrix [kg m2]."
+        )
+    values, axes = np.linalg.eigh(second_moments(tensor))
+    if values[-1] <= 0.0:
+        raise ConfigurationError(
+            f"inertia tensor {tensor.tolist()}: no principal second moment is positive, so no body is near it. "
+            "Check signs and units [kg m2] and that it is taken about the centre of gravity."
+        )
+    floor = _FLOOR * float(values[values > 0.0].sum())
+    if values[0] >= floor:
+        return PhysicalInertia(inertia=tensor.copy(), change=np.zeros((3, 3)), shortfall=triangle_shortfall(tensor))
+    moments = (axes * np.maximum(values, floor)) @ axes.T
+    physical = np.trace(moments) * np.eye(3) - moments
+    return PhysicalInertia(inertia=physical, change=physical - tensor, shortfall=triangle_shortfall(tensor))

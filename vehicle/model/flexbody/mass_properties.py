@@ -1,0 +1,68 @@
+"""Mass, centre of gravity and inertia of a body, and the six rigid motions normalised by them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from vehicle.model.flexbody.beam import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MassProperties:
+    """What a body is where it does not bend.
+
+    Attributes:
+        mass: m [kg].
+        cog: c [m], shape (3,).
+        inertia: tensor about the CoG with negative products [kg m2], shape (3, 3).
+    """
+
+    mass: float
+    cog: FloatArray
+    inertia: FloatArray
+
+    @classmethod
+    def of_points(cls, masses: FloatArray, positions: FloatArray) -> MassProperties:
+        """Of point masses: sum of m, sum of m r / m, sum of m (|r - c|^2 1 - (r - c)(r - c)').
+
+        Args:
+            masses: [kg], shape (n,).
+            positions: [m], shape (n, 3).
+        """
+        mass = float(masses.sum())
+        cog = np.asarray(masses @ positions / mass)
+        return cls(mass=mass, cog=cog, inertia=_steiner(masses, positions - cog))
+
+    def with_points(self, masses: FloatArray, positions: FloatArray) -> MassProperties:
+        """The same body with point masses [kg], (n,), fixed at positions [m], (n, 3)."""
+        total = self.mass + float(masses.sum())
+        cog = (self.mass * self.cog + masses @ positions) / total
+        tensor = self.inertia + _steiner(np.array([self.mass]), np.atleast_2d(self.cog - cog))
+        return MassProperties(mass=total, cog=np.asarray(cog), inertia=tensor + _steiner(masses, positions - cog))
+
+    def rigid_motions(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Mass-normalised rigid motions: R' M R = 1 for the six of them.
+
+        Args:
+            positions: where they are wanted [m], shape (n, 3).
+
+        Returns:
+            Displacements [kg^-1/2], shape (6, n, 3): translations, then rotations about the CoG; their rotations
+            [rad kg^-1/2 / m], the same at every place, shape (6, 3).
+        """
+        shapes, turns = np.zeros((6, len(positions), 3)), np.zeros((6, 3))
+        turns[3:] = np.linalg.inv(np.linalg.cholesky(self.inertia))
+        for axis in range(3):
+            shapes[axis, :, axis] = 1.0 / np.sqrt(self.mass)
+            shapes[3 + axis] = np.cross(turns[3 + axis], positions - self.cog)
+        return shapes, turns
+
+
+def _steiner(masses: FloatArray, arms: ArrayLike) -> FloatArray:
+    """Sum of m (|r|^2 1 - r r') [kg m2], shape (3, 3)."""
+    r = np.asarray(arms)
+    moments = (r.T * masses) @ r
+    return np.asarray(np.trace(moments) * np.eye(3) - moments)

@@ -1,0 +1,108 @@
+"""Free-free modes of a frame whose nodes carry translational mass only."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.flexbody.beam import FloatArray
+
+
+def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Eliminate the massless node rotations; exact, because no inertia force acts on them.
+
+    K = K_tt - K_tr K_rr^-1 K_rt, and the rotations follow as -K_rr^-1 K_rt u.
+
+    Args:
+        stiffness: frame stiffness, shape (6 n, 6 n), six degrees of freedom node by node.
+
+    Returns:
+        Stiffness of the translations [N/m], shape (3 n, 3 n); recovery of all degrees of freedom from the
+        translations, shape (6 n, 3 n).
+
+    Raises:
+        ConfigurationError: a node can turn without resistance.
+    """
+    count = stiffness.shape[0] // 6
+    dofs = np.arange(6 * count).reshape(count, 6)
+    t, r = dofs[:, :3].ravel(), dofs[:, 3:].ravel()
+    try:
+        factor = scipy.linalg.cho_factor(stiffness[np.ix_(r, r)])
+    except np.linalg.LinAlgError as error:
+        raise ConfigurationError(
+            "space frame: a node can turn freely (its rotational stiffness is singular). "
+            "Connect every node to a beam that resists bending and torsion."
+        ) from error
+    recovery = np.zeros((6 * count, 3 * count))
+    recovery[t, np.arange(3 * count)] = 1.0
+    recovery[r] = -scipy.linalg.cho_solve(factor, stiffness[np.ix_(r, t)])
+    condensed = stiffness[np.ix_(t, t)] + stiffness[np.ix_(t, r)] @ recovery[r]
+    return 0.5 * (condensed + condensed.T), recovery  # symmetric but for round-off
+
+
+def rigid_shapes(positions: FloatArray, center: FloatArray) -> FloatArray:
+    """Displacement of every node in the six rigid motions: unit translations, unit rotations about the centre.
+
+    Args:
+        positions: node positions [m], shape (n, 3).
+        center: point the rotations are about [m], shape (3,).
+
+    Returns:
+        Shapes [1 and m], shape (6, n, 3).
+    """
+    shapes = np.zeros((6, len(positions), 3))
+    for axis in range(3):
+        shapes[axis, :, axis] = 1.0
+        shapes[3 + axis] = np.cross(np.eye(3)[axis], positions - center)
+    return shapes
+
+
+def free_free_modes(
+    stiffness: FloatArray, node_mass: FloatArray, positions: FloatArray, count: int, added: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Lowest elastic modes of the unsupported structure, mass-normalised and orthogonal to the rigid-body modes.
+
+    (K - w^2 M) phi = 0 with phi_i^T M phi_j = delta_ij. The rigid modes are moved above the spectrum instead of being
+    looked for near zero, so what is left is orthogonal to them to round-off.
+
+    Args:
+        stiffness: translational stiffness [N/m], shape (3 n, 3 n).
+        node_mass: lumped masses [kg], all positive, shape (n,).
+        positions: node positions [m], shape (n, 3).
+        count: number of elastic modes wanted.
+        added: mass matrix beside the lumped masses [kg], shape (3 n, 3 n).
+
+    Returns:
+        Frequencies [Hz], shape (count,); shapes [kg^-1/2], shape (count, n, 3), signs by `fix_signs`.
+    """
+    root = np.sqrt(np.repeat(node_mass, 3))
+    center = node_mass @ positions / node_mass.sum()
+    rigid = rigid_shapes(positions, center).reshape(6, -1)
+    if added is None:
+        rigid, dynamic = rigid * root, stiffness / np.outer(root, root)  # mass-weighted
+    else:
+        lower = np.linalg.cholesky(np.diag(root**2) + added)
+        half = scipy.linalg.solve_triangular(lower, stiffness, lower=True)
+        rigid, dynamic = rigid @ lower, scipy.linalg.solve_triangular(lower, half.T, lower=True)
+    basis, _ = np.linalg.qr(rigid.T)  # (3 n, 6)
+    away = np.eye(len(root)) - basis @ basis.T
+    dynamic = away @ dynamic @ away + 10.0 * np.trace(dynamic) * (basis @ basis.T)
+    values, vectors = scipy.linalg.eigh(dynamic, subset_by_index=(0, count - 1))
+    plain = vectors / root[:, None] if added is None else scipy.linalg.solve_triangular(lower.T, vectors)
+    shapes = plain.T.reshape(count, -1, 3)
+    return np.sqrt(values) / (2.0 * np.pi), fix_signs(shapes)
+
+
+def fix_signs(shapes: FloatArray) -> FloatArray:
+    """Give every mode the sign that makes its largest component positive, so that a rebuilt file is the same file.
+
+    Args:
+        shapes: mode shapes, shape (modes, n, 3).
+
+    Returns:
+        The same shapes, some of them multiplied by -1.
+    """
+    flat = shapes.reshape(len(shapes), -1)
+    largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]
+    return np.asarray(shapes * np.sign(largest)[:, None, None])

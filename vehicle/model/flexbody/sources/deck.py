@@ -1,0 +1,80 @@
+"""Nodes and elements of an input deck of Abaqus or CalculiX, or a table of nodes: where the body is."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.model.parameters.hardpoints import Point
+
+_CORNERS = {"C3D20": 8, "C3D20R": 8, "C3D8": 8, "C3D8R": 8, "C3D8I": 8, "C3D10": 4, "C3D4": 4, "C3D15": 6, "C3D6": 6}
+_BOX = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
+_WEDGE = ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5))
+LINES = {8: _BOX, 6: _WEDGE, 4: tuple(itertools.combinations(range(4), 2))}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Deck:
+    """Nodes and elements of a deck.
+
+    Attributes:
+        places: of nodes by their number, in the unit of the deck.
+        edges: of elements, as pairs of numbers.
+        incompatible: number of elements C3D8I, for each of which CalculiX adds three nodes.
+    """
+
+    places: dict[int, Point]
+    edges: frozenset[tuple[int, int]]
+    incompatible: int = 0
+
+
+def read_deck(path: Path) -> Deck:
+    """Read `*NODE` and `*ELEMENT` of a deck, or a CSV of nodes "node,x,y,z".
+
+    Raises:
+        DataError: unreadable, or a line of nodes or elements that is none.
+    """
+    try:
+        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read ({error}).") from error
+    places: dict[int, Point] = {}
+    edges: set[tuple[int, int]] = set()
+    block, corners, kind, incompatible = "*node" if path.suffix == ".csv" else "", 0, "", 0
+    pending: list[int] = []
+    for number, line in enumerate(lines, 1):
+        text = line.strip()
+        if not text or text.startswith(("**", "#")) or (path.suffix == ".csv" and number == 1 and text[:1].isalpha()):
+            continue
+        if text.startswith("*"):
+            words = [word.strip().lower() for word in text.split(",")]
+            block, pending = words[0], []
+            kind = next((word.split("=")[1].strip().upper() for word in words if word.startswith("type")), "")
+            corners = _CORNERS.get(kind, 0)
+            continue
+        fields = [field for field in text.split(",") if field.strip()]
+        try:
+            if block == "*node":
+                # A deck may leave out coordinates of zero at the end of a line, a table may not.
+                rest = ["0"] * 3 if path.suffix != ".csv" and len(fields) > 1 else []
+                x, y, z = (float(field) for field in [*fields[1:4], *rest][:3])
+                if not np.isfinite([x, y, z]).all():
+                    raise ValueError("a coordinate is not finite")
+                if places.setdefault(int(fields[0]), (x, y, z)) != (x, y, z):
+                    raise ValueError(f"node {fields[0].strip()} was at {list(places[int(fields[0])])} before")
+            elif block == "*element" and corners:
+                pending += [int(field) for field in fields]
+                if not text.endswith(","):
+                    own = pending[1 : 1 + corners]
+                    edges |= {(min(own[a], own[b]), max(own[a], own[b])) for a, b in LINES[corners]}
+                    pending = []
+                    incompatible += kind == "C3D8I"
+        except (ValueError, IndexError) as error:
+            raise DataError(f"{path}, line {number}: {text[:60]!r} is no line of {block} ({error}).") from error
+    if not places:
+        raise DataError(f"{path}: no nodes found. Give the input deck with *NODE, or a CSV node,x,y,z.")
+    return Deck(places=places, edges=frozenset(edges), incompatible=incompatible)

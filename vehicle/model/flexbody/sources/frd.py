@@ -1,0 +1,96 @@
+"""Modes of a result file of CalculiX (.frd, text): nodes, elements and displacements of `*FREQUENCY`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.deck import LINES
+from vehicle.model.flexbody.sources.matrices import BodyNodes
+from vehicle.model.flexbody.sources.mode_shapes import GivenModes
+
+_CORNERS = {1: 8, 4: 8, 2: 6, 5: 6, 3: 4, 6: 4}
+"""Corners of the element types of the format."""
+
+
+def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
+    """Modes at all nodes of a job.
+
+    Args:
+        path: the file.
+        length: unit of length of the job [m].
+        mass: unit of mass of the job [kg].
+
+    Raises:
+        DataError: no frequency step, cut off, or binary.
+
+    Source: G. Dhondt, CalculiX CrunchiX user's manual, "Format of the frd file"; columns of twelve, not blanks.
+    """
+    try:
+        lines = path.read_text(encoding="ascii").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataError(f"{path}: cannot be read as text ({error}); write *NODE FILE, not *NODE OUTPUT.") from error
+    places: dict[int, list[float]] = {}
+    edges: set[tuple[int, int]] = set()
+    shapes: list[dict[int, list[float]]] = []
+    frequencies: list[float] = []
+    masses: list[float] = []
+    block, head, corners, generalised, value = "", "", 0, np.nan, np.nan
+    element: list[int] = []
+    try:
+        for line in lines:
+            if line.startswith("    2C"):
+                block = "nodes"
+            elif line.startswith("    3C"):
+                block = "elements"
+            elif line.startswith("    1PGM"):
+                generalised = float(line[24:].split()[0])
+            elif line.startswith("  100C"):
+                block, head, value = "", line, float(line[12:24])
+            elif line.startswith(" -4"):
+                block = "shape" if line[5:13].strip() == "DISP" and "MODAL" in head else ""
+                if block:
+                    frequencies.append(value)
+                    masses.append(mass * generalised)
+                    shapes.append({})
+            elif line.startswith(" -3"):
+                block = ""
+            elif line.startswith(" -1") and block == "nodes":
+                places[int(line[3:13])] = [float(line[i : i + 12]) for i in (13, 25, 37)]
+            elif line.startswith(" -1") and block == "elements":
+                corners, element = _CORNERS.get(int(line[13:18]), 0), []
+            elif line.startswith(" -2") and block == "elements":
+                element += [int(word) for word in line[3:].split()]
+                if corners and len(element) >= corners:
+                    edges |= {tuple(sorted((element[a], element[b]))) for a, b in LINES[corners]}  # type: ignore[misc]
+                    corners = 0
+            elif line.startswith(" -1") and block == "shape":
+                shapes[-1][int(line[3:13])] = [float(line[i : i + 12]) for i in (13, 25, 37)]
+    except (ValueError, IndexError) as error:
+        raise DataError(f"{path}: {line[:60]!r} is no line of a result file ({error}).") from error
+    if not shapes:
+        raise DataError(f"{path}: no modes; write *NODE FILE with U in a *FREQUENCY step.")
+    if not lines or lines[-1].strip() != "9999" or any(len(shape) != len(shapes[0]) for shape in shapes):
+        raise DataError(f"{path}: cut off; the job did not end, or the file was not copied whole.")
+    numbers = sorted(shapes[0])
+    lost = [number for number in numbers if number not in places]
+    if lost:
+        raise DataError(f"{path}: node {lost[0]} of the modes has no place.")
+    index = {number: i for i, number in enumerate(numbers)}
+    count = len(numbers)
+    return GivenModes(
+        body=BodyNodes(
+            nodes=tuple(map(str, numbers)),
+            positions=length * np.array([places[number] for number in numbers]),
+            node=np.repeat(np.arange(count), 3),
+            direction=np.tile(np.arange(3), count),
+            edges=np.array([(index[a], index[b]) for a, b in sorted(edges) if a in index and b in index], dtype=int),
+            source=f"modes of {path.name} (CalculiX)",
+        ),
+        frequencies=np.array(frequencies),
+        damping_ratio=np.full(len(shapes), np.nan),
+        vectors=np.array([[shape[number] for number in numbers] for shape in shapes]).reshape(len(shapes), -1).T,
+        modal_mass=np.array(masses),
+    )

@@ -1,0 +1,46 @@
+"""Mirror images about the plane y = 0: which node faces which, and whether a mode is symmetric or antisymmetric."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle.model.flexbody.beam import FloatArray
+
+_FACING = 0.10
+"""Largest distance [m] of a node from the mirror image of its counterpart: the two engine mounts differ by 82 mm."""
+
+
+def mirror_nodes(positions: FloatArray) -> NDArray[np.intp]:
+    """Counterpart of every node on the other side.
+
+    Args:
+        positions: node positions [m], shape (n, 3).
+
+    Returns:
+        Index of the node nearest to the mirror image, shape (n,); its own in the plane, -1 without a counterpart.
+    """
+    images = positions * (1.0, -1.0, 1.0)
+    distance = np.linalg.norm(images[:, None] - positions[None], axis=2)  # (n, n)
+    nearest = distance.argmin(axis=1)
+    found = distance[np.arange(len(positions)), nearest] <= _FACING
+    return np.where(found, nearest, -1)
+
+
+def parity(shapes: FloatArray, positions: FloatArray, node_mass: FloatArray) -> FloatArray:
+    """Likeness of mass-normalised shapes to their own mirror image.
+
+    sum of m phi . S phi' over the nodes with a counterpart, S = diag(1, -1, 1), phi' at the counterpart.
+
+    Args:
+        shapes: mass-normalised shapes [kg^-1/2], shape (modes, n, 3).
+        positions: node positions [m], shape (n, 3).
+        node_mass: lumped masses [kg], shape (n,).
+
+    Returns:
+        1 for a symmetric mode, -1 for an antisymmetric one, between for neither [1], shape (modes,).
+    """
+    facing = mirror_nodes(positions)
+    paired = np.flatnonzero(facing >= 0)
+    images = shapes[:, facing[paired]] * np.array([1.0, -1.0, 1.0])
+    return np.asarray(np.einsum("mni,mni,n->m", shapes[:, paired], images, node_mass[paired]))

@@ -1,0 +1,31 @@
+"""Coulomb friction: one limit at every velocity.
+
+Set-valued, it is computed by a switch (`vehicle.model.laws.switch`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle.compiler import jitable
+from vehicle.model.laws.friction import Friction
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Coulomb(Friction):
+    """L = Fd.
+
+    Source: Bommer 2006, equation 2.4.
+    """
+
+    @staticmethod
+    @jitable
+    def limit_at(velocity: Any, numbers: Any) -> Any:
+        """Fd [N]."""
+        return numbers["friction_limit"]
+
+    @staticmethod
+    def fall_at(velocity: Any, numbers: Any) -> Any:
+        """v dL/dv = 0."""
+        return 0.0

@@ -1,0 +1,142 @@
+"""The laws of a damper as one record: written into a model as the parameters of its actuator, read back as an array.
+
+    F = F_c(v) - F_gas + clamp(c v, L(v)),   F_c = D v + shift + sum of clamp(e (v - m), e w)
+
+with the friction of `vehicle.model.laws.friction` and the curve F_c of `vehicle.model.laws.curve`: linear, degressive,
+or a table. Of a controlled damper F_c is that of its softest setting; what is set beyond it is of
+`vehicle.model.laws.semi_active`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.compiler import jitable
+from vehicle.errors import ConfigurationError
+from vehicle.model.laws.curve import Curve
+from vehicle.model.laws.friction import Friction
+from vehicle.model.laws.law import Constant, Parallel
+from vehicle.model.parameters.elements import FRICTION_LAWS, Damper
+
+RECORD = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "viscous_damping",  # D [N s/m], the smallest slope of the curve
+            "smoothing",  # eps [s/m]
+            "friction_limit",  # Fd [N]
+            "static_limit",  # Fs [N]
+            "stribeck_velocity",  # vs [m/s]
+            "stribeck_exponent",  # delta [-]
+            "rest_force",  # F_c(0) - F_gas [N]
+            "shift",  # shift - F_gas [N]
+            "friction_law",  # index of its word
+            "spare",
+        )
+    ],
+    align=True,
+)
+"""As long as the parameters of an actuator."""
+
+
+def pack(damper: Damper) -> npt.NDArray[Any]:
+    """Record of the laws of a damper; ()."""
+    curve = damper_curve(damper)
+    rest = float(curve.force(0.0)) - damper.gas_force
+    return np.array(
+        (
+            curve.least_slope,
+            damper.smoothing,
+            damper.coulomb_friction,
+            damper.static_friction,
+            # 1 stands for a number of a law that is not chosen.
+            damper.stribeck_velocity or 1.0,
+            damper.stribeck_exponent or 1.0,
+            rest,
+            rest - curve.at_rest(),
+            FRICTION_LAWS.index(damper.friction_law),
+            0.0,
+        ),
+        dtype=RECORD,
+    )
+
+
+def damper_curve(damper: Damper) -> Curve:
+    """Force over velocity without friction and gas; of a controlled damper in its softest setting."""
+    if damper.controlled is not None:
+        return Curve.line(damper.controlled.minimum_damping)
+    if damper.viscous_law == "table":
+        return Curve.through(damper.velocity, damper.force)
+    high, low, knee = (one or 0.0 for one in (damper.viscous, damper.degressive_viscous, damper.degressive_velocity))
+    if damper.viscous_law == "linear":
+        return Curve.line(high)
+    excess = low - high
+    return Curve(
+        knots=np.array([-knee, knee]),
+        slopes=np.array([high, low, high]),
+        offsets=np.array([-excess * knee, 0.0, excess * knee]),
+    )
+
+
+def actuator_parameters(record: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """Parameters of the actuator of a damper with this record; (10,)."""
+    return np.atleast_1d(record).view(np.float64)
+
+
+def unpack(parameters: npt.ArrayLike) -> npt.NDArray[Any]:
+    """Records (w,) of the parameters of actuators (w, 10)."""
+    return np.array(parameters, dtype=np.float64, ndmin=2).view(RECORD).reshape(-1)
+
+
+def damper_law(damper: Damper) -> Parallel:
+    """Whole force of a damper as a law of arrays, its friction in the smooth form."""
+    record, law = pack(damper), FRICTION[damper.friction_law]
+    friction = law(**{entry.name: float(record[entry.name]) for entry in dataclasses.fields(law)})
+    return Parallel(laws=(damper_curve(damper), Constant(value=-damper.gas_force), friction))
+
+
+def _friction_laws() -> dict[str, type[Friction]]:
+    """Return the classes of the laws by their words.
+
+    Raises:
+        ConfigurationError: a law has a number that no record of a damper holds: it would fail in the middle of a run.
+    """
+    rooms = {word: importlib.import_module(f"vehicle.model.laws.{word}") for word in FRICTION_LAWS}
+    laws: dict[str, type[Friction]] = {}
+    for word, room in rooms.items():
+        law = laws[word] = getattr(room, word.title().replace("_", ""))
+        lost = [entry.name for entry in dataclasses.fields(law) if entry.name not in (RECORD.names or ())]
+        if lost:
+            raise ConfigurationError(
+                f"friction law {word}: its numbers {', '.join(lost)} have no place in a record of a damper, with "
+                f"{', '.join(RECORD.names or ())}; add them to RECORD of vehicle/model/laws/damper.py, and to `pack`"
+            )
+    return laws
+
+
+def _limit_of(laws: list[type[Friction]], index: int = 0) -> Callable[[Any, Any], Any]:
+    """Limit of the law that a record names by its index: compiled code has no tables of functions, but a chain."""
+    this = laws[0].limit_at
+
+    def last(record: Any, velocity: Any) -> Any:
+        return this(velocity, record)
+
+    if len(laws) == 1:
+        return jitable(last)
+    others = _limit_of(laws[1:], index + 1)
+
+    def limit(record: Any, velocity: Any) -> Any:
+        return this(velocity, record) if record["friction_law"] == index else others(record, velocity)
+
+    return jitable(limit)
+
+
+FRICTION = _friction_laws()
+friction_limit = _limit_of(list(FRICTION.values()))
+"""Friction limit [N] of a record at a velocity [m/s]."""

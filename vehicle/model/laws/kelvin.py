@@ -1,0 +1,30 @@
+"""Kelvin element: a spring and a viscous damper side by side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.model.laws.law import Numbers
+from vehicle.model.parameters.quantity import quantity, validate
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Kelvin:
+    """F = K u + B u', the linear bushing."""
+
+    stiffness: Numbers = quantity("N/m", "stiffness K", at_least=0.0)
+    damping: Numbers = quantity("N s/m", "damping constant B", at_least=0.0)
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+    def force(self, extension: Numbers, rate: Numbers) -> npt.NDArray[np.float64]:
+        """Force [N] at an extension [m] and its rate [m/s]."""
+        return np.asarray(self.stiffness * np.asarray(extension) + self.damping * np.asarray(rate))
+
+    def complex_stiffness(self, angular_frequency: Numbers) -> npt.NDArray[np.complex128]:
+        """K + j w B [N/m] at angular frequencies w [rad/s]."""
+        return np.asarray(self.stiffness + 1j * np.asarray(angular_frequency) * self.damping)

@@ -1,0 +1,99 @@
+"""Elastomer: a spring beside a Maxwell branch (spring and damper in series), with one internal force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.laws.law import Numbers
+from vehicle.model.parameters.quantity import quantity, validate
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Maxwell:
+    """F = K1 u + F2 with F2' = K2 u' - (K2/D2) F2, so K(s) = K1 + K2 D2 s / (D2 s + K2).
+
+    A branch with K2 = 0 or D2 = 0 is absent: its force is zero at all times.
+
+    Source: Bommer 2006, section 2.3.3.2, equations 2.8 to 2.13.
+    """
+
+    stiffness: Numbers = quantity("N/m", "static stiffness K1", at_least=0.0)
+    branch_stiffness: Numbers = quantity("N/m", "spring K2 of the Maxwell branch", at_least=0.0)
+    branch_damping: Numbers = quantity("N s/m", "damper D2 of the Maxwell branch", at_least=0.0)
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+    @property
+    def relaxation_time(self) -> npt.NDArray[np.float64]:
+        """Time constant D2/K2 [s] of the branch; zero where the branch is absent."""
+        damping, stiffness = np.broadcast_arrays(self.branch_damping, self.branch_stiffness)
+        present = stiffness > 0.0
+        return np.where(present, damping / np.where(present, stiffness, 1.0), 0.0)
+
+    def complex_stiffness(self, angular_frequency: Numbers) -> npt.NDArray[np.complex128]:
+        """K(j w) [N/m] at angular frequencies w [rad/s]."""
+        turn = 1j * np.asarray(angular_frequency) * self.relaxation_time
+        return np.asarray(self.stiffness + self.branch_stiffness * turn / (1.0 + turn))
+
+    def loss_angle(self, angular_frequency: Numbers) -> npt.NDArray[np.float64]:
+        """Angle of K(j w) [rad] at angular frequencies w [rad/s]."""
+        return np.asarray(np.angle(self.complex_stiffness(angular_frequency)))
+
+    def loss_peak(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Angular frequency [rad/s] and size [rad] of the largest loss angle.
+
+        w = (K2/D2) sqrt(K1/(K1 + K2)) and tan(angle) = K2 / (2 sqrt(K1 (K1 + K2))), from d angle / d w = 0.
+
+        Raises:
+            ConfigurationError: K1, K2 or D2 is zero, where the angle has no peak.
+        """
+        for name in ("stiffness", "branch_stiffness", "branch_damping"):
+            if not (np.asarray(getattr(self, name)) > 0.0).all():
+                raise ConfigurationError(
+                    f"Maxwell.{name}: found 0.0, must be greater than 0.0 for a peak of the loss angle"
+                )
+        total = np.asarray(self.stiffness + self.branch_stiffness)
+        frequency = np.sqrt(self.stiffness / total) / self.relaxation_time
+        return frequency, np.arctan(self.branch_stiffness / (2.0 * np.sqrt(self.stiffness * total)))
+
+    def step_coefficients(self, timestep: Numbers) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Coefficients of the exact step: F2(t + h) = decay F2(t) + gain (u(t + h) - u(t)).
+
+        decay = exp(-h/tau) and gain = D2 (1 - exp(-h/tau)) / h with tau = D2/K2; exact while u moves
+        on a straight line.
+
+        Args:
+            timestep: step h [s].
+
+        Returns:
+            decay [-] and gain [N/m]; both zero where the branch is absent.
+
+        Raises:
+            ConfigurationError: a step that is not a finite number above zero.
+        """
+        h = np.asarray(timestep, dtype=float)
+        if not (np.isfinite(h) & (h > 0.0)).all():
+            raise ConfigurationError(f"timestep: found {timestep!r} s, must be finite and greater than 0.0")
+        tau = self.relaxation_time
+        present = tau > 0.0
+        exponent = np.where(present, h / np.where(present, tau, 1.0), np.inf)
+        return np.exp(-exponent), np.asarray(self.branch_stiffness * tau * -np.expm1(-exponent) / h)
+
+    def step(self, branch_force: Numbers, extension_change: Numbers, timestep: Numbers) -> npt.NDArray[np.float64]:
+        """Branch force F2 [N] after a step, exact for an extension that moves linearly over it.
+
+        Args:
+            branch_force: F2 [N] at the start of the step.
+            extension_change: u(t + h) - u(t) [m].
+            timestep: step h [s].
+
+        Returns:
+            F2 [N] at the end of the step.
+        """
+        decay, gain = self.step_coefficients(timestep)
+        return np.asarray(decay * branch_force + gain * np.asarray(extension_change))

@@ -1,0 +1,176 @@
+"""What a vehicle file adds to its templates: points, connections between any two parts, recorded places, and loads."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.axes import Axes, axes_along
+from vehicle.model.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
+from vehicle.model.parameters.elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.hardpoints import Point, require_apart, require_point
+from vehicle.model.parameters.loads import Load
+from vehicle.model.parameters.quantity import NAME_PATTERN
+from vehicle.model.parameters.toml_file import build, convert, nearest
+
+LAW = {"moving", "carrier", "at", "ground", "axes"}
+"""Keys of a connection of the vehicle file that are not of its law."""
+
+LOAD = ("mass", "at", "on", "inertia", "products")
+"""Keys of a load."""
+
+
+def own_point(path: str, value: Any) -> Point:
+    """A point by its coordinates [m].
+
+    Args:
+        path: where it stands, shown in messages.
+        value: as read.
+
+    Raises:
+        ConfigurationError: it is none.
+    """
+    point: Point = convert(Point, value, path)
+    require_point(path, point, right=False)
+    return point
+
+
+def law_kind(table: Mapping[str, Any], *, plate: bool = False) -> type[Bushing] | type[Hydromount]:
+    """Class of the numbers of a connection; `plate`: of a tyre on its plate."""
+    return Hydromount if any(key.startswith("maxwell_") for key in table) else Tyre if plate else Bushing
+
+
+def _place(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:
+    """Where an element is, by the name of a point or by coordinates, and the name of the point."""
+    name, value = path.partition(".")[2], table.get("at")
+    if not NAME_PATTERN.fullmatch(name):
+        raise ConfigurationError(f"{path}: found {name!r}, allowed are letters, digits, '_', '.', '-'")
+    if value is None:
+        raise ConfigurationError(f"{path}.at: missing; needed is the name of a point, or its coordinates [m]")
+    if isinstance(value, str):
+        if value not in points:
+            near = nearest(value, points)
+            raise ConfigurationError(f"{path}.at: found {value!r}, no such point; the nearest is {near}")
+        return points[value], value
+    return own_point(f"{path}.at", value), name
+
+
+def _known(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
+    """The name of a part that a table gives under a key."""
+    if key not in table:
+        raise ConfigurationError(f"{path}.{key}: missing; needed is the name of a part, as body")
+    name: str = convert(str, table[key], f"{path}.{key}")
+    if name not in names:
+        raise ConfigurationError(f"{path}.{key}: found {name!r}, no such part; the nearest is {nearest(name, names)}")
+    return name
+
+
+def further_connection(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedConnection:
+    """A connection that the vehicle file adds between any two parts.
+
+    Args:
+        name: of its table.
+        value: the table.
+        names: of all parts.
+        points: of the car by name [m].
+
+    Raises:
+        ConfigurationError: a name that leads nowhere, or a wrong number.
+    """
+    path = f"connection.{name}"
+    table = convert(dict, value, path)
+    law = {key: inner for key, inner in table.items() if key not in LAW}
+    at, point = _place(path, table, points)
+    return PlacedConnection(
+        name=name,
+        moving=_known(path, table, "moving", names),
+        carrier=_known(path, table, "carrier", names),
+        at=at,
+        point=point,
+        law=build(law_kind(law), law, path) if law else None,
+        ground=convert(bool, table.get("ground", False), f"{path}.ground"),
+        path=path,
+        axes=_axes(path, table, points),
+    )
+
+
+def _axes(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> Axes | None:
+    """Axes of a law along two points."""
+    if "axes" not in table:
+        return None
+    names: tuple[str, ...] = convert(tuple[str, ...], table["axes"], f"{path}.axes")
+    for name in names:
+        if name not in points:
+            near = nearest(name, points)
+            raise ConfigurationError(f"{path}.axes: found {name!r}, no such point; the nearest is {near}")
+    if len(names) != 2 or table.get("ground"):
+        raise ConfigurationError(
+            f"{path}.axes: found {list(names)}; needed are two points, of what is not on the ground"
+        )
+    require_apart({f"{path}.axes, {name}": points[name] for name in names})
+    return axes_along(points[names[0]], points[names[1]])
+
+
+def further_output(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedOutput:
+    """A place whose acceleration the vehicle file wants recorded; arguments as of `further_connection`.
+
+    Raises:
+        ConfigurationError: a name that leads nowhere.
+    """
+    path = f"outputs.{name}"
+    table = convert(dict, value, path)
+    for key in table:
+        if key not in ("on", "at"):
+            raise ConfigurationError(f"{path}.{key}: unknown parameter; needed are on and at")
+    at, point = _place(path, table, points)
+    return PlacedOutput(name=name, on=_known(path, table, "on", names), at=at, point=point)
+
+
+def new_loads(overrides: Iterable[str]) -> list[str]:
+    """Return the paths of overrides that are keys of a load, which a file need not have."""
+    texts = [text.partition("=")[0].strip() for text in overrides]
+    return [text for text in texts if re.fullmatch(rf"load\.[A-Za-z0-9_-]+\.({'|'.join(LOAD)})", text)]
+
+
+def load_numbers(path: str, table: Mapping[str, Any]) -> Load:
+    """Return the mass properties of a load.
+
+    Args:
+        path: of its table, shown in messages.
+        table: the table.
+
+    Raises:
+        ConfigurationError: a wrong number.
+    """
+    return build(Load, {key: value for key, value in table.items() if key not in ("on", "at")}, path)
+
+
+def placed_load(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedPart:
+    """Return a load of the vehicle file as a part that is fixed to what carries it.
+
+    Args:
+        name: of its table.
+        value: the table.
+        names: of the parts that can carry a load.
+        points: of the car by name [m].
+
+    Raises:
+        ConfigurationError: a name that leads nowhere, or a wrong number.
+    """
+    path = f"load.{name}"
+    table = convert(dict, value, path)
+    at, _ = _place(path, table, points)
+    return PlacedPart(
+        name=f"load_{name}",
+        parent=_known(path, {"on": "body", **table}, "on", names),
+        cog=at,
+        numbers=load_numbers(path, table),
+        side=1.0,
+        shape="none",
+        points={},
+        joints=(),
+        seat=None,
+        path=path,
+    )

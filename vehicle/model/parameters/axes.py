@@ -1,0 +1,30 @@
+"""Axes of a bushing that lies along a line, as that at the end of a rod."""
+
+from __future__ import annotations
+
+import math
+
+from vehicle.model.parameters.hardpoints import Point
+
+Axes = tuple[Point, Point, Point]
+"""Directions of x, y and z of an element in the vehicle frame."""
+
+
+def axes_along(start: Point, end: Point) -> Axes:
+    """x from one point to another, y level, z square to both; with a vertical line y is that of the car.
+
+    Seen from the other side of the car these are mirrored axes, up to the sign of y, which K and D do not know.
+
+    Args:
+        start, end: two different points [m].
+    """
+    x = _unit((end[0] - start[0], end[1] - start[1], end[2] - start[2]))
+    level = math.hypot(x[0], x[1])
+    y = (0.0, 1.0, 0.0) if level < 1e-6 else (-x[1] / level, x[0] / level, 0.0)
+    z = _unit((x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]))
+    return x, y, z
+
+
+def _unit(vector: Point) -> Point:
+    length = math.hypot(*vector)
+    return (vector[0] / length, vector[1] / length, vector[2] / length)

@@ -1,0 +1,81 @@
+"""Keys that a vehicle file may hold and need not: those with a default, further laws, and the tables of one side."""
+
+from __future__ import annotations
+
+import dataclasses
+import typing
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from vehicle.model.parameters.body import MOST_MODES, BodyInertia, BodyMode, TrimmedBody
+from vehicle.model.parameters.compose import kinds
+from vehicle.model.parameters.driving import Driving
+from vehicle.model.parameters.elements import Bushing, Damper, ForceTable, Hydromount, Tyre
+from vehicle.model.parameters.instances import instances
+from vehicle.names import SIDE_SIGN
+
+
+def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
+    """Paths that a vehicle file does not hold and may be given, those of the sides last.
+
+    Args:
+        table: the file, as of `read_table`.
+        folder: where it lies.
+
+    Raises:
+        ConfigurationError: its templates or their keys are wrong.
+    """
+    car = instances(table, (folder, folder / "templates"))
+    own, given = (
+        [
+            "shaker_wheel",
+            "shaker_wheel_in_source",
+            "solver.timestep",
+            *(f"driving.{key}" for key in _keys(Driving, everything=False)),
+            *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
+        ],
+        kinds(car, table),
+    )
+    own += [f"body.inertia.{key}" for key in _keys(BodyInertia, everything=False)]
+    # An ideal joint becomes a bushing by numbers.
+    places = [f"{i.name}.bushings.{one.name}" for i in car.values() for one in i.template.connection]
+    ideal = dict.fromkeys((path for path in places if path not in given), Bushing)
+    every = {**given, **ideal}
+    own += [f"{path}.{key}" for path in ideal for key in _keys(Bushing, everything=True)]
+    for path, kind in every.items():
+        # A bushing becomes a hydromount by the numbers of its branch.
+        for one in (kind, Hydromount) if kind in (Bushing, Tyre) else (kind,):
+            own += [f"{path}.{key}" for key in _keys(one, everything=one is Hydromount and kind is not Hydromount)]
+    sides = []
+    for i in car.values():
+        inside = [path.removeprefix(f"{i.name}.") for path in every if path.startswith(f"{i.name}.")]
+        keys = [f"{path}.{key}" for path in inside for key in _keys(every[f"{i.name}.{path}"], everything=True)]
+        keys += [f"hardpoints.{name}" for name in i.template.hardpoints]
+        sides += [f"{i.name}.{side}.{key}" for side in SIDE_SIGN if i.template.mirrored for key in keys]
+    changes = list(_keys(BodyMode, everything=False))
+    modes = [f"body.modes.{number}.{key}" for number in range(1, MOST_MODES + 1) for key in changes]
+    return list(dict.fromkeys(path for path in (*own, *sides, *modes) if _missing(table, path)))
+
+
+def _keys(kind: type[Any], *, everything: bool) -> Iterator[str]:
+    """Keys of a class of numbers that have a default, or all; tables of points key by key."""
+    hints = typing.get_type_hints(kind)
+    if kind in (Damper, ForceTable):
+        yield "curve"
+    for entry in dataclasses.fields(kind):
+        needed = entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING
+        if ForceTable in typing.get_args(hints[entry.name]):
+            yield entry.name
+            yield from (f"{entry.name}.{key}" for key in _keys(ForceTable, everything=True))
+        elif everything or not needed:
+            yield entry.name
+
+
+def _missing(table: Mapping[str, Any], path: str) -> bool:
+    inner: Any = table
+    for key in path.split("."):
+        if not isinstance(inner, Mapping) or key not in inner:
+            return True
+        inner = inner[key]
+    return False

@@ -1,0 +1,115 @@
+"""What no road vehicle is, from a micro car to a loaded van: refused by the parameter's name, its value and the reason.
+
+Ranges of single numbers stand in their declarations; here are those that need two parameters, or the role of a part.
+They are wide on purpose: they are there for slips of the pen and of the unit, not for taste.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.body import MOMENTS
+from vehicle.model.parameters.composition import PlacedWheel
+from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.loads import Load
+from vehicle.names import AXES
+
+if TYPE_CHECKING:
+    from vehicle.model.parameters.vehicle import Vehicle
+
+ENGINE_MASS = (20.0, 1000.0, "an electric motor has 30 kg, a large diesel with its gearbox 600 kg")
+PART_MASS = (0.02, 150.0, "from the screw of a rod to the wheel of a van")
+GYRATION = (1e-3, 1.0, "radius of gyration: thicker than a wire, smaller than the car is wide")
+OFFSET_M = 1.0
+"""No part lies farther from the mean of its own hardpoints [m]."""
+
+WHEEL_RADIUS = (0.15, 0.7, "loaded radius: 0.23 m of a micro car, 0.4 m of a van")
+HALF_TRACK = (0.3, 1.3, "half the track: 0.45 m of a micro car, 0.95 m of a van")
+WHEELBASE = (0.5, 8.0, "from the first to the last point on the ground: a wheelbase of 1.5 to 5 m")
+PATCH_ASIDE_M = 0.2
+"""The contact patch lies below the wheel centre, give or take camber and trail [m]."""
+
+BODY_GYRATION = (0.2, 4.0, "radius of gyration of a body 2 to 8 m long")
+
+
+def require_plausible(vehicle: Vehicle) -> None:
+    """Refuse a car that no engineer could mean.
+
+    Raises:
+        ConfigurationError: naming the parameter, the value, what is allowed and why.
+    """
+    require_parts(vehicle)
+    for wheel in vehicle.composition.wheels:
+        _wheel(wheel)
+    _ground(vehicle)
+    require_body(vehicle)
+
+
+def _within(path: str, value: float, unit: str, limits: tuple[float, float, str]) -> None:
+    low, high, why = limits
+    if not low <= value <= high:
+        raise ConfigurationError(f"{path}: found {value:g} {unit}, allowed are {low:g} to {high:g} {unit} ({why})")
+
+
+def require_parts(vehicle: Vehicle) -> None:
+    """Refuse parts that no car has; errors as of `require_plausible`."""
+    for placed in vehicle.composition.parts:
+        part, path = placed.numbers, placed.path
+        if isinstance(part, Load):
+            continue  # its ranges stand in its declaration
+        _within(f"{path}.mass", part.mass, "kg", ENGINE_MASS if placed.shape == "engine" else PART_MASS)
+        for axis, moment in zip(AXES, part.inertia or (), strict=True):
+            low, high, why = GYRATION
+            limits = (part.mass * low**2, part.mass * high**2, f"{why}, at {part.mass:g} kg")
+            _within(f"{path}.inertia.{axis}", moment, "kg m2", limits)
+        for axis, offset in zip(AXES, part.offset, strict=True):
+            limits = (-OFFSET_M, OFFSET_M, "a part lies near its own hardpoints; give metres")
+            _within(f"{path}.offset.{axis}", offset, "m", limits)
+
+
+def _wheel(wheel: PlacedWheel) -> None:
+    center, patch = wheel.paths
+    _within(f"{center}.z less {patch}.z", wheel.center[2] - wheel.patch[2], "m", WHEEL_RADIUS)
+    _within(f"{center}.y", wheel.side * wheel.center[1], "m", HALF_TRACK)
+    for axis, a, b in zip(AXES[:2], wheel.patch[:2], wheel.center[:2], strict=True):
+        limits = (-PATCH_ASIDE_M, PATCH_ASIDE_M, "the tyre touches the plate below the wheel centre")
+        _within(f"{patch}.{axis} less {center}.{axis}", a - b, "m", limits)
+
+
+def _ground(vehicle: Vehicle) -> None:
+    """Where the car stands: long enough, and nothing below its plates."""
+    ground = [one for one in vehicle.composition.connections if one.ground]
+    if not ground:
+        raise ConfigurationError(f"{vehicle.name}: stands on nothing; give it an axle with wheels, or blocks")
+    along = [one.at[0] for one in ground]
+    first, last = (ground[along.index(end)] for end in (min(along), max(along)))
+    _within(f"{last.point}.x less {first.point}.x", last.at[0] - first.at[0], "m", WHEELBASE)
+    low = min(vehicle.composition.wheels, key=lambda wheel: wheel.patch[2], default=None)
+    for name, point in vehicle.points.items():
+        if low is not None and point[2] < low.patch[2]:
+            raise ConfigurationError(
+                f"{_point_path(vehicle, name)}.z: found {point[2]:g} m, must not lie below the plate "
+                f"({low.paths[1]}.z = {low.patch[2]:g} m)"
+            )
+
+
+def _point_path(vehicle: Vehicle, name: str) -> str:
+    """Path of a point of the model in the vehicle file."""
+    found = [path for path in vehicle.composition.meanings if name.startswith(path.rpartition(".")[2])]
+    return max(found, key=len, default=f"hardpoints.{name}")
+
+
+def require_body(vehicle: Vehicle) -> None:
+    """Refuse a body that no car has; errors as of `require_plausible`."""
+    body, every = vehicle.body, list[Point](vehicle.points.values())
+    for index, axis in enumerate(AXES):
+        low, high = min(point[index] for point in every), max(point[index] for point in every)
+        why = "between the outermost hardpoints; a centre of gravity in metres lies inside the car"
+        _within(f"body.cog.{axis}", body.cog[index], "m", (low, high, why))
+    low, high, why = BODY_GYRATION
+    at_cog = body.inertia.about == "cog"
+    far, place = (0.0, "CoG") if at_cog else (sum(value**2 for value in body.cog), "origin")
+    for name in MOMENTS[:3]:
+        limits = (body.mass * low**2, body.mass * (high**2 + far), f"about the {place}; {why}")
+        _within(f"body.inertia.{name}", getattr(body.inertia, name), "kg m2", limits)

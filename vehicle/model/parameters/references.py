@@ -1,0 +1,113 @@
+"""What a vehicle file names must be there, and what it gives must be taken: slips of the pen that no number shows."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.composition import Composition
+from vehicle.model.parameters.hardpoints import require_apart
+from vehicle.model.parameters.instance import Instance
+from vehicle.model.parameters.paths import full_path
+from vehicle.model.parameters.toml_file import convert, nearest
+from vehicle.names import SIDE_SIGN
+
+GROUPS = ("hardpoints", "parts", "bushings", "ports")
+"""Tables of an instance that hold a table or a value for each name."""
+
+
+def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
+    """Refuse a port that is bound to no part.
+
+    Args:
+        car: instances by name.
+        names: of all parts.
+
+    Raises:
+        ConfigurationError: naming the port.
+    """
+    for i in car.values():
+        for port in i.numbers.get("ports", {}):
+            for side in i.sides():
+                if (found := i.part(port, side)) not in names:
+                    near = nearest(found, names)
+                    raise ConfigurationError(f"{i.name}.ports.{port}: {found!r} is no part; the nearest is {near}")
+
+
+def require_sound(car: Composition) -> None:
+    """Refuse two elements of one name, and one that lies between a part and itself, or between a point and itself.
+
+    Raises:
+        ConfigurationError: naming the element.
+    """
+    for connection in car.connections:
+        if connection.moving == connection.carrier:
+            raise ConfigurationError(f"{connection.path}: holds {connection.moving} on itself; name two parts")
+        if getattr(connection.law, "one_sided", False) and not connection.ground:
+            raise ConfigurationError(
+                f"{connection.path}.one_sided: found true, allowed is false; only a contact with the ground lifts off"
+            )
+    for spring in car.springs:
+        require_apart(dict(zip((f"{spring.path}, lower end", "upper end"), spring.at, strict=True)))
+    joints = [joint.name for part in car.parts for joint in part.joints]
+    parts, links = [one.name for one in car.parts], [one.name for one in car.connections]
+    laws, outputs = [one.name for one in car.springs], [one.name for one in car.outputs]
+    laws += [one.name for one in car.dampers]
+    for names in (parts, joints, links, laws, outputs):
+        for name, other in itertools.pairwise(sorted(names)):
+            if name == other:
+                raise ConfigurationError(
+                    f"{name}: two elements have this name; rename one, or give its template a prefix"
+                )
+
+
+def require_taken(car: Mapping[str, Instance]) -> None:
+    """Refuse numbers of one side that nothing takes: of what exists once, or of a template that is not mirrored.
+
+    Raises:
+        ConfigurationError: naming the table.
+    """
+    for i in car.values():
+        for side in SIDE_SIGN:
+            for place in _places(i.numbers.get(side, {})):
+                if f"{side}.{place}" not in i.taken:
+                    why = "what it is for exists once, on no side" if i.template.mirrored else "it is not mirrored"
+                    raise ConfigurationError(f"{i.name}.{side}.{place}: {i.template.file} does not take it; {why}")
+
+
+def _places(table: Mapping[str, Any]) -> Iterator[str]:
+    for key, inner in table.items():
+        yield from (f"{key}.{name}" for name in inner) if key in GROUPS else (key,)
+
+
+def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> None:
+    """Refuse a point of the vehicle file that nothing uses; a body with a model may stand on any.
+
+    Raises:
+        ConfigurationError: naming the point.
+    """
+    if "superelement" in table["body"]:
+        return
+    users = [one for key in ("outputs", "connection", "load") for one in table.get(key, {}).values()]
+    used = {one.get("at") for one in users if isinstance(one.get("at"), str)}
+    tables = [side for i in car.values() for side in (i.numbers, *(i.numbers.get(word, {}) for word in SIDE_SIGN))]
+    used |= {value for one in tables for value in one.get("hardpoints", {}).values() if isinstance(value, str)}
+    for name in table.get("hardpoints", {}):
+        if name not in used:
+            raise ConfigurationError(f"hardpoints.{name}: nothing uses it; take it out, or name it in an output")
+
+
+def require_aliases(table: Mapping[str, Any]) -> None:
+    """Refuse an alias that leads nowhere.
+
+    Raises:
+        ConfigurationError: naming the alias.
+    """
+    for name, path in table.get("alias", {}).items():
+        try:
+            full_path({**table, "alias": {}}, convert(str, path, f"alias.{name}"))
+        except ConfigurationError as error:
+            said = str(error)
+            raise ConfigurationError(said if said.startswith("alias.") else f"alias.{name}: {said}") from None

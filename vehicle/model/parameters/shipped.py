@@ -1,0 +1,36 @@
+"""The cars of the package, by their names."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError
+
+VEHICLES = Path(str(resources.files("vehicle.model"))) / "vehicles"
+FOCUS_FILE = VEHICLES / "focus" / "vehicle.toml"
+"""The Ford-Focus-like car of Bommer 2006."""
+
+CARS = tuple(sorted(folder.parent.name for folder in VEHICLES.glob("*/vehicle.toml")))
+"""Names of all cars."""
+
+
+def shipped_cars() -> tuple[str, ...]:
+    """Return the names of the cars of the package, as `Car.load` takes them."""
+    return CARS
+
+
+def vehicle_file(path: Path | str) -> Path:
+    """The file of a car: the path as given, or that of the shipped car of this name.
+
+    Raises:
+        ConfigurationError: a name that is neither, or the folder of a car.
+    """
+    path = Path(path)
+    if path.is_dir() and (path / "vehicle.toml").is_file():
+        raise ConfigurationError(f"{path}: is a folder; give the file in it: {path / 'vehicle.toml'}")
+    if path.suffix or path.exists() or path.name != str(path):
+        return path
+    if path.name not in CARS:
+        raise ConfigurationError(f"{path}: no such file, and no shipped car; these are {', '.join(CARS)}")
+    return VEHICLES / path / "vehicle.toml"

@@ -1,0 +1,69 @@
+"""One template file as it is written: its keys, and of which types they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.toml_file import convert, nearest, read_table
+from vehicle.model.parameters.topology import Connection, Damper, Joint, Output, Spring
+
+LISTS = {"joint": Joint, "connection": Connection, "spring": Spring, "damper": Damper, "output": Output}
+"""Lists of elements, and their classes."""
+
+_KEYS: dict[str, Any] = {
+    "mirrored": bool,
+    "use": tuple[dict, ...],  # type: ignore[type-arg]
+    "hardpoints": Mapping[str, str],
+    "ports": Mapping[str, str],
+    "parts": Mapping[str, dict],  # type: ignore[type-arg]
+    "wheel": dict,
+    "above": tuple[tuple[str, ...], ...],
+    **dict.fromkeys(LISTS, tuple[dict, ...]),  # type: ignore[type-arg]
+}
+_USE: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str, str], "when": str}
+
+
+def read_template_file(path: Path) -> dict[str, Any]:
+    """Read a template without what it uses.
+
+    Args:
+        path: the file.
+
+    Returns:
+        Its tables and lists; empty ones for those that it does not have, None for a missing wheel.
+
+    Raises:
+        ConfigurationError: it is no TOML file, or holds an unknown key or a wrong type; the message names the file.
+    """
+    table = read_table(path)
+    try:
+        for key, value in table.items():
+            if key not in _KEYS:
+                raise ConfigurationError(f"{key}: unknown; the nearest known name is {nearest(key, _KEYS)}")
+            convert(_KEYS[key], value, key)
+        for position, use in enumerate(table.get("use", [])):
+            if "template" not in use or set(use) - set(_USE):
+                raise ConfigurationError(f"use: needed is template, allowed are prefix, with, when; found {use}")
+            for key, value in use.items():
+                convert(_USE[key], value, f"use.{position}.{key}")
+        for pair in table.get("above", []):
+            if len(pair) != 2:
+                raise ConfigurationError(f"above: found {pair}; needed are two points, the upper one first")
+    except ConfigurationError as error:
+        raise ConfigurationError(f"{path.name}: {error}") from None
+    return {
+        "mirrored": table.get("mirrored", False),
+        "wheel": table.get("wheel"),
+        "use": table.get("use", []),
+        "above": list(table.get("above", [])),
+        **{key: dict(table.get(key, {})) for key in ("hardpoints", "ports", "parts")},
+        **{key: [_listed(entry) for entry in table.get(key, [])] for key in LISTS},
+    }
+
+
+def _listed(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """One child is a list of one."""
+    return {**entry, "child": [entry["child"]]} if isinstance(entry.get("child"), str) else dict(entry)

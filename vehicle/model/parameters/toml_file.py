@@ -1,0 +1,244 @@
+"""TOML files into parameter objects and back: strict names, strict types."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import functools
+import tomllib
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.quantity import NAME_PATTERN, field_quantity
+
+T = TypeVar("T")
+
+LARGEST_FILE = 10_000_000
+"""Largest parameter file [byte], far above that of any body."""
+
+
+def read_table(path: Path) -> dict[str, Any]:
+    """Read a TOML file into nested dictionaries.
+
+    Args:
+        path: the file.
+
+    Returns:
+        The tables of the file.
+
+    Raises:
+        ConfigurationError: the file is missing, not a file, too large, not UTF-8 or not TOML.
+    """
+    if not path.is_file():
+        raise ConfigurationError(f"{path}: no such file; give the path of a parameter file (TOML)")
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise ConfigurationError(f"{path}: larger than {LARGEST_FILE / 1e6:g} MB; this is no parameter file")
+        return copy_table(_parsed(path.read_text(encoding="utf-8")))
+    except RecursionError:
+        raise ConfigurationError(f"{path}: tables or lists are nested too deep; this is no parameter file") from None
+    except UnicodeDecodeError as error:
+        raise ConfigurationError(f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigurationError(f"{path}: not a TOML file: {error}") from None
+    except OSError as error:
+        raise ConfigurationError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+# A sweep reads the same file for each of its thousands of cars.
+@functools.lru_cache(maxsize=16)
+def _parsed(text: str) -> dict[str, Any]:
+    return tomllib.loads(text)
+
+
+def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
+    """Build a parameter object from nested dictionaries.
+
+    Args:
+        cls: a dataclass whose fields are numbers, texts, vectors (tuples), other such classes or mappings of them.
+        table: the values, named as the fields.
+        path: dotted path of this table, shown in messages.
+
+    Returns:
+        The validated object.
+
+    Raises:
+        ConfigurationError: an unknown name (with the nearest known one), a missing name or a wrong type.
+    """
+    hints = type_hints(cls)  # type: ignore[arg-type]
+    fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
+    for key in table:
+        if key not in fields:
+            near = f"the nearest known name is {nearest(key, fields)}"
+            raise ConfigurationError(f"{_join(path, key)}: unknown parameter; {near}")
+    values: dict[str, Any] = {}
+    missing: list[dataclasses.Field[Any]] = []
+    for name, entry in fields.items():
+        if name in table:
+            values[name] = convert(hints[name], table[name], _join(path, name))
+        elif entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING:
+            missing.append(entry)
+    if missing:
+        first, *others = missing
+        also = f"; so must {', '.join(f'{one.name}{_needed(one)}' for one in others)}" if others else ""
+        raise ConfigurationError(
+            f"{_join(path, first.name)}: missing; every parameter must be given{_needed(first)}{also}"
+        )
+    try:
+        return cls(**values)
+    except ConfigurationError as error:
+        # The class only knows its own name; the user knows the path in the file.
+        message = str(error)
+        if path and message.startswith(cls.__name__ + "."):
+            message = path + message[len(cls.__name__) :]
+        elif not path and message.startswith(cls.__name__ + "."):
+            message = message[len(cls.__name__) + 1 :]
+        raise ConfigurationError(message) from None
+
+
+def _needed(entry: dataclasses.Field[Any]) -> str:
+    """What a field wants, in brackets: one of its words, or a number in its unit."""
+    words, unit = entry.metadata.get("choices"), entry.metadata.get("unit")
+    return f" [{' or '.join(words)}]" if words else f" [{unit}]" if unit else ""
+
+
+def as_table(instance: Any) -> dict[str, Any]:
+    """Nested dictionaries of a parameter object: the inverse of `build`. A vehicle keeps the table it was made from."""
+    if isinstance(own := getattr(instance, "table", None), Mapping):
+        return copy_table(own)
+    return {
+        entry.name: _plain(getattr(instance, entry.name))
+        for entry in dataclasses.fields(instance)
+        if getattr(instance, entry.name) is not None
+    }
+
+
+def write_text(instance: Any, header: str = "") -> str:
+    """TOML text of a parameter object, each value with its unit and meaning behind it.
+
+    Args:
+        instance: the object.
+        header: lines put on top, without the comment sign.
+
+    Returns:
+        The text; `build(type(instance), tomllib.loads(text))` gives an equal object.
+    """
+    lines = [f"# {line}".rstrip() for line in header.splitlines()]
+    describe = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
+    _write(as_table(instance), "", lines, describe)
+    return "\n".join(lines).strip() + "\n"
+
+
+def _write(table: Mapping[str, Any], path: str, lines: list[str], describe: Callable[[str], Mapping[str, Any]]) -> None:
+    for key, value in table.items():
+        if not isinstance(value, Mapping):
+            known = describe(_join(path, key))
+            said = f"  # [{known['unit']}] {known['meaning']}".rstrip() if "unit" in known else ""
+            lines.append(f"{_key(key)} = {_literal(value)}{said}")
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            place = _join(path, _key(key))
+            if not value or any(not isinstance(inner, Mapping) for inner in value.values()):
+                lines.extend(["", f"[{place}]"])
+            _write(value, place, lines, describe)
+
+
+def _key(key: str) -> str:
+    return key if NAME_PATTERN.fullmatch(key) and "." not in key else _literal(key)
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, tuple | list):
+        return "[" + ", ".join(_literal(item) for item in value) + "]"
+    return repr(value)
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return as_table(value)
+    if isinstance(value, Mapping):
+        return {key: _plain(member) for key, member in value.items()}
+    if isinstance(value, tuple):
+        return [_plain(member) for member in value]
+    return value
+
+
+def convert(hint: Any, value: Any, path: str) -> Any:
+    """Turn a TOML value into the type of its field.
+
+    Args:
+        hint: the type: float, str, bool, dict, a tuple, a mapping, a parameter class, or one of these or None.
+        value: as read.
+        path: of the parameter, shown in messages.
+
+    Raises:
+        ConfigurationError: it is of another type.
+    """
+    if hint is float:
+        return _number(value, path)
+    origin = typing.get_origin(hint)
+    if origin in (types.UnionType, typing.Union):
+        inner = [option for option in typing.get_args(hint) if option is not type(None)]
+        return convert(inner[0], value, path)
+    if hint is dict and not isinstance(value, Mapping):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
+    if dataclasses.is_dataclass(hint):
+        if not isinstance(value, Mapping):
+            raise ConfigurationError(f"{path}: found {value!r}, needed is a table of parameters")
+        return build(typing.cast(type[Any], hint), value, path)
+    if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
+        if not isinstance(value, Mapping):
+            raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
+        inner_hint = typing.get_args(hint)[1]
+        return types.MappingProxyType(
+            {key: convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
+        )
+    if origin is tuple:
+        if not isinstance(value, list | tuple):
+            raise ConfigurationError(f"{path}: found {value!r}, needed is a list")
+        return tuple(convert(typing.get_args(hint)[0], item, path) for item in value)
+    if hint is str and not isinstance(value, str):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is a text in quotes")
+    if hint is bool and not isinstance(value, bool):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is true or false")
+    return value
+
+
+def _number(value: Any, path: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ConfigurationError(f"{path}: found {value!r}, needed is a number")
+    try:
+        return float(value)
+    except OverflowError:
+        raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, needed is a finite number") from None
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The known name that is spelt most like another one; of none, "nothing"."""
+    return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=0.0)), "nothing")
+
+
+def copy_table(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Copy nested dictionaries, lists included."""
+    return {
+        key: copy_table(value) if isinstance(value, Mapping) else list(value) if isinstance(value, list) else value
+        for key, value in table.items()
+    }
+
+
+def _join(path: str, name: str) -> str:
+    return f"{path}.{name}" if path else name
+
+
+@functools.cache
+def type_hints(kind: type[Any]) -> dict[str, Any]:
+    """Types of the fields of a dataclass; a sweep asks for them thousands of times."""
+    return typing.get_type_hints(kind)

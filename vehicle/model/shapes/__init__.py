@@ -1,0 +1,7 @@
+"""Visible shapes of car and rig: meshes made from the points of parts by their roles, for the MJCF and its pictures."""
+
+from vehicle.model.shapes.roles import Part, part_shapes
+from vehicle.model.shapes.scene import SHELL
+from vehicle.model.shapes.shape import Shape
+
+__all__ = ["SHELL", "Part", "Shape", "part_shapes"]

@@ -1,0 +1,276 @@
+"""Closed solids: hulls, boxes, bodies of revolution, tubes and bars swept along a path; placing and joining them."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+import trimesh
+from numpy.typing import ArrayLike
+
+from vehicle.model.shapes.shape import Array
+
+ON_AXIS = 1e-9  # [m] a smaller radius is a point on the axis
+
+
+def hull(points: ArrayLike) -> trimesh.Trimesh:
+    """The convex hull of points [m], shape (n, 3)."""
+    return outward(trimesh.convex.convex_hull(np.asarray(points, dtype=float)))
+
+
+def box(low: ArrayLike, high: ArrayLike, bevel: float = 0.0) -> trimesh.Trimesh:
+    """A box between two corners [m], all edges bevelled by `bevel` [m]."""
+    a, b = (np.asarray(corner, dtype=float) for corner in (low, high))
+    centre, half = (a + b) / 2, np.abs(b - a) / 2
+    signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    if bevel == 0.0:
+        return hull(centre + signs * half)
+    return hull(np.vstack([centre + signs * (half - bevel * (1 - np.eye(3)[axis])) for axis in range(3)]))
+
+
+def block(place: ArrayLike, low: ArrayLike, high: ArrayLike, bevel: float = 0.0) -> trimesh.Trimesh:
+    """A box whose corners [m] are given relative to a place [m]."""
+    origin = np.asarray(place, dtype=float)
+    return box(origin + np.asarray(low), origin + np.asarray(high), bevel)
+
+
+def plate(place: ArrayLike, axis: int, span: Sequence[float], corners: Sequence[Sequence[float]]) -> trimesh.Trimesh:
+    """A flat plate with parallel faces: the hull of a polygon at each end of a span.
+
+    Args:
+        place: what all coordinates are relative to, shape (3,) [m]
+        axis: 0, 1 or 2, the direction of the thickness
+        span: where its faces are along the axis [m]
+        corners: polygon in the two other axes, in their order [m]
+    """
+    offsets = [np.insert(np.asarray(corner, dtype=float), axis, at) for at in span for corner in corners]
+    return hull(np.asarray(place, dtype=float) + np.array(offsets))
+
+
+def lathe(profile: ArrayLike, *, sections: int = 24, closed: bool = False) -> trimesh.Trimesh:
+    """Turn a profile about the z axis.
+
+    x = r cos(phi), y = r sin(phi), phi = 2 pi k / sections
+
+    Its volume is that of the turned body times sin(a)/a with a = 2 pi / sections, the ratio of polygon to circle.
+
+    Args:
+        profile: points (r, z) [m], shape (n, 2); an open profile that begins and ends on the axis makes a closed body
+        sections: number of divisions of the full turn
+        closed: join the last point to the first (a ring that does not touch the axis)
+
+    Returns:
+        mesh with outward normals if it is closed
+    """
+    phi = 2 * np.pi * np.arange(sections) / sections
+    vertices: list[Array] = []
+    rings: list[np.ndarray] = []
+    count = 0
+    for r, z in np.asarray(profile, dtype=float):
+        around = phi[: 1 if r < ON_AXIS else sections]
+        vertices.append(np.column_stack([r * np.cos(around), r * np.sin(around), np.full(len(around), z)]))
+        rings.append(np.broadcast_to(count + np.arange(len(around)), sections))
+        count += len(around)
+    pairs = list(itertools.pairwise(rings)) + ([(rings[-1], rings[0])] if closed else [])
+    faces = np.vstack([quads(low, np.roll(low, -1), np.roll(high, -1), high) for low, high in pairs])
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    return outward(trimesh.Trimesh(np.vstack(vertices), faces, process=False))
+
+
+def ring(inner: float, outer: float, low: float, high: float, *, sections: int = 20) -> trimesh.Trimesh:
+    """A plain ring about z between two radii [m] and two heights [m]."""
+    return lathe([(inner, low), (outer, low), (outer, high), (inner, high)], sections=sections, closed=True)
+
+
+def drum(radius: float, low: float, high: float, *, bevel: float = 0.0, sections: int = 20) -> trimesh.Trimesh:
+    """A solid cylinder about z between two heights [m], its edges bevelled [m]."""
+    if bevel == 0.0:
+        return lathe([(0, low), (radius, low), (radius, high), (0, high)], sections=sections)
+    rim = [(radius - bevel, low), (radius, low + bevel), (radius, high - bevel), (radius - bevel, high)]
+    return lathe([(0, low), *rim, (0, high)], sections=sections)
+
+
+def ball(radius: float, *, sections: int = 14) -> trimesh.Trimesh:
+    """A sphere [m] about the origin, as many divisions from pole to pole as half its sections."""
+    theta = np.linspace(0, np.pi, sections // 2 + 1)
+    profile = np.column_stack([radius * np.sin(theta), -radius * np.cos(theta)])
+    profile[[0, -1], 0] = 0.0
+    return lathe(profile, sections=sections)
+
+
+def frames(path: Array, up: ArrayLike | None, *, closed: bool) -> tuple[Array, Array]:
+    """Two normals at each point of a path, carried along it without twist by double reflection.
+
+    The frame is mirrored at the middle plane of each chord, then at the plane that brings its tangent to the next one.
+
+    Args:
+        path: points [m], shape (n, 3)
+        up: wished direction of the first normal; with it, EVERY normal is the projection of this direction
+        closed: the path returns to its first point (not repeated); it must lie in a plane, or the section will not meet
+
+    Returns:
+        first and second normal, unit length, each shape (n, 3)
+
+    Source: W. Wang, B. Juettler, D. Zheng, Y. Liu, Computation of rotation minimizing frames, ACM TOG 27 (2008), 2.
+    """
+    tangents = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0) if closed else np.gradient(path, axis=0)
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    if up is not None:
+        wish = np.asarray(up, dtype=float)
+        first = wish - (tangents @ wish)[:, None] * tangents
+        first /= np.linalg.norm(first, axis=1)[:, None]
+        return first, np.cross(tangents, first)
+    first = np.empty_like(path)
+    start = np.eye(3)[np.argmin(np.abs(tangents[0]))]
+    start = start - (start @ tangents[0]) * tangents[0]
+    first[0] = start / np.linalg.norm(start)
+    for i, chord in enumerate(np.diff(path, axis=0)):
+        normal, tangent = _reflected(first[i], chord), _reflected(tangents[i], chord)
+        first[i + 1] = _reflected(normal, tangents[i + 1] - tangent)
+    return first, np.cross(tangents, first)
+
+
+def _reflected(vector: Array, normal: Array) -> Array:
+    square = float(normal @ normal)
+    if square < 1e-24:  # nothing to turn
+        return vector
+    return vector - (2 * float(normal @ vector) / square) * normal
+
+
+def tube(
+    path: ArrayLike,
+    radius: ArrayLike,
+    *,
+    sides: int = 8,
+    closed: bool = False,
+    width: ArrayLike | None = None,
+    up: ArrayLike | None = None,
+) -> trimesh.Trimesh:
+    """Sweep a polygon along a path: a closed body with flat ends, or a ring.
+
+    For a straight path the volume is that of the prism, sides/2 sin(2 pi / sides) radius^2 length; for a closed
+    planar path it is the polygon's area times the length of the path (Pappus) as the steps get finer.
+
+    Args:
+        path: points of the centre line [m], shape (n, 3), no two in a row equal
+        radius: half height of the section, along the first normal [m]; a number or shape (n,)
+        sides: corners of the polygon; 4 makes a bar with flat faces
+        closed: the path returns to its first point (which is not repeated)
+        width: half width, along the second normal [m]; `radius` if not given
+        up: direction that the first normal follows, for flat bars; free of twist if not given
+
+    Returns:
+        mesh with outward normals
+    """
+    centre = np.asarray(path, dtype=float)
+    first, second = frames(centre, up, closed=closed)
+    half_height, half_width = (
+        np.broadcast_to(np.asarray(half, dtype=float), len(centre))[:, None, None]
+        for half in (radius, radius if width is None else width)
+    )
+    phi = (2 * np.pi * (np.arange(sides) + 0.5) / sides)[None, :, None]
+    stretch = np.sqrt(2.0) if sides == 4 else 1.0  # for a bar, half height and width are those of its flat faces
+    return swept(
+        centre[:, None, :]
+        + stretch * half_height * np.cos(phi) * first[:, None, :]
+        + stretch * half_width * np.sin(phi) * second[:, None, :],
+        closed=closed,
+    )
+
+
+def swept(rings: Array, *, closed: bool = False) -> trimesh.Trimesh:
+    """The body whose sections are given one by one: with flat ends, or closed to a ring.
+
+    Args:
+        rings: corners of each section [m], shape (n, sides, 3)
+        closed: the last section is joined to the first
+
+    Returns:
+        mesh with outward normals
+    """
+    n, sides = rings.shape[:2]
+    index = np.arange(n * sides).reshape(n, sides)
+    low, high = (index, np.roll(index, -1, axis=0)) if closed else (index[:-1], index[1:])
+    faces = [quads(low, np.roll(low, -1, axis=1), np.roll(high, -1, axis=1), high)]
+    if not closed:
+        corner = np.arange(1, sides - 1)
+        faces.append(np.column_stack([index[0, 0] + 0 * corner, index[0, corner + 1], index[0, corner]]))
+        faces.append(np.column_stack([index[-1, 0] + 0 * corner, index[-1, corner], index[-1, corner + 1]]))
+    return outward(trimesh.Trimesh(rings.reshape(-1, 3), np.vstack(faces), process=False))
+
+
+def quads(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Two triangles for each quadrangle a b c d: vertex numbers of any one shape, the result has shape (2 n, 3)."""
+    return np.vstack([np.stack(corners, axis=-1).reshape(-1, 3) for corners in ((a, b, c), (a, c, d))])
+
+
+def rod(start: ArrayLike, end: ArrayLike, radius: float, *, sides: int = 8) -> trimesh.Trimesh:
+    """A straight round rod between two points [m]."""
+    return tube(np.array([start, end], dtype=float), radius, sides=sides)
+
+
+def axis_rotation(direction: ArrayLike) -> Array:
+    """Rotation that takes z to a direction by the shortest turn.
+
+    R = 1 + [v] + [v]^2 / (1 + c), v = z x d, c = z . d (Rodrigues)
+
+    Args:
+        direction: direction of the new z axis, any length, shape (3,)
+
+    Returns:
+        rotation matrix, shape (3, 3)
+    """
+    d = np.asarray(direction, dtype=float)
+    d = d / np.linalg.norm(d)
+    if d[2] < -1 + 1e-12:  # the shortest turn is not unique: turn about x
+        return np.diag([1.0, -1.0, -1.0])
+    v = np.array([-d[1], d[0], 0.0])
+    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    rotation: Array = np.eye(3) + cross + cross @ cross / (1 + d[2])
+    return rotation
+
+
+def placed(mesh: trimesh.Trimesh, origin: ArrayLike, direction: ArrayLike = (0.0, 0.0, 1.0)) -> trimesh.Trimesh:
+    """A copy of a mesh made about z, its z axis turned to `direction`, its origin moved to `origin` [m]."""
+    vertices = np.asarray(mesh.vertices) @ axis_rotation(direction).T + np.asarray(origin, dtype=float)
+    return trimesh.Trimesh(vertices, mesh.faces, process=False)
+
+
+def shifted(points: ArrayLike, dx: float, dy: float, dz: float) -> Array:
+    """Points moved by (dx, dy, dz) [m], shape (..., 3)."""
+    moved: Array = np.asarray(points, dtype=float) + np.array([dx, dy, dz])
+    return moved
+
+
+def mirrored(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The mesh mirrored at the middle plane y = 0; the faces are turned so that normals stay outward."""
+    vertices = np.asarray(mesh.vertices) * (1.0, -1.0, 1.0) + 0.0  # no -0.0: both halves share their middle vertices
+    return trimesh.Trimesh(vertices, np.asarray(mesh.faces)[:, ::-1], process=False)
+
+
+def inverted(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The mesh with its normals turned round."""
+    return trimesh.Trimesh(mesh.vertices, np.asarray(mesh.faces)[:, ::-1], process=False)
+
+
+def outward(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """A closed mesh with its faces turned, where needed, so that its volume is positive."""
+    return inverted(mesh) if mesh.volume < 0 else mesh
+
+
+def joined(*meshes: trimesh.Trimesh | Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
+    """Several meshes as one; they may overlap, their surfaces are not cut."""
+    flat: list[trimesh.Trimesh] = []
+    for mesh in meshes:
+        flat.extend([mesh] if isinstance(mesh, trimesh.Trimesh) else mesh)
+    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in flat[:-1])])
+    vertices = np.vstack([mesh.vertices for mesh in flat])
+    faces = np.vstack([np.asarray(mesh.faces) + offset for mesh, offset in zip(flat, offsets, strict=True)])
+    return trimesh.Trimesh(vertices, faces, process=False)
+
+
+def both(*meshes: trimesh.Trimesh) -> trimesh.Trimesh:
+    """Right-hand meshes with their mirror images."""
+    return joined([*meshes, *(mirrored(mesh) for mesh in meshes)])

@@ -1,0 +1,14 @@
+"""The car in Python: load it, run it on a signal, ask the run for what a test bench would give.
+
+car = Car.load()
+run = car.run("low.csv")              # or Road("C", speed=80), or a Signal
+run["seat_rail_acc_z"]                # time history
+run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
+run.comfort().overall                 # comfort value of Bommer 2006: unweighted RMS of the seat rail, 2 to 50 Hz
+"""
+
+from vehicle.runs.car.car import Car
+from vehicle.runs.car.road import Road
+from vehicle.runs.car.run import FRF_BAND, SATURATED_VELOCITY, Run
+
+__all__ = ["FRF_BAND", "SATURATED_VELOCITY", "Car", "Road", "Run"]

@@ -1,0 +1,126 @@
+"""A road as the input of a run: a class of ISO 8608 or a measured profile, and the speed of the car."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import KW_ONLY, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.elements import Tyre
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.signals.excitation.iso_road import Side
+from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
+from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.records.choice import Choice
+
+Drive = RoadDrive | RecordedDrive
+"""A road under the wheels of one car."""
+
+
+@dataclass(frozen=True, slots=True)
+class Road:
+    """Road for the wheels of any car, as `Road("C", speed=80)`.
+
+    Attributes:
+        road: class of ISO 8608, "A" to "H"; or the file of a measured profile (columns distance, left, right [m];
+            OpenCRG; ERD), or of heights over time.
+        speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
+        duration: length [s]; by default 60 s on a class, the whole profile otherwise.
+        rate: samples per second [Hz]; 1000 by default.
+        seed: of a class: one seed is one road; 1 by default.
+        coherence: of the two tracks of a class: 1 equal, 0 unrelated; isotropic plane by default.
+        patch: length of the contact patch that averages the road [m]; 0.1 by default.
+        tyre: "rolling" or "standing"; by default tyres roll, except on a car that stands on blocks too.
+        choice: channels of heights over time, their units and excerpt.
+    """
+
+    road: str | Path
+    _: KW_ONLY
+    speed: float | str
+    duration: float | None = None
+    rate: float | None = None
+    seed: int | None = None
+    coherence: float | None = None
+    patch: float | None = None
+    tyre: str | None = None
+    choice: Choice = field(default_factory=Choice, hash=False)
+
+    @property
+    def file(self) -> Path | None:
+        """File of a measured road; None for a class."""
+        path = Path(self.road)
+        return path if isinstance(self.road, Path) or (len(self.road) > 1 and path.is_file()) else None
+
+    def under(self, vehicle: Vehicle, overrides: Iterable[str] = ()) -> Drive:
+        """Return the drive of a car over the road, with the wheels where the car has them.
+
+        Args:
+            vehicle: the car.
+            overrides: texts "path=value" with which the car was loaded; driving.speed among them decides on the tyres.
+
+        Raises:
+            ConfigurationError: a value out of range or of another type of road, or a car that cannot roll.
+        """
+        # A single letter is a class, whatever files there are.
+        road = self.file or (str(self.road).upper() if len(str(self.road)) == 1 else str(self.road))
+        driving = self._driving(vehicle, overrides)
+        if isinstance(self.speed, str):
+            return self._recorded(road, vehicle, driving)
+        wheels = vehicle.composition.wheels
+        return RoadDrive(
+            road=road,
+            speed=self.speed,
+            wheels=_places(vehicle),
+            track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
+            driving=driving,
+            **self._given("duration", "rate", "seed", "coherence", "patch"),
+        )
+
+    def _recorded(self, road: str | Path, vehicle: Vehicle, driving: float | None) -> RecordedDrive:
+        """Return the drive over a road that was recorded over time."""
+        if not isinstance(road, Path):
+            raise ConfigurationError(
+                f"--speed {self.speed}: belongs to a recorded road, --road FILE; {road} is a class"
+            )
+        for name in self._given("seed", "coherence", "patch"):
+            raise ConfigurationError(f"--{name}: belongs to a class or a profile; a recorded road is taken as it is")
+        return RecordedDrive(
+            road=road,
+            channel=str(self.speed).removeprefix(PREFIX),
+            wheels=_places(vehicle),
+            choice=self.choice,
+            driving=driving,
+            **self._given("duration", "rate"),
+        )
+
+    def _given(self, *names: str) -> dict[str, Any]:
+        """Return the attributes of these names that are not None."""
+        return {name: value for name in names if (value := getattr(self, name)) is not None}
+
+    def _driving(self, vehicle: Vehicle, overrides: Iterable[str]) -> float | None:
+        """Return the speed at which the tyres roll [m/s], 0 for standing tyres; None if the car itself specifies it.
+
+        A car that stands on blocks too is on a rig, and its tyres stand by default. NaN stands for the mean speed of a
+        recorded drive.
+        """
+        if any(text.partition("=")[0].strip() in ("driving.speed", "speed") for text in overrides):
+            if self.tyre is not None:
+                raise ConfigurationError(f"--tyre {self.tyre} beside --set driving.speed: give one of them")
+            return None
+        if self.tyre not in (None, "rolling", "standing"):
+            raise ConfigurationError(f"tyre: found {self.tyre!r}, must be rolling or standing")
+        on_blocks = any(one.ground for one in vehicle.composition.connections if not isinstance(one.law, Tyre))
+        if self.tyre == "standing" or (self.tyre is None and on_blocks):
+            return 0.0 if vehicle.driving.rolling else None
+        return math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6
+
+
+def _places(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:
+    """Return name, distance behind the foremost wheel [m] and track of each wheel."""
+    wheels = vehicle.composition.wheels
+    foremost = min(wheel.center[0] for wheel in wheels)
+    side: dict[bool, Side] = {True: "right", False: "left"}
+    return tuple((wheel.name, wheel.center[0] - foremost, side[wheel.side > 0.0]) for wheel in wheels)

@@ -1,0 +1,149 @@
+"""Pictures of measured beside simulated: responses and time histories of a place, signatures, MAC."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.figure import (
+    COLOURS,
+    FADED,
+    FRF_BAND,
+    FRF_TICKS,
+    fading,
+    frf_axes,
+    saved_figure,
+    wrapped_phase,
+)
+from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
+from vehicle.runs.comparison.record_comparison import RecordComparison
+
+MEASURED, SIMULATED = "#222222", COLOURS[1]
+"""Black and full, red and dashed: told apart without colours."""
+LOOKS = {
+    "measured": {"color": MEASURED, "linewidth": 1.3},
+    "simulated": {"color": SIMULATED, "linestyle": "--", "linewidth": 1.3},
+}
+DETAIL = 1.0
+"""Length of the magnified stretch [s]."""
+
+
+def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], caption: str) -> None:
+    """Write magnitude, phase and both coherences of the responses of one place, a column for each.
+
+    Args:
+        path: PNG file.
+        place: for the title.
+        responses: of the place.
+        caption: what was measured and what was simulated.
+    """
+    size = (max(7.6, 5.2 * len(responses) + 1.0), 8.2)
+    told = [values for one in responses for values in (one.measured_coherence, one.simulated_coherence)]
+    caption += f"; {FADED}" if any(np.isfinite(values).any() for values in told) else ""
+    with saved_figure(path, size, f"{place}: measured beside simulated", caption) as figure:
+        axes = figure.subplots(
+            3, len(responses), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False
+        )
+        for one, (magnitude, phase, coherence) in zip(responses, axes.T, strict=True):
+            pairs = {
+                "measured": (one.measured, one.measured_coherence),
+                "simulated": (one.simulated, one.simulated_coherence),
+            }
+            for label, (values, beside) in pairs.items():
+                fading(magnitude, one.frequency, np.abs(values), beside, label, **LOOKS[label])
+                phase.plot(one.frequency, wrapped_phase(values.copy()), **LOOKS[label])
+                if np.isfinite(beside).any():
+                    coherence.plot(one.frequency, beside, label=label, **LOOKS[label])
+            magnitude.set_title(
+                f"{one.channel}\nFRAC {one.frac:.3f}; {one.scaled_frac:.3f} with frequencies times {one.scale:.3f}"
+            )
+            magnitude.legend(loc="best")
+        frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
+        lines = np.concatenate([one.frequency for one in responses])
+        low, high = max(float(lines.min()), 0.9 * FRF_BAND[0]), float(lines.max())
+        if low > 2.0 * FRF_BAND[0] or high < 0.5 * FRF_BAND[1]:
+            axes[0, 0].set_xlim(low, high)
+
+
+def plot_histories(path: Path, place: str, histories: Sequence[RecordComparison], caption: str) -> None:
+    """Write the time histories of one place, a row for each: the whole record and its liveliest moment.
+
+    Args:
+        path: PNG file.
+        place: for the title.
+        histories: of the place.
+        caption: what was measured and what was simulated.
+    """
+    size = (13.0, 2.6 * len(histories) + 1.4)
+    with saved_figure(path, size, f"{place}: measured beside simulated", caption) as figure:
+        axes = figure.subplots(len(histories), 2, sharey="row", width_ratios=(1.6, 1.4), squeeze=False)
+        for one, (whole, detail) in zip(histories, axes, strict=True):
+            inside = _liveliest(one)
+            for label in LOOKS:
+                values = getattr(one, label)
+                whole.plot(one.time, values, **(LOOKS[label] | {"linewidth": 0.6}), label=label)
+                detail.plot(one.time[inside], values[inside], **LOOKS[label], label=label)
+            whole.set_ylabel(f"{one.channel}\n[{one.unit.replace('2', '²')}]")
+            whole.set_xlim(one.time[0], one.time[-1])
+            detail.set_xlim(one.time[inside][0], one.time[inside][-1])
+        axes[0, 0].set_title("whole record")
+        axes[0, 1].set_title("liveliest stretch of the measurement")
+        axes[0, 1].legend(loc="upper right", ncols=2)
+        for axis in axes[-1]:
+            axis.set_xlabel("time of the run [s]")
+
+
+def _liveliest(one: RecordComparison) -> slice:
+    """The stretch of `DETAIL` in which the measured record holds most."""
+    count = min(max(int(DETAIL / (one.time[1] - one.time[0])), 2), one.time.size)
+    total = np.concatenate([[0.0], np.cumsum(one.measured**2)])
+    first = int(np.argmax(total[count:] - total[:-count]))
+    return slice(first, first + count)
+
+
+def plot_signatures(path: Path, signatures: Signatures, caption: str) -> None:
+    """Write CSAC and CSF over frequency.
+
+    Args:
+        path: PNG file.
+        signatures: CSAC and CSF.
+        caption: what was measured and what was simulated.
+    """
+    frequency = signatures.frequency
+    with saved_figure(path, (9.0, 4.6), "Agreement of all responses together", caption) as figure:
+        axis = figure.subplots()
+        axis.plot(frequency, signatures.csac, color=COLOURS[0], label="CSAC: shape over the places")
+        axis.plot(frequency, signatures.csf, color=COLOURS[3], linestyle="--", label="CSF: shape and amplitude")
+        axis.set(xscale="log", ylim=(0.0, 1.03), xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]",
+                 ylabel="1 is equal [-]")  # fmt: skip
+        axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
+        axis.set_xticks([], minor=True)
+        axis.set_xlim(frequency[0], frequency[-1])
+        axis.legend(loc="lower left")
+
+
+def plot_mac(
+    path: Path,
+    tables: Sequence[tuple[str, npt.NDArray[np.float64], Sequence[float], Sequence[float]]],
+    caption: str,
+) -> None:
+    """Write matrices of MAC beside each other.
+
+    Args:
+        path: PNG file.
+        tables: title, matrix, and the frequencies of its rows and columns [Hz].
+        caption: what was measured and what was simulated.
+    """
+    with saved_figure(path, (4.9 * len(tables) + 1.0, 5.4), "Modal assurance criterion", caption) as figure:
+        axes = figure.subplots(1, len(tables), squeeze=False)[0]
+        for axis, (title, table, rows, columns) in zip(axes, tables, strict=True):
+            picture = axis.imshow(table, cmap="viridis", vmin=0.0, vmax=1.0, aspect="auto")
+            axis.grid(False)
+            axis.set_title(title)
+            axis.set_yticks(range(len(rows)), [f"{value:.1f}" for value in rows], fontsize=7)
+            axis.set_xticks(range(len(columns)), [f"{value:.1f}" for value in columns], rotation=90, fontsize=7)
+            axis.set(xlabel="frequency [Hz]", ylabel="frequency [Hz]")
+        figure.colorbar(picture, ax=axes.tolist(), label="MAC [-]", shrink=0.8)

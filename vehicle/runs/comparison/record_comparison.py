@@ -1,0 +1,137 @@
+"""Measured and simulated time histories at common times, and how they agree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import DataError
+from vehicle.signals.analysis.record_rating import RecordRating, rate_record
+from vehicle.signals.analysis.time_shift import TimeShift
+from vehicle.signals.records.counterpart import Counterpart, counterparts
+from vehicle.signals.records.resampled import at_times
+from vehicle.signals.records.table import Record
+
+Vector = npt.NDArray[np.float64]
+
+LEAST_SAMPLES = 20
+"""That both have in common: fewer are no time history. Assumed."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RecordComparison:
+    """One time history.
+
+    Attributes:
+        channel: name in the model.
+        unit: of both.
+        time: of the run [s], (n,).
+        measured, simulated: (n,).
+        rms: of the measured one, in its unit.
+        rms_ratio: simulated over measured [-].
+        correlation: coefficient at equal times [-].
+        rating: after ISO/TS 18571, of windows at the full rate.
+        clock: time shift and drift of the simulated record; None where both do not show one motion.
+    """
+
+    channel: str
+    unit: str
+    time: Vector
+    measured: Vector
+    simulated: Vector
+    rms: float
+    rms_ratio: float
+    correlation: float
+    rating: RecordRating
+    clock: TimeShift | None
+
+    @property
+    def lag(self) -> float:
+        """Time by which the simulated record is late in the middle of the common time [s]; NaN where untold."""
+        return self.clock.shift if self.clock is not None else math.nan
+
+    @property
+    def drift(self) -> float:
+        """Change of the lag per time [-]; NaN where the record does not tell it."""
+        told = self.clock is not None and math.isfinite(self.clock.drift_error)
+        return self.clock.drift if told and self.clock is not None else math.nan
+
+
+def compare_records(
+    measured: Record, simulated: Record, times: Vector | None = None
+) -> tuple[tuple[RecordComparison, ...], list[Counterpart]]:
+    """Compare all time histories that both have, over the time that both have.
+
+    The one of the higher rate is low-passed without phase shift and brought to the lower rate.
+
+    Args:
+        measured, simulated: with the same units.
+        times: of the measured samples on the clock of the run [s], (n,); their own by default.
+
+    Returns:
+        The comparisons, and how each measured channel fits its counterpart when both are shifted.
+
+    Raises:
+        DataError: less than `LEAST_SAMPLES` samples in common.
+    """
+    times = measured.time if times is None else times
+    step = max(float(times[-1] - times[0]) / (times.size - 1), simulated.step)
+    start, end = max(times[0], simulated.time[0]), min(times[-1], simulated.time[-1])
+    count = int((end - start) / step + 1e-6) + 1
+    if end <= start or count < LEAST_SAMPLES:
+        raise DataError(
+            f"measured from {times[0]:.6g} to {times[-1]:.6g} s of the run, simulated from {simulated.time[0]:.6g} to "
+            f"{simulated.time[-1]:.6g} s: too little in common; give --delay S, which is added to the measured times"
+        )
+    grid = start + step * np.arange(count)
+    parts = counterparts(measured, simulated, times)
+    found = [_compared(measured, simulated, times, grid, step, part) for part in parts]
+    return tuple(found), parts
+
+
+def _compared(
+    measured: Record, simulated: Record, times: Vector, grid: Vector, step: float, part: Counterpart
+) -> RecordComparison:
+    """Compare one channel at common times."""
+    truth = at_times(times, measured.channels[part.channel], grid, step)
+    curve = at_times(simulated.time, simulated.channels[part.channel], grid, step)
+    size, other = (float(np.sqrt(np.mean(one**2))) for one in (truth, curve))
+    spread = float(np.std(truth) * np.std(curve))
+    return RecordComparison(
+        channel=part.channel,
+        unit=part.unit,
+        time=grid,
+        measured=truth,
+        simulated=curve,
+        rms=size,
+        rms_ratio=other / size if size > 0.0 else math.nan,
+        correlation=float(np.mean((truth - truth.mean()) * (curve - curve.mean()))) / spread
+        if spread > 0.0
+        else math.nan,
+        rating=rate_record(truth, curve, step),
+        clock=part.known,
+    )
+
+
+def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
+    """Return a sentence for measured channels that are one record, while the simulated ones differ.
+
+    Args:
+        records: see `compare_records`.
+    """
+    said = []
+    for number, one in enumerate(records):
+        for other in records[:number]:
+            if not np.ptp(one.measured) > 0.0 or one.unit != other.unit:
+                continue
+            same = np.array_equal(one.measured, other.measured)
+            if same and not np.allclose(one.simulated, other.simulated, atol=1e-3 * float(np.std(one.simulated))):
+                said.append(
+                    f"{other.channel} and {one.channel} were measured with the same samples, the run has different "
+                    f"ones: was a channel copied? Choose another: --map {one.channel}=NAME"
+                )
+    return said

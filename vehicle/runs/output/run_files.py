@@ -1,0 +1,343 @@
+"""Files of a run: summary, parameters as used, time histories, FRFs, plots, film."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.drawing.rendering.frf_plot import plot_frfs
+from vehicle.drawing.rendering.plots import plot_time
+from vehicle.errors import DataError, SimulationError
+from vehicle.model.flexbody.loads import body_loads
+from vehicle.model.flexbody.mass_difference import mass_difference
+from vehicle.model.flexbody.rigid_body import rigid_body
+from vehicle.model.parameters.idle import idle_parameters
+from vehicle.model.parameters.whole_body import body_notices
+from vehicle.runs.car import FRF_BAND, SATURATED_VELOCITY, Run
+from vehicle.runs.output.folder import write_json, write_text, write_whole
+from vehicle.runs.output.own_files import parameters_text, write_own_files
+from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, seat_values
+from vehicle.signals.analysis.dependence import DependentInputsError, common_motions, what_moves
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.motion_response import MotionResponse
+from vehicle.signals.analysis.peaks import resonances
+from vehicle.signals.analysis.spectra import power_spectral_density
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.records.formats import write_record
+from vehicle.signals.records.frf import write_frf
+from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.table import Record
+from vehicle.signals.records.text_format import write_table
+
+PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
+"""Length of a window [s] and highest frequency [Hz] of the densities of a run on a road."""
+
+FRAME = "x to the rear, y to the driver's right, z up; SI units"
+LOADS = (
+    "; forces of elements: on the moving part, in the axes of the carrier; springs: compression positive; "
+    "suspension travel: wheel centre against body, upwards from the design position"
+)
+"""What the time histories say beside where loads are among them."""
+
+
+def require_plates(signal: Signal) -> None:
+    """Refuse plates that move alike but for a delay: no FRF tells them apart.
+
+    Args:
+        signal: plate displacement.
+
+    Raises:
+        DataError: naming the plates and the delay.
+    """
+    moving = [wheel for wheel in signal.wheels if signal.rms(wheel) > 0.0]
+    if len(moving) < 2:
+        return
+    plates = np.array([signal.displacement[wheel] for wheel in moving])
+    try:
+        common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], signal.band(FRF_BAND))
+    except DependentInputsError as error:
+        raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
+
+
+def write_run(
+    folder: Path,
+    run: Run,
+    *,
+    time_format: str = "npz",
+    formats: Sequence[str] = (),
+    engine_reason: str = "",
+    video: tuple[Path, Callable[[Path], None]] | None = None,
+    measured: Measured | None = None,
+    report: tuple[Path, Callable[[Path], None]] | None = None,
+    command: str = "",
+) -> dict[str, Any]:
+    """Write all files of a finished run.
+
+    Args:
+        folder: as of `output_folder`.
+        run: the run.
+        time_format: "npz" or "csv".
+        formats: further ones of `vehicle.signals.records.formats.WRITTEN`.
+        engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
+        video: name of the film, or a path of its own, and what writes it.
+        measured: a measurement that is put beside the run.
+        report: the same of the report, which is made of the other files.
+        command: line that makes this run, for the summary.
+
+    Returns:
+        The content of `summary.json`.
+
+    Raises:
+        VehicleError: a file cannot be made or written.
+    """
+    channels = run.car.vehicle.acceleration_channels
+    # On a road, FRFs that cannot be had are left out with a notice.
+    responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
+    files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
+    summary = summarise(run, responses, files)
+    if responses:
+        files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
+    if run.road is not None:
+        files["psd"] = "psd.csv"
+        write_whole(folder / "psd.csv", lambda path: _write_psd(path, run))
+    files["time_plot"] = "time.png"
+    header = f"parameters of this run, as used\nframe: {FRAME}"
+    write_text(folder / "vehicle.toml", parameters_text(run.car, header))
+    files |= write_own_files(folder, run.car)
+    record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
+    frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME
+    write_whole(folder / files["time"], lambda path: write_record(path, time_format, record, frame))
+    if responses:
+        first, *others = responses
+        further, words = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
+        write_whole(
+            folder / "frf.csv",
+            lambda path: write_frf(path, first.response, channels, FRAME, further=further, words=words),
+        )
+        caption = _caption(run, first.response)
+        write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
+    for one in dict.fromkeys(formats):
+        if one != time_format:
+            from vehicle.runs.output.run_formats import writer
+
+            files[f"time_{one}"] = f"time.{one}"
+            write_whole(folder / f"time.{one}", writer(one, run, responses, channels, FRAME))
+    write_whole(folder / "time.png", lambda path: plot_time(path, run))
+    if video is not None:
+        name, make = video
+        write_whole(folder / name if name.parent == Path() else name, make)
+        files["video"] = str(name)
+    summary["measured"] = None
+    if measured is not None:
+        from vehicle.runs.output.comparison_files import write_beside
+
+        summary["measured"] = write_beside(folder, measured, run, files)
+        summary["notices"] += [f"{measured.file.path.name}: {text}" for text in summary["measured"]["notices"]]
+    summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
+    summary["tyre"] = run.car.vehicle.driving.words
+    summary["input"]["road"] = None if run.road is None else dict(run.road)
+    summary["notices"] += missing
+    summary["command"] = command or None
+    if report is not None:
+        files["report"] = str(report[0])
+    write_json(folder / "summary.json", summary)
+    if report is not None:
+        name, make = report
+        write_whole(folder / name if name.parent == Path() else name, make)
+    return summary
+
+
+def _write_psd(path: Path, run: Run) -> None:
+    """One-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
+    window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
+    each = [
+        power_spectral_density(recording.timestep, one[run.evaluated], window_s=window)
+        for one in recording.channels.values()
+    ]
+    found = each[0]
+    inside = found.frequency <= PSD_HIGHEST
+    cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]
+    method = f"one-sided power spectral density: Hann windows of {window:g} s, {found.averages:.3g} averages"
+    method += f"; from {run.skip:g} s on"
+    write_table(
+        path, cells, [found.frequency[inside], *(one.density[0, inside] for one in each)], [method, f"frame: {FRAME}"]
+    )
+
+
+def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse], list[str]]:
+    """FRFs of a run; none, and a notice, where they fail in a way that is accepted."""
+    try:
+        return run.frfs(), []
+    except accepted as error:
+        return (), [f"no FRFs: {error}"]
+
+
+def save_last_state(error: SimulationError, output: Path) -> SimulationError:
+    """Save the last good state of a failed run beside its folder, which will not exist.
+
+    Args:
+        error: with the state, or without one.
+        output: folder of the run.
+
+    Returns:
+        The same error, which names the file too.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    if error.state is None:
+        return error
+    state = dict(error.state)
+    path = output.with_name(f"{output.name}.failed.npz")
+
+    def save(temporary: Path) -> None:
+        with temporary.open("wb") as file:
+            np.savez(file, allow_pickle=False, **state)
+
+    write_whole(path, save)
+    return SimulationError(f"{error}; last good state (t = {float(state['time']):.3f} s): {path}")
+
+
+def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, str]) -> dict[str, Any]:
+    """Content of `summary.json`.
+
+    Args:
+        run: finished run.
+        responses: its FRFs of all acceleration channels to each motion of its plates; none where there are none.
+        files: kind of file to its name, which may grow.
+
+    Returns:
+        Plain numbers, texts, lists and dictionaries; None where a value does not exist.
+    """
+    statistics, static, damper = run.recording.statistics, run.car.static, run.car.vehicle.damper
+    energies, wheels = statistics.energies, run.car.vehicle.wheels
+    response, channels = (responses[0].response if responses else None), run.car.vehicle.acceleration_channels
+    said = what_moves([one.motion for one in responses]) if responses else ""
+    body = rigid_body(run.car.vehicle.body)
+    idle = idle_parameters(run.car.vehicle, run.car.overrides)
+    notices = [
+        *([body.report] if body.repaired else []),
+        *mass_difference(run.car.trimmed_body, run.car.vehicle.body, body_loads(run.car.vehicle)),
+        *idle,
+        *body_notices(run.car.vehicle, run.car.overrides),
+        *run.signal.notices,
+        *([said] if said else []),
+        *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
+        *comfort_notices(run),
+        *statistics.notices,
+    ]
+    return {
+        "frame": FRAME,
+        "vehicle": {
+            "name": run.car.vehicle.name,
+            **run.car.origin,
+            "inertia_about": run.car.vehicle.body.inertia.about,
+            "inertia": body.report,
+            **_loads(run),
+            "superelement": run.car.model.superelement.provenance,
+        },
+        "input": {
+            "file": Path(run.signal.source).name,
+            "sha256": run.signal.sha256,
+            "rms_m": run.signal.rms(run.wheel),
+            "plate_rms_m": {wheel: run.signal.rms(wheel) for wheel in wheels},
+            "duration_s": run.signal.duration,
+            "highest_hz": run.signal.highest,
+            "wheel": run.wheel,
+            "wheel_text": run.car.vehicle.wheel_text(run.wheel),
+        },
+        "evaluated_s": [run.skip, run.signal.duration],
+        "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},
+        "first_slip_s": {wheel: run.first_slip(wheel) for wheel in wheels},
+        "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
+        "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
+        "saturated_velocity": SATURATED_VELOCITY,
+        "peaks": _peaks(response, channels),
+        "comfort": comfort_values(run),
+        "seat_value": seat_values(run),
+        "static": {
+            "tyre_load_n": static.tyre_load,
+            "rear_support_load_n": {
+                name.removeprefix("rear_support_"): load for name, load in static.support_load.items()
+            },
+            "residual_m": static.residual,
+        },
+        "solver": {
+            "engine": statistics.engine,
+            "callback": statistics.callback,
+            "timestep_s": statistics.timestep,
+            "steps": statistics.steps,
+            "wall_s": statistics.wall_time,
+            "realtime_factor": statistics.realtime_factor,
+            "warnings": list(statistics.warnings),
+            "energy_residual": energies.residual if energies else None,
+            "work_in_j": energies.work_in if energies else None,
+            "dissipated_j": energies.dissipated if energies else None,
+            "stored_j": energies.stored if energies else None,
+        },
+        "frf": response
+        and {
+            "estimator": response.estimator,
+            "window": response.window,
+            "resolution_hz": response.resolution_hz,
+            **_degrees_of_freedom(response),
+            "to": [
+                {"plates": dict(one.motion), "columns": "<channel>" if not number else f"<channel>_to_{one.first}"}
+                | ({"peaks": _peaks(one.response, channels)} if number else {})
+                for number, one in enumerate(responses)
+            ],
+        },
+        "notices": notices,
+        "files": files,
+    }
+
+
+def _loads(run: Run) -> dict[str, Any]:
+    """Loads on the parts of the car, where it has any."""
+    loads = run.car.vehicle.composition.loads
+    each = {
+        one.path.partition(".")[2]: {"mass_kg": one.numbers.mass, "at_m": list(one.cog), "on": one.parent}
+        for one in loads
+    }
+    return {"loads": each} if each else {}
+
+
+def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> dict[str, list[dict[str, float | None]]]:
+    """Resonance peaks of every acceleration channel."""
+    return {
+        channel: [
+            {
+                "frequency_hz": peak.frequency_hz,
+                "magnitude": peak.magnitude,
+                "coherence": peak.coherence,
+                "random_error": peak.random_error,
+            }
+            for peak in (resonances(response, row) if response else ())
+        ]
+        for row, channel in enumerate(channels)
+    }
+
+
+def _degrees_of_freedom(response: FrequencyResponse) -> dict[str, Any]:
+    """Averages that would give the random errors by H1: median and range over all lines and channels."""
+    known = response.averages[np.isfinite(response.averages)]
+    if not known.size:
+        return {"degrees_of_freedom": None, "degrees_of_freedom_range": None}
+    return {
+        "degrees_of_freedom": float(np.median(known)),
+        "degrees_of_freedom_range": [float(known.min()), float(known.max())],
+    }
+
+
+def _caption(run: Run, response: FrequencyResponse) -> str:
+    """One line under the FRF plot: input, levels, estimator."""
+    moving = [wheel for wheel in run.signal.wheels if run.signal.rms(wheel) > 0.0] or [run.wheel]
+    levels = ", ".join(f"{1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}" for wheel in moving)
+    return (
+        f"{Path(run.signal.source).name}, RMS {levels}, {run.signal.duration:g} s; estimator: {response.estimator}, "
+        f"resolution {response.resolution_hz:.2g} Hz; tyres {run.car.vehicle.driving.words}; engine: "
+        f"{run.recording.statistics.engine}"
+    )

@@ -1,0 +1,116 @@
+"""A run in the formats of other programs: its channels with places and directions, its FRFs, its geometry."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from vehicle.runs.car import Car, Run
+from vehicle.signals.analysis.motion_response import MotionResponse
+from vehicle.signals.records.channel import Channel, uniform_axis
+from vehicle.signals.records.formats import BY_NAME, write_record
+from vehicle.signals.records.geometry import Geometry
+from vehicle.signals.records.table import Record
+
+_ACCELERATION = re.compile(r"(?P<place>\w+)_acc_(?P<axis>[xyz])")
+_PLATE = re.compile(r"(?P<place>plate_\w+)_displacement")
+_FORCE = re.compile(r"tyre_(?P<wheel>\w+)_force_z")
+
+
+def time_channels(run: Run) -> tuple[Channel, ...]:
+    """All channels of a run over its recorded times."""
+    step = run.recording.timestep
+    axis = uniform_axis(run.time.size, step, float(run.time[0]))
+    return tuple(
+        Channel(name=name, values=values, unit=run.recording.units[name], axis=axis, **_point(name))
+        for name, values in run.recording.channels.items()
+    )
+
+
+def response_channels(responses: Sequence[MotionResponse], channels: Sequence[str]) -> tuple[Channel, ...]:
+    """Each frequency response and beside it its coherence.
+
+    Args:
+        responses: to each plate that moves by itself.
+        channels: names of their rows.
+    """
+    found = []
+    for one, (row, name) in product(responses, enumerate(channels)):
+        plate, response = f"plate_{one.first}", one.response
+        about = _point(name) | {"reference": f"{plate}+Z"}
+        found.append(
+            Channel(
+                name=f"{name} / {plate}",
+                values=response.response[row],
+                unit="(m/s2)/(m)",
+                axis=response.frequency,
+                kind="frequency",
+                function="frequency response",
+                **about,
+            )
+        )
+        found.append(
+            Channel(
+                name=f"{name} / {plate} coherence",
+                values=response.coherence[row],
+                axis=response.frequency,
+                kind="frequency",
+                function="coherence",
+                **about,
+            )
+        )
+    return tuple(found)
+
+
+def _point(name: str) -> dict[str, Any]:
+    """Place and direction that the name of a channel tells."""
+    match = _ACCELERATION.fullmatch(name)
+    if match:
+        return {"place": match["place"], "direction": f"+{match['axis'].upper()}"}
+    match = _PLATE.fullmatch(name)
+    if match:
+        return {"place": match["place"], "direction": "+Z"}
+    match = _FORCE.fullmatch(name)
+    return {"place": f"plate_{match['wheel']}", "direction": "+Z"} if match else {}  # a damper acts between two places
+
+
+def geometry(of: Car) -> Geometry:
+    """Places of a car in its design position, and lines from each plate over the places of its wheel."""
+    car = of.vehicle.composition
+    points = {one.name: tuple(one.at) for one in car.outputs}
+    lines = []
+    for wheel in car.wheels:
+        plate = f"plate_{wheel.name}"
+        own = [name for name in points if re.search(rf"_{wheel.name}(_|$)", name)]
+        points[plate] = tuple(wheel.patch)
+        lines.append([plate, *sorted(own, key=lambda name: points[name][2])])
+    return Geometry(points=points, lines=[line for line in lines if len(line) > 1])
+
+
+def writer(
+    form: str, run: Run, responses: Sequence[MotionResponse], channels: Sequence[str], frame: str
+) -> Callable[[Path], None]:
+    """What writes a run in a format.
+
+    Args:
+        form: of `vehicle.signals.records.formats.WRITTEN`.
+        run: the run.
+        responses: its FRFs; none where there are none.
+        channels: names of their rows.
+        frame: axes of the vectors, in words.
+    """
+    if BY_NAME[form].table:
+        record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
+        return lambda path: write_record(path, form, record, frame)
+    histories = time_channels(run)
+    about = f"{run.car.vehicle.name}; {frame}"
+    write = BY_NAME[form].function("writer", "write")
+    if form == "rpc":
+        return lambda path: write(path, histories, about)
+    everything = histories + response_channels(responses, channels)
+    if form == "uff":
+        return lambda path: write(path, everything, about, geometry(run.car))
+    return lambda path: write(path, everything, about)

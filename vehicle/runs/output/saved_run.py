@@ -1,0 +1,42 @@
+"""A run of a script as a folder, as the command `shaker` writes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError
+from vehicle.runs.car import Run
+from vehicle.runs.output.folder import output_folder
+from vehicle.runs.output.run_files import write_run
+
+
+def save_run(
+    run: Run, folder: Path | str, *, force: bool = False, time_format: str = "npz", formats: Sequence[str] = ()
+) -> Path:
+    """Write the files of a run: summary, parameters as used, time histories, FRFs, pictures.
+
+    Args:
+        run: the run, with all default channels.
+        folder: name of the folder.
+        force: replace a run that was written there before.
+        time_format: format of the time histories, "npz" or "csv".
+        formats: further formats: "csv", "npz", "mat", "uff", "rpc", "h5".
+
+    Returns:
+        The folder; `write_report` and `compare_run` take it.
+
+    Raises:
+        ConfigurationError: the folder exists without `force`, or holds files that no run wrote; or the run has not all
+            default channels.
+        DataError: the record is too short for an FRF, or a plate moves as another one with a delay.
+        OutputError: a file cannot be written.
+    """
+    missing = [name for name in run.car.vehicle.channels if name not in run.recording.channels]
+    if missing:
+        raise ConfigurationError(
+            f"{folder}: the run has no channel {missing[0]}, which its files need; run the car without channels=[...]"
+        )
+    with output_folder(Path(folder), force=force) as work:
+        write_run(work, run, time_format=time_format, formats=formats)
+    return Path(folder)

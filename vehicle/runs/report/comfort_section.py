@@ -1,0 +1,102 @@
+"""Comfort of a run: weighted and unweighted accelerations, and what people say of them."""
+
+from __future__ import annotations
+
+from vehicle.runs.report.comfort_class import REACTIONS, reactions
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.markup import Markup, joined, number, table, tag
+from vehicle.signals.analysis.comfort import COMFORT_BAND
+
+PLACES = {"seat_rail": "seat rail", "seat": "seat"}
+
+
+NO_ERROR = (
+    "No statistical error is given for MTVV, VDV, crest factor and SEAT value: they are those of this record, and "
+    "another road of the same class gives others. Repeat the run with other seeds to see their spread."
+)
+"""Sentence below the tables."""
+
+
+def comfort(run: FinishedRun) -> Markup:
+    """Weighted and unweighted accelerations, and the table of reactions with this run in it."""
+    parts, totals = [], {}
+    for place, value in run.summary["comfort"].items():
+        iso, raw = value["iso2631"], value.get("rms_of_band", value["rms_2_50_hz"])
+        low, high = raw.get("band_hz", COMFORT_BAND)
+        totals[PLACES.get(place, place)] = iso["vector_sum"]["weighted_rms"]
+        heads = (
+            "axis",
+            "weighting",
+            "weighted RMS [m/s²]",
+            "MTVV [m/s²]",
+            "crest factor",
+            "VDV [m/s¹·⁷⁵]",
+            "MSDV [m/s¹·⁵]",
+            f"unweighted RMS, {low:g} to {high:g} Hz [m/s²]",
+        )
+        rows = [
+            (
+                axis,
+                iso[axis]["weighting"],
+                *(number(iso[axis][key]) for key in ("weighted_rms", "mtvv", "crest_factor", "vdv", "msdv")),
+                number(raw[axis]),
+            )
+            for axis in "xyz"
+        ]
+        rows.append(
+            (
+                "all",
+                "",
+                number(iso["vector_sum"]["weighted_rms"]),
+                "",
+                "",
+                number(iso["vector_sum"]["vdv"]),
+                "",
+                number(raw["overall"]),
+            )
+        )
+        span = f", {run.span} of the run" if run.span else ""
+        caption = f"{PLACES.get(place, place).capitalize()}, {iso['standard']}{span}"
+        parts.append(table(heads, rows, caption=caption, words=2))
+        parts += [tag("p", text) for text in iso["reasons"]]
+    here = {word: [place for place, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
+    body = [
+        tag(
+            "tr",
+            tag("td", _range(low, high)),
+            tag("td", word),
+            tag("td", ", ".join(here[word])),
+            class_="here" if here[word] else None,
+        )
+        for word, low, high in REACTIONS
+    ]
+    parts.append(
+        tag(
+            "div",
+            tag(
+                "table",
+                tag(
+                    "caption",
+                    "Likely reactions in public transport (ISO 2631-1:1997, C.2.3); ranges overlap; lower is better",
+                ),
+                tag(
+                    "thead", tag("tr", tag("th", "weighted acceleration"), tag("th", "reaction"), tag("th", "this run"))
+                ),
+                tag("tbody", *body),
+            ),
+            class_="table whole",
+        )
+    )
+    seat = run.summary.get("seat_value")
+    if seat is not None:
+        words = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: below 1 the seat isolates."
+        parts.append(tag("p", words))
+    parts.append(tag("p", NO_ERROR))
+    parts.append(tag("p", "The standard weights the vibration on the seat surface; the seat rail lies below it."))
+    return joined(parts)
+
+
+def _range(low: float, high: float) -> str:
+    if low == 0.0:
+        return f"below {high:g} m/s²"
+    return f"above {low:g} m/s²" if high == float("inf") else f"{low:g} to {high:g} m/s²"

@@ -1,0 +1,133 @@
+"""What differs: the car of a run from the shipped one, and several runs among each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.base_car import vehicle_table
+from vehicle.model.parameters.shipped import CARS, vehicle_file
+from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.names import side_of
+from vehicle.runs.report.finished_run import FinishedRun
+
+LARGEST_SHARE = 0.5
+"""Largest share of other or further parameters in a car that was made from a shipped one: a car with more of them is a
+car of its own. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
+
+
+def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, object]]:
+    """Values of a vehicle file by their whole paths."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from flattened(value, f"{path}{key}.")
+        else:
+            yield path + key, value
+
+
+def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
+    """Return the shipped car that a car was made from: its namesake, else the one with the fewest other parameters.
+
+    Args:
+        vehicle: the car.
+
+    Returns:
+        The shipped car; None where every shipped car differs in more than `LARGEST_SHARE` of the parameters.
+    """
+    if vehicle.name in CARS:
+        return load_vehicle(vehicle_file(vehicle.name))
+    own, found = dict(flattened(vehicle.table)), dict[str, float]()
+    for name in CARS:
+        other = dict(flattened(vehicle_table(vehicle_file(name))))
+        paths = {*own, *other}
+        found[name] = sum(own.get(path) != other.get(path) for path in paths) / len(paths)
+    nearest = min(found, key=lambda name: found[name])
+    return load_vehicle(vehicle_file(nearest)) if found[nearest] <= LARGEST_SHARE else None
+
+
+def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list[str]]]:
+    """Parameters in which cars differ.
+
+    Args:
+        vehicles: cars.
+
+    Returns:
+        Path, unit, and the value of each car as text ("–" where it has none), in the order of the first
+        car that has it.
+    """
+    tables = [dict(flattened(vehicle.table)) for vehicle in vehicles]
+    paths = dict.fromkeys(path for table in tables for path in table)
+    found = []
+    for path in paths:
+        values = [table.get(path) for table in tables]
+        if any(value != values[0] for value in values[1:]):
+            owner = vehicles[next(i for i, value in enumerate(values) if value is not None)]
+            found.append((path, _unit(owner, path), [_text(value) for value in values]))
+    return found
+
+
+def _unit(vehicle: Vehicle, path: str) -> str:
+    try:
+        return str(vehicle.quantity_of(path).get("unit", ""))
+    except (ConfigurationError, KeyError):
+        return ""
+
+
+def _text(value: object) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(_text(one) for one in value)}]"
+    return str(value)
+
+
+def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
+    """Numbers in which runs are compared, by name and unit.
+
+    Args:
+        run: the run.
+    """
+    summary = run.summary
+    found: dict[tuple[str, str], float | None] = {}
+    for place, value in summary["comfort"].items():
+        words = place.replace("_", " ")
+        found[f"{words}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"]["weighted_rms"]
+        found |= {
+            (f"{words}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
+        }
+    shares = {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
+    for wheel, share in shares.items():
+        found[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
+        found[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
+    for channel in (f"knuckle_{run.wheel}_acc_z", "seat_rail_acc_z"):
+        peaks = summary["peaks"].get(channel)
+        if peaks:
+            top = max(peaks, key=lambda peak: peak["magnitude"])
+            found[f"{channel}: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
+            found[f"{channel}: its height", "m/s² per m"] = top["magnitude"]
+    return found
+
+
+DIFFERENCES = {"s": "s", "%": "percentage points"}
+"""Units of which a ratio says nothing, with the unit of their difference: a time at which something happens is counted
+from the start of the record, and a share may begin at next to none."""
+
+
+def difference(first: float | None, other: float | None, unit: str = "") -> str:
+    """Change from one number to another: a difference for the units of `DIFFERENCES`, else in percent; or a dash.
+
+    Args:
+        first, other: the numbers; None where there is none.
+        unit: of both.
+    """
+    if first is None or other is None:
+        return "–"
+    if unit in DIFFERENCES:
+        return f"{other - first:+.3g} {DIFFERENCES[unit]}"
+    if first == 0.0:
+        return "–"
+    change = 100.0 * (other / first - 1.0)
+    return f"{change:+.0f} %" if abs(change) >= 10.0 else f"{change:+.1f} %"

@@ -1,0 +1,78 @@
+"""Several runs beside each other: what went in, what came out, and their FRFs over each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from vehicle.drawing.rendering.several_runs import plot_densities, plot_responses, shared_channels
+from vehicle.names import wheel_words
+from vehicle.runs.report.comparison import changed_parameters, difference, key_figures
+from vehicle.runs.report.drawings import drawing
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
+
+
+def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
+    """Key figures, parameters and FRFs of several runs."""
+    figures = [key_figures(run) for run in runs]
+    heads = ["", "unit", runs[0].name]
+    for run in runs[1:]:
+        heads += [run.name, "change"]
+    rows = []
+    for name, unit in dict.fromkeys(key for one in figures for key in one):
+        values = [one.get((name, unit)) for one in figures]
+        cells = [number(values[0])]
+        for value in values[1:]:
+            cells += [number(value), difference(values[0], value, unit)]
+        rows.append((name, unit, *cells))
+    inputs = [
+        (
+            run.name,
+            run.car.vehicle.name,
+            Path(run.signal.source).name,
+            f"{1e3 * run.summary['input']['rms_m']:.3g}",
+            f"{run.summary['input']['duration_s']:g}",
+            run.summary["solver"]["engine"],
+        )
+        for run in runs
+    ]
+    parts = [
+        table(("run", "car", "signal", "RMS [mm]", "length [s]", "engine"), inputs, words=3),
+        tag("h3", f"Differences against {runs[0].name}"),
+        table(heads, rows, words=2),
+    ]
+    changed = changed_parameters([run.car.vehicle for run in runs])
+    parts.append(tag("h3", "Parameters that differ"))
+    if changed:
+        content = [(path, unit, *values) for path, unit, values in changed]
+        heads = ["parameter", "unit", *(run.name for run in runs)]
+        parts.append(shortened(f"{len(changed)} parameters", heads, content, words=2))
+    else:
+        parts.append(tag("p", "None: the cars are the same."))
+    if len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1:
+        parts.append(tag("p", "The signals differ, so levels are compared that were not asked for alike."))
+    return joined([*parts, _overlay(runs)])
+
+
+def _overlay(runs: Sequence[FinishedRun]) -> Markup:
+    """FRFs of the runs that have some, densities of the others."""
+    parts = []
+    with_response = {run.name: (run, run.response) for run in runs if run.response is not None}
+    wheel = runs[0].wheel
+    wanted = {
+        f"knuckle_{wheel}_acc_z": f"Knuckle, {wheel_words(wheel, runs[0].car.vehicle.wheels)}",
+        "seat_rail_acc_z": "Seat rail",
+        "engine_acc_z": "Engine",
+    }
+    if len(with_response) > 1:
+        channels = shared_channels([run for run, _ in with_response.values()], wanted)
+        words = "Frequency responses over each other, vertical"
+        parts.append(drawing(lambda path: plot_responses(path, with_response, channels, words), words))
+    elif len(runs) > len(with_response):
+        channels = shared_channels(runs, wanted)
+        words = "Densities of the vertical acceleration"
+        parts.append(
+            drawing(lambda path: plot_densities(path, {run.name: run for run in runs}, channels, words), words)
+        )
+    return joined(parts)

@@ -1,0 +1,56 @@
+"""A measurement beside the run, where the run was compared with one."""
+
+from __future__ import annotations
+
+import base64
+
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.markup import MANY, Markup, joined, number, shortened, table, tag
+
+WORST = 10
+"""Rows shown above a table that is folded."""
+
+UNITS = {
+    "low_hz": "from [Hz]",
+    "high_hz": "to [Hz]",
+    "magnitude_db": "magnitude, mean [dB]",
+    "magnitude_rms_db": "magnitude, RMS [dB]",
+    "phase_deg": "phase, RMS [deg]",
+    "iso18571": "ISO 18571",
+    "lag_s": "lag [s]",
+    "drift_ppm": "drift [ppm]",
+    "window_s": "window of ISO 18571 [s]",
+}
+"""Heads of columns with units."""
+
+ERROR = (
+    "the error of a band is the root of the mean of |ln(simulated / measured)|², weighted by both coherences; "
+    "magnitude is positive where the simulation is larger, lag where it is late; drift is the change of the lag."
+)
+
+
+def measured(run: FinishedRun) -> Markup | None:
+    """The table of differences, worst first, and the pictures; None where nothing was measured."""
+    about = run.summary.get("measured")
+    if not about:
+        return None
+    heads = list(dict.fromkeys(key for row in about["table"] for key in row))
+    rows = [[_cell(row.get(key)) for key in heads] for row in about["table"]]
+    words = [UNITS.get(head, head.replace("_", " ")) for head in heads]
+    parts = [
+        tag("p", f"Measured: {about['file']}. The table is ordered by kind, each worst first; {ERROR}"),
+        *([table(words, rows[:WORST], words=2)] if len(rows) > MANY else []),
+        shortened(f"All {len(rows)} rows", words, rows, words=2),
+    ]
+    for kind, name in run.summary["files"].items():
+        path = run.folder / name
+        if kind.startswith("compare_") and path.suffix == ".png" and path.is_file():
+            source = "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
+            parts.append(tag("figure", tag("img", src=source, alt=kind.replace("_", " "))))
+    return joined(parts)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, list | tuple):
+        return " to ".join(_cell(one) for one in value)
+    return number(value) if isinstance(value, float) or value is None else str(value)

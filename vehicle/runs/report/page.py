@@ -1,0 +1,123 @@
+"""The page: one HTML file with its style, script, figures and numbers, which asks no network for anything."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import hashlib
+from collections.abc import Callable, Sequence
+from importlib import resources
+
+from vehicle.errors import ConfigurationError
+from vehicle.runs.report import sections
+from vehicle.runs.report.comfort_section import comfort
+from vehicle.runs.report.comparison_section import beside_each_other
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.markup import Markup, escaped, joined, section, tag
+from vehicle.runs.report.measured_section import measured
+from vehicle.runs.report.modes_section import HIGHEST_MODE, STATES, Modes, car_modes_of, moving_modes
+from vehicle.runs.report.moving_modes import as_json
+from vehicle.runs.report.response_section import responses
+
+
+def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] | None = None) -> str:
+    """The report of one run, or of several beside each other.
+
+    Args:
+        runs: what was run.
+        progress: called with the finished fraction.
+
+    Returns:
+        A whole HTML document.
+
+    Raises:
+        ConfigurationError: no run.
+    """
+    if not runs:
+        raise ConfigurationError("report: no run; give at least one folder, as runs/low")
+    runs = _told_apart(runs)
+    done = progress or (lambda fraction: None)
+    modes = [{state: run.car.modes(state, HIGHEST_MODE) for state in STATES} for run in runs]
+    parts: list[tuple[str, str, Markup]] = []
+    if len(runs) > 1:
+        parts += [("Beside each other", "comparison", beside_each_other(runs))]
+    done(0.1)
+    for index, (run, own) in enumerate(zip(runs, modes, strict=True)):
+        found = _of_run(run, own)
+        if len(runs) == 1:
+            parts += found
+        else:
+            inner = joined(part for title, _, content in found for part in (tag("h3", title), content))
+            parts.append((run.name, f"run-{index + 1}", inner))
+        done(0.1 + 0.8 * (index + 1) / len(runs))
+    before = next((i for i, (_, anchor, _) in enumerate(parts) if anchor == "tables"), len(parts))
+    parts.insert(before, ("Modes", "modes", moving_modes(runs, modes)))
+    page = _document(runs, parts, as_json(car_modes_of(runs, modes)))
+    done(1.0)
+    return page
+
+
+def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
+    """Runs of the same name with the folder above it before their names, and numbers where that is the same too."""
+    names = [run.name for run in runs]
+    longer = [
+        f"{run.place.resolve().parent.name}/{run.name}" if names.count(run.name) > 1 else run.name for run in runs
+    ]
+    told = [f"{name} ({i + 1})" if longer.count(name) > 1 else name for i, name in enumerate(longer)]
+    return [dataclasses.replace(run, name=name) for run, name in zip(runs, told, strict=True)]
+
+
+def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
+    """Title, anchor and content of each part of a run."""
+    found = [
+        ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
+        ("What was run", "run", sections.what_was_run(run)),
+        (
+            "Frequency responses" if run.response is not None else "Densities",
+            "responses",
+            responses(run, modes),
+        ),
+        ("Time histories", "time", sections.time_figure(run)),
+        ("Dampers", "dampers", sections.dampers(run)),
+        ("Comfort", "comfort", comfort(run)),
+    ]
+    for title, anchor, content in (("Measured", "measured", measured(run)), ("Film", "film", sections.film(run))):
+        if content is not None:
+            found.append((title, anchor, content))
+    return [
+        *found,
+        ("All numbers", "tables", sections.tables(run)),
+        ("How to repeat it", "repeat", sections.repeating(run)),
+    ]
+
+
+def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Markup]], data: str) -> str:
+    """The parts in a document whose policy lets nothing in from outside, and runs no script but its own."""
+    names = " and ".join(run.name for run in runs) if len(runs) < 4 else f"{len(runs)} runs"
+    title = f"Car on the shaker: {names}"
+    script = _file("modes.js") + _file("print.js")
+    allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    policy = (
+        f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src 'sha256-{allowed}'"
+    )
+    about = "; ".join(dict.fromkeys(run.caption for run in runs))
+    links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
+    pages = {"responses", "time", "modes", "comparison"}
+    body = joined(
+        section(name, anchor, content, class_="page" if anchor in pages else None) for name, anchor, content in parts
+    )
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{escaped(policy)}">\n'
+        '<meta name="generator" content="vehicle-on-shaker">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<link rel="icon" href="data:,">\n'
+        f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
+        f"{tag('header', tag('h1', title), tag('p', about, class_='about'))}\n{links}\n<main>{body}</main>\n"
+        f'<script type="application/json" id="mode-data">{data}</script>\n<script>{script}</script>\n</body>\n</html>\n'
+    )
+
+
+def _file(name: str) -> str:
+    """A file of this package."""
+    return resources.files("vehicle.runs.report").joinpath(name).read_text(encoding="utf-8")

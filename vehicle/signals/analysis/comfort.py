@@ -1,0 +1,177 @@
+"""The comfort value of Bommer 2006, its statistical error, and whether the vibration had settled."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from vehicle.errors import DataError
+from vehicle.signals.analysis.comfort_error import overall_error, overall_waves
+from vehicle.signals.analysis.samples import checked_rows
+from vehicle.signals.analysis.spectra import band_periodogram, band_rms, rms_of
+
+COMFORT_BAND = (2.0, 50.0)
+"""band of the comfort value [Hz] (Bommer 2006, chapter 4)"""
+DRIFT_LIMIT = 0.01
+"""drift of the RMS above which a comfort value is refused (bad-inputs item 43) [-]"""
+SIGNIFICANCE = 3.0
+"""standard errors by which a drift must exceed the scatter of a random record to count as a drift [-]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ComfortValue:
+    """Unweighted RMS accelerations in a band [m/s2]."""
+
+    x: float
+    y: float
+    z: float
+    overall: float
+    """sqrt(x^2 + y^2 + z^2) [m/s2]"""
+    band: tuple[float, float]
+    """[Hz]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Settling:
+    """How much the RMS changes from the first to the second half of a record."""
+
+    halves: tuple[float, float]
+    """RMS of each half [unit of the signal]"""
+    drift: float
+    """(second - first) / mean of both [-]"""
+    standard_error: float
+    """standard deviation that a stationary Gaussian record of this spectrum would give to the drift [-]"""
+    settled: bool
+    """whether |drift| is within 1 % or within three standard errors"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ComfortValues:
+    """Comfort values of several records of one length, of one spectrum each."""
+
+    axes: NDArray[np.float64]
+    """RMS in x, y, z [m/s2], shape (r, 3)"""
+    overall: NDArray[np.float64]
+    """sqrt(x^2 + y^2 + z^2) [m/s2], shape (r,)"""
+    error: NDArray[np.float64]
+    """normalised standard error of `overall`, see `vehicle.signals.analysis.comfort_error` [-], shape (r,)"""
+    waves: NDArray[np.complex128]
+    """slow variations of `overall`, see `vehicle.signals.analysis.comfort_error` [m/s2], shape (r, WAVES)"""
+
+
+def comfort_values(
+    time_step: float, acceleration: ArrayLike, band: tuple[float, float] = COMFORT_BAND
+) -> ComfortValues:
+    """Comfort values of several records; the numbers of one do not depend on the others.
+
+    Args:
+        time_step: [s].
+        acceleration: in x, y, z [m/s2], shape (r, 3, n).
+        band: (low, high) [Hz], both edges included.
+
+    Raises:
+        DataError: not three axes, or `band_rms` refuses a record.
+    """
+    array = np.asarray(acceleration, dtype=np.float64)
+    if array.ndim != 3 or array.shape[1] != 3:
+        raise DataError(f"acceleration: found shape {array.shape}, needed is (r, 3, n) with the three axes x, y, z")
+    spectrum = band_periodogram(time_step, array.reshape(-1, array.shape[2]), band)
+    axes = rms_of(spectrum).reshape(-1, 3)
+    x, y, z = axes.T
+    assert spectrum.lines is not None  # a periodogram
+    lines = spectrum.lines.reshape(*axes.shape, -1)
+    return ComfortValues(
+        axes=axes,
+        overall=np.sqrt(x * x + y * y + z * z),
+        error=overall_error(lines),
+        waves=overall_waves(lines),
+    )
+
+
+def comfort_value(
+    time_step: float, acceleration: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
+) -> ComfortValue:
+    """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unweighted acceleration in a band.
+
+    Args:
+        time_step: [s].
+        acceleration: of one point in x, y, z [m/s2], shape (3, n), or one by one.
+        band: (low, high) [Hz], both edges included.
+
+    Raises:
+        DataError: not three axes, or `band_rms` refuses the record.
+
+    Source: Bommer 2006, chapter 4.
+    """
+    rows = checked_rows("acceleration", acceleration)
+    if len(rows) != 3:
+        raise DataError(f"acceleration: found {len(rows)} signals, needed are the three axes x, y, z")
+    x, y, z = (float(band_rms(time_step, row, band)[0]) for row in rows)
+    return ComfortValue(x=x, y=y, z=z, overall=float(np.sqrt(x * x + y * y + z * z)), band=band)
+
+
+def rms_standard_error(
+    time_step: float, signals: ArrayLike, band: tuple[float, float] = COMFORT_BAND
+) -> NDArray[np.float64]:
+    """Return the normalised standard error of the band RMS of stationary Gaussian records, shape (k,).
+
+    Var[ms] = (1/T) int S^2 df  and  rms = sqrt(ms), so  error = sqrt(int S^2 df / T) / (2 int S df)
+
+    For white noise of bandwidth B that is 1 / (2 sqrt(B T)). A periodogram line is S times a chi-square variable with
+    two degrees of freedom over two, hence E[P^2] = 2 S^2, and int S^2 df is estimated without bias by sum(P^2 df) / 2.
+    Meaningless for a deterministic signal (a sine or a bump has no such error). A signal with no power in the band has
+    an error of 0.
+
+    Args:
+        time_step: [s].
+        signals: shape (n,) or (k, n).
+        band: (low, high) [Hz].
+
+    Source: Bendat and Piersol, Random Data, 4th ed., chapter 8 (bandwidth-time product).
+    """
+    spectrum = band_periodogram(time_step, signals, band)
+    mean_square = spectrum.density.sum(axis=1) * spectrum.resolution_hz
+    # df = 1/T, so int S^2 df / T is the sum over the lines times df^2
+    variance = 0.5 * (spectrum.density**2).sum(axis=1) * spectrum.resolution_hz**2
+    error = np.zeros_like(mean_square)
+    np.divide(np.sqrt(variance), 2.0 * mean_square, out=error, where=mean_square > 0.0)
+    return np.asarray(error)
+
+
+def settling(
+    time_step: float, signals: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
+) -> tuple[Settling, ...]:
+    """Compare the band RMS of the two halves of each signal: a transient still decaying shows as a drift.
+
+    drift = (second - first) / mean. The halves of a stationary random record differ by chance as well: each half has
+    sqrt(2) times the standard error of the whole record, their difference twice. A drift counts only above both 1 %
+    and three of these.
+
+    Args:
+        time_step: [s].
+        signals: shape (n,) or (k, n), or one by one.
+        band: (low, high) [Hz].
+
+    Source: bad-inputs item 43.
+    """
+    rows = checked_rows("signals", signals)
+    middle = rows[0].size // 2
+    if middle < 2:
+        raise DataError(f"signals: found {rows[0].size} samples, two halves of at least 2 are needed")
+    found = []
+    for row in rows:
+        a, b = (band_rms(time_step, half, band)[0] for half in (row[:middle], row[-middle:]))
+        e = 2.0 * rms_standard_error(time_step, row, band)[0]
+        drift = float(2.0 * (b - a) / (a + b)) if a + b > 0.0 else 0.0
+        found.append(
+            Settling(
+                halves=(float(a), float(b)),
+                drift=drift,
+                standard_error=float(e),
+                settled=abs(drift) <= max(DRIFT_LIMIT, SIGNIFICANCE * float(e)),
+            )
+        )
+    return tuple(found)

@@ -1,0 +1,119 @@
+"""Vibration exposure of a weighted acceleration: RMS, MTVV, crest factor, VDV, MSDV and vector sums."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.samples import checked_signals, checked_time_step
+
+RunningAverage = Literal["linear", "exponential"]
+
+
+def _one(weighted: ArrayLike) -> NDArray[np.float64]:
+    """Return one weighted record as floats, shape (n,)."""
+    array = checked_signals("weighted acceleration", weighted)
+    if array.shape[0] != 1:
+        raise DataError(f"weighted acceleration: found {array.shape[0]} signals, needed is one axis, shape (n,)")
+    return np.asarray(array[0])
+
+
+def weighted_rms(weighted: ArrayLike) -> float:
+    """Return a_w = sqrt(mean a_w(t)^2) [m/s2] of a weighted record (n,). Source: ISO 2631-1:1997, 6.1."""
+    return float(np.sqrt(np.mean(_one(weighted) ** 2)))
+
+
+def mtvv(
+    time_step: float, weighted: ArrayLike, *, average: RunningAverage = "linear", integration_s: float = 1.0
+) -> float:
+    """Return the maximum transient vibration value, the largest running RMS [m/s2].
+
+    linear:       a(t)^2 = 1/tau int_(t-tau)^t a_w^2 dt'
+    exponential:  a(t)^2 = 1/tau int_(-inf)^t a_w^2 exp((t' - t)/tau) dt'
+
+    The signal is zero before the record, so one shorter than tau still has a value.
+
+    Args:
+        time_step: [s].
+        weighted: weighted acceleration [m/s2], shape (n,).
+        average: "linear" or "exponential".
+        integration_s: tau, 1 s by the standard [s].
+
+    Source: ISO 2631-1:1997, 6.3.1, equations 2 to 4.
+    """
+    step = checked_time_step(time_step)
+    square = _one(weighted) ** 2
+    length = round(integration_s / step)
+    if length < 1:
+        raise ConfigurationError(f"integration_s: found {integration_s:g} s, allowed is at least one time step")
+    if average == "linear":
+        total = np.cumsum(square, out=square)
+        late = total[length:] - total[: max(square.size - length, 0)]
+        running = np.max(late, initial=total[:length].max()) / length
+    elif average == "exponential":
+        decay = float(np.exp(-step / integration_s))
+        running = scipy.signal.lfilter([1.0 - decay], [1.0, -decay], square).max()
+    else:
+        raise ConfigurationError(f"running average: found {average!r}, allowed are 'linear' and 'exponential'")
+    return float(np.sqrt(max(float(running), 0.0)))
+
+
+def crest_factor(weighted: ArrayLike, rms: float | None = None) -> float | None:
+    """Return max|a_w| / RMS [-]; None for a record that is zero throughout. Source: ISO 2631-1:1997, 6.2.1.
+
+    Args:
+        weighted: the part of the record whose maximum counts [m/s2], shape (n,).
+        rms: of the whole measurement [m/s2]; that of the part by default.
+    """
+    record = _one(weighted)
+    rms = weighted_rms(record) if rms is None else rms
+    return float(np.abs(record).max() / rms) if rms > 0.0 else None
+
+
+def vibration_dose_value(time_step: float, weighted: ArrayLike) -> float:
+    """Return VDV = (int a_w^4 dt)^(1/4) [m/s^1.75] of a weighted record (n,). Source: ISO 2631-1:1997, equation 5."""
+    record = _one(weighted)
+    # scaled by the peak, so that the fourth power of a tiny or huge acceleration neither vanishes nor overflows
+    peak = float(np.abs(record).max())
+    if peak == 0.0:
+        return 0.0
+    scaled = record / peak
+    return float(peak * (np.sum(np.power(scaled, 4, out=scaled)) * checked_time_step(time_step)) ** 0.25)
+
+
+def estimated_vibration_dose_value(rms: float, duration_s: float) -> float:
+    """Return eVDV = 1.4 a_w T^(1/4) [m/s^1.75] from a weighted RMS [m/s2] and a duration [s].
+
+    Valid for crest factors below about 6. Source: ISO 2631-1:1997, annex B; BS 6841:1987.
+    """
+    if not (np.isfinite([rms, duration_s]).all() and rms >= 0.0 and duration_s > 0.0):
+        raise ConfigurationError(f"eVDV: found RMS {rms!r} and duration {duration_s!r}; allowed are >= 0 and > 0")
+    return float(1.4 * rms * duration_s**0.25)
+
+
+def motion_sickness_dose_value(time_step: float, weighted: ArrayLike) -> float:
+    """Return MSDV = sqrt(int a_w^2 dt) [m/s^1.5] of a record (n,) weighted by Wf. Source: ISO 2631-1:1997, annex D."""
+    return float(np.sqrt(np.sum(_one(weighted) ** 2) * checked_time_step(time_step)))
+
+
+def vector_sum(values: Sequence[float], factors: Sequence[float], *, power: float = 2.0) -> float:
+    """Return (sum (k_i a_i)^power)^(1/power): power 2 for RMS values, 4 for dose values (BS 6841).
+
+    Over the axes of a point this is the point vibration total value; over points, with factors 1, the overall one.
+
+    Args:
+        values: one measure for each axis or point.
+        factors: multiplying factor k of each [-].
+        power: 2 or 4.
+
+    Source: ISO 2631-1:1997, 6.5 and 8.2.3; BS 6841:1987.
+    """
+    if len(values) != len(factors):
+        raise ConfigurationError(f"vector sum: found {len(values)} values and {len(factors)} factors")
+    scaled = np.abs(np.asarray(values, dtype=np.float64) * np.asarray(factors, dtype=np.float64))
+    return float(np.sum(scaled**power) ** (1.0 / power))

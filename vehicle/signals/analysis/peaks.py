@@ -1,0 +1,147 @@
+"""Resonance peaks of an FRF magnitude."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.frf import FrequencyResponse
+
+PROMINENCE_DB = 1.0
+"""A peak must rise 1 dB (a factor 1.12) above the higher of its two feet."""
+
+STANDARD_ERRORS = 3.5
+"""And by 3.5 standard errors of the difference of top and foot. Both are extremes: the range of a hundred independent
+estimates, as many as a list has, is 5 standard errors of one on average, which is 3.5 of a difference."""
+
+LEAST_COHERENCE = 0.3
+"""Coherence below which a maximum is no resonance: two thirds of the motion there have another cause."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Peak:
+    """One local maximum of a magnitude."""
+
+    frequency_hz: float
+    """frequency of the maximum, between the lines [Hz]"""
+    magnitude: float
+    """interpolated maximum [unit of the FRF]"""
+    coherence: float | None
+    """coherence of the nearest line [-]; None where none was given"""
+    prominence_db: float
+    """height above the higher foot [dB]"""
+    random_error: float | None = None
+    """standard error of the nearest line [unit of the FRF]; None where none was given"""
+
+
+def _vertex(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
+    """Return position and height of the parabola through three points around a maximum; any spacing."""
+    left = (y[1] - y[0]) / (x[1] - x[0])
+    right = (y[2] - y[1]) / (x[2] - x[1])
+    curvature = (right - left) / (x[2] - x[0])
+    if curvature >= 0.0:  # a flat top of equal values: the middle one is as good as any
+        return float(x[1]), float(y[1])
+    position = 0.5 * (x[0] + x[1]) - 0.5 * left / curvature
+    height = y[0] + left * (position - x[0]) + curvature * (position - x[0]) * (position - x[1])
+    return float(position), float(height)
+
+
+def resonance_peaks(
+    frequency: ArrayLike,
+    magnitude: ArrayLike,
+    coherence: ArrayLike | None = None,
+    random_error: ArrayLike | None = None,
+    *,
+    prominence_db: float = PROMINENCE_DB,
+) -> tuple[Peak, ...]:
+    """Find the resonance peaks of one FRF magnitude, sorted by frequency.
+
+    A peak is a line above both neighbours whose prominence reaches the limit in dB and `STANDARD_ERRORS`, and whose
+    coherence reaches `LEAST_COHERENCE`; its frequency and height come from the parabola through log(magnitude) at the
+    line and its two neighbours. Lines with a NaN magnitude separate the stretches that are searched. A maximum at the
+    edge of a stretch is no peak.
+
+    Args:
+        frequency: increasing lines [Hz], shape (m,).
+        magnitude: |H| > 0 [unit of the FRF], shape (m,), NaN where undefined.
+        coherence: [-], shape (m,).
+        random_error: standard error of the magnitude [unit of the FRF], shape (m,); taken as 0 where not given.
+        prominence_db: limit [dB].
+
+    Raises:
+        DataError: shapes differ, frequency not increasing, magnitude zero, negative or infinite.
+    """
+    lines = np.asarray(frequency, dtype=np.float64)
+    values = np.asarray(magnitude, dtype=np.float64)
+    quality = None if coherence is None else np.asarray(coherence, dtype=np.float64)
+    error = None if random_error is None else np.asarray(random_error, dtype=np.float64)
+    others = [array.shape for array in (quality, error) if array is not None]
+    if lines.ndim != 1 or any(shape != lines.shape for shape in (values.shape, *others)):
+        raise DataError(
+            f"peaks: found shapes {lines.shape} for frequency, {values.shape} for magnitude and "
+            f"{others} for coherence and random error; all must be (m,)"
+        )
+    if not np.isfinite(lines).all() or np.any(np.diff(lines) <= 0.0):
+        raise DataError("peaks: frequency must be finite and increase from line to line")
+    known = ~np.isnan(values)
+    if np.any(values[known] <= 0.0) or np.any(np.isinf(values)):
+        raise DataError("peaks: a magnitude must be above 0 and finite (or NaN where undefined)")
+    if not (np.isfinite(prominence_db) and prominence_db > 0.0):
+        raise ConfigurationError(f"prominence: found {prominence_db!r} dB, allowed is a finite number above 0 dB")
+
+    found: list[Peak] = []
+    for stretch in np.split(np.arange(lines.size), np.flatnonzero(np.diff(known.astype(np.int8))) + 1):
+        if stretch.size < 3 or not known[stretch[0]]:
+            continue
+        decibel = 20.0 * np.log10(values[stretch])
+        height, ripple = values[stretch], np.zeros(stretch.size) if error is None else error[stretch]
+        tops, found_at = scipy.signal.find_peaks(decibel, prominence=prominence_db)
+        for top, rise, *bases in zip(
+            tops, found_at["prominences"], found_at["left_bases"], found_at["right_bases"], strict=True
+        ):
+            foot = max(bases, key=lambda base: float(decibel[base]))
+            noisy = quality is not None and quality[stretch[top]] < LEAST_COHERENCE
+            if noisy or height[top] - height[foot] < STANDARD_ERRORS * np.hypot(ripple[top], ripple[foot]):
+                continue
+            around = slice(top - 1, top + 2)
+            position, level = _vertex(lines[stretch][around], decibel[around])
+            found.append(
+                Peak(
+                    frequency_hz=position,
+                    magnitude=float(10.0 ** (level / 20.0)),
+                    coherence=None if quality is None else float(quality[stretch[top]]),
+                    prominence_db=float(rise),
+                    random_error=None if error is None else float(error[stretch[top]]),
+                )
+            )
+    return tuple(found)
+
+
+def resonances(response: FrequencyResponse, row: int) -> tuple[Peak, ...]:
+    """Resonance peaks of one row of an FRF, where the input excites, by its own random error."""
+    return resonance_peaks(
+        response.frequency, np.abs(response.response[row]), response.coherence[row], response.random_error[row]
+    )
+
+
+def phase_resonance(frequency: NDArray[np.float64], response: NDArray[np.complex128]) -> float:
+    """Frequency where the phase falls through 90 deg, nearest to the largest line: the resonance, whatever its damping.
+
+    Args:
+        frequency: lines of the band [Hz], (m,).
+        response: acceleration over displacement, (m,); it turns from 180 to 0 deg through a resonance.
+
+    Returns:
+        Interpolated frequency [Hz]; NaN where the phase passes 90 deg nowhere.
+    """
+    # Through 90 deg from above, the real part changes from negative to positive while the imaginary part is positive.
+    real, upper = response.real, response.imag > 0.0
+    at = np.flatnonzero((real[:-1] < 0.0) & (real[1:] >= 0.0) & upper[:-1] & upper[1:])
+    if not at.size:
+        return float("nan")
+    crossings = frequency[at] - real[at] * (frequency[at + 1] - frequency[at]) / (real[at + 1] - real[at])
+    return float(crossings[np.argmin(np.abs(crossings - frequency[np.nanargmax(np.abs(response))]))])

@@ -1,0 +1,156 @@
+"""How a record is cut: overlapping segments and the averages they are worth; the largest magnitude in every window;
+stretches of its spectrum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.samples import checked_signals, checked_time_step
+
+MINIMUM_AVERAGES = 8.0
+"""Below this the coherence of unrelated signals is already 1/8 and the random error of an FRF above 25 % at 0.5."""
+
+
+STRETCHES = 12
+"""Stretches of a spectrum that are worked on at once: what they need stays in the nearest caches."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Segments:
+    """Welch's segments of one record."""
+
+    length: int
+    """samples in a segment [-]"""
+    step: int
+    """samples from one segment to the next [-]"""
+    count: int
+    """number of whole segments [-]"""
+    averages: float
+    """independent averages that the overlapping segments are worth [-]"""
+    window: NDArray[np.float64]
+    """Hann window, shape (length,) [-]"""
+
+    @property
+    def overlap(self) -> int:
+        """Samples shared by two neighbours [-]."""
+        return self.length - self.step
+
+
+def effective_averages(window: NDArray[np.float64], step: int, count: int) -> float:
+    """Count the independent averages that `count` overlapping segments of a white record are worth.
+
+    K_eff = K / (1 + 2 sum_j (1 - j/K) rho_j),  rho_j = (sum w(i) w(i + j step))^2 / (sum w^2)^2
+
+    Args:
+        window: shape (length,).
+        step: samples from one segment to the next.
+        count: number of segments K.
+
+    Source: Welch (1967), IEEE Trans. Audio Electroacoustics 15, the variance of the averaged periodogram.
+    """
+    power = float(window @ window)
+    correlated = 0.0
+    for j in range(1, min(count, -(-window.size // step))):
+        shift = j * step
+        rho = (float(window[:-shift] @ window[shift:]) / power) ** 2 if shift < window.size else 0.0
+        correlated += (1.0 - j / count) * rho
+    return count / (1.0 + 2.0 * correlated)
+
+
+def cut_into_segments(
+    samples: int, time_step: float, *, window_s: float, overlap: float, minimum_averages: float
+) -> Segments:
+    """Cut a record of `samples` samples into Hann-windowed segments.
+
+    Args:
+        samples: length of the record [-].
+        time_step: [s].
+        window_s: length of a segment [s]; the lines are 1 / window_s apart.
+        overlap: share of a segment that the next one repeats, 0 <= overlap < 1 [-].
+        minimum_averages: effective averages that the caller asks for [-].
+
+    Raises:
+        ConfigurationError: window or overlap out of range.
+        DataError: the record is too short; the message says how long it must be.
+    """
+    if not (np.isfinite(window_s) and window_s >= 8.0 * time_step):
+        raise ConfigurationError(
+            f"window_s: found {window_s:g} s, allowed is at least 8 time steps ({8.0 * time_step:g} s)"
+        )
+    if not 0.0 <= overlap < 1.0:
+        raise ConfigurationError(f"overlap: found {overlap:g}, allowed is 0 <= overlap < 1")
+    length = round(window_s / time_step)
+    step = max(1, length - round(overlap * length))
+    window = np.asarray(scipy.signal.get_window("hann", length), dtype=np.float64)
+    count = 0 if samples < length else 1 + (samples - length) // step
+    averages = effective_averages(window, step, count) if count else 0.0
+    if averages < minimum_averages:
+        needed = max(1, int(np.ceil(minimum_averages)))
+        while effective_averages(window, step, needed) < minimum_averages:
+            needed += 1
+        raise DataError(
+            f"record too short: {samples * time_step:g} s hold {averages:.3g} effective averages of {window_s:g} s "
+            f"windows with {100 * overlap:g} % overlap; needed are {minimum_averages:g}, so at least "
+            f"{(length + (needed - 1) * step) * time_step:g} s, or a shorter window (coarser lines)"
+        )
+    return Segments(length=length, step=step, count=count, averages=averages, window=window)
+
+
+def stretches_of_one_length(
+    centres: NDArray[np.int_], halves: NDArray[np.int_]
+) -> Iterator[tuple[NDArray[np.intp], NDArray[np.int_]]]:
+    """Stretches of spectral lines by their length, some at once.
+
+    Args:
+        centres: line in the middle of each stretch, shape (m,).
+        halves: lines n on each side of it, shape (m,).
+
+    Yields:
+        Which stretches, shape (s,), and their lines, shape (s, 2 n + 1).
+    """
+    for half in np.unique(halves):
+        alike = np.flatnonzero(halves == half)
+        for first in range(0, alike.size, STRETCHES):
+            some = alike[first : first + STRETCHES]
+            yield some, centres[some, None] + np.arange(-half, half + 1)
+
+
+def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) -> NDArray[np.float64]:
+    """Return max |x| of each of the windows that follow one another; an unfinished one at the end is left out.
+
+    The extreme of one short window of a random signal is itself random. A single published one is compared with the
+    percentiles of all windows.
+
+    Args:
+        time_step: [s].
+        signal: one record, shape (n,).
+        window_s: length of a window [s].
+
+    Returns:
+        Extremes, shape (w,), in the unit of the signal.
+
+    Raises:
+        ConfigurationError: the time step or the window is out of range.
+        DataError: more than one signal, a value that is not finite, or a record shorter than a window.
+    """
+    step = checked_time_step(time_step)
+    values = checked_signals("signal", signal)
+    if values.shape[0] != 1:
+        raise DataError(f"signal: found {values.shape[0]} signals, needed is one at a time, shape (n,)")
+    length = float(window_s)
+    if not (np.isfinite(length) and length >= step):
+        raise ConfigurationError(f"window: found {window_s!r} s, allowed is at least one time step, {step:g} s")
+    samples = round(length / step)
+    count = values.shape[1] // samples
+    if count == 0:
+        raise DataError(
+            f"signal: found {step * values.shape[1]:g} s, shorter than a window of {length:g} s; "
+            "give a longer record or a shorter window"
+        )
+    return np.asarray(np.abs(values[0, : count * samples]).reshape(count, samples).max(axis=1))

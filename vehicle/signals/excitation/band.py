@@ -1,0 +1,86 @@
+"""A frequency band on the lines of a record: which spectral lines a periodic random signal uses."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle.errors import ConfigurationError
+from vehicle.signals.excitation.slip_set import CHOSEN
+
+LOWER_BAND_EDGE_HZ = 2.0
+"""Lower edge of generated roads [Hz] where none is given."""
+
+SHAKER_EDGE_HZ = CHOSEN.shaker_edge_hz
+"""Lower edge of the shipped shaker inputs [Hz], half power."""
+
+SHAKER_ROLL_OFF_ORDER = 2
+"""Order of the Butterworth edge of the shipped inputs. Assumed: an electrodynamic shaker with limited stroke follows a
+constant velocity no further down, but it does not stop at a line either; FRFs from 1 Hz stay defined."""
+
+LOWEST_FREQUENCY_HZ = 1.0
+"""Lowest line of the shipped inputs [Hz]: the lower end of the source's range of interest."""
+
+UPPER_BAND_EDGE_HZ = 50.0
+"""Upper edge of the shipped random inputs [Hz]: the upper end of the source's range of interest."""
+
+
+def samples_of(duration: float, rate: float) -> int:
+    """Whole number of steps N in `duration` [s] at `rate` [Hz]; a record from 0 to `duration` has N + 1 samples.
+
+    Raises:
+        ConfigurationError: not positive, not a whole number, or fewer than 32.
+    """
+    steps = duration * rate
+    if not (np.isfinite(steps) and duration > 0.0 and rate > 0.0):
+        raise ConfigurationError(f"duration {duration!r} s at {rate!r} Hz; allowed: both positive and finite")
+    whole = round(steps)
+    if abs(steps - whole) > 1e-6 or whole < 32:
+        raise ConfigurationError(
+            f"duration {duration:g} s at {rate:g} Hz makes {steps:.9g} steps; allowed: a whole number from 32 on"
+        )
+    return whole
+
+
+def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDArray[np.int64]:
+    """Numbers k of the spectral lines f = k rate / steps within lower <= f <= upper.
+
+    Raises:
+        ConfigurationError: edges not in order, beyond 0.8 of the Nyquist frequency, or no line between them.
+    """
+    if not 0.0 < lower < upper or not upper <= 0.4 * rate:
+        raise ConfigurationError(
+            f"band {lower!r} to {upper!r} Hz; allowed: 0 < lower < upper <= {0.4 * rate:g} Hz (0.8 of the Nyquist "
+            "frequency)"
+        )
+    line = rate / steps
+    # Edges that are lines belong to the band although their quotient may round to either side.
+    first = max(int(np.ceil(lower / line * (1.0 - 1e-12))), 1)
+    last = int(np.floor(upper / line * (1.0 + 1e-12)))
+    if last < first:
+        raise ConfigurationError(
+            f"band {lower:g} to {upper:g} Hz holds no multiple of {line:g} Hz; take a longer record"
+        )
+    return np.arange(first, last + 1)
+
+
+def positive(name: str, value: float, unit: str) -> None:
+    """Refuse a level that is not positive and finite."""
+    if not 0.0 < value < np.inf:
+        raise ConfigurationError(f"{name} {value!r} {unit}; allowed: positive and finite")
+
+
+def period_of(coefficients: NDArray[np.complex128], lines: NDArray[np.int64], steps: int) -> NDArray[np.float64]:
+    """One period x[i] = sum over k of Re(c_k exp(2 pi j k i / N)), i = 0 ... N - 1.
+
+    Args:
+        coefficients: complex amplitude c_k of each line, shape (m,).
+        lines: line numbers k, shape (m,), below N / 2.
+        steps: samples N of the period.
+
+    Returns:
+        The period, shape (N,).
+    """
+    spectrum = np.zeros(steps // 2 + 1, dtype=np.complex128)
+    spectrum[lines] = coefficients * (0.5 * steps)
+    return np.fft.irfft(spectrum, steps)

@@ -1,0 +1,220 @@
+"""Road of ISO 8608 in two tracks: its class is its level, the isotropic plane relates right and left.
+
+    G(n) = G(n0) (n / n0)^-2,  n0 = 0.1 cycles/m,  from a lower to an upper wavenumber n [cycles/m]
+
+The height over the wavenumber lines n_k = k / P of a length P is, with a mean and a difference of the tracks,
+
+    z(x) = sum over k of A_k (sqrt((1 + g_k) / 2) cos(2 pi n_k x + phi_k)
+                              +- sqrt((1 - g_k) / 2) cos(2 pi n_k x + psi_k))
+
+right with +, left with -; A_k^2 / 2 = G(n_k) / P; g is the normalised cross spectrum. The power of both tracks together
+is exactly that of the class on every line; phases alone are left to chance.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from vehicle.errors import ConfigurationError
+from vehicle.signals.excitation.band import positive, samples_of
+from vehicle.signals.excitation.signal import Signal, uniform_time
+
+COPIES = 8
+"""Arrays as long as the record that are in memory beside the signals: lines, their transform and its plan."""
+
+CLASSES = {letter: 16e-6 * 4.0**number for number, letter in enumerate("ABCDEFGH")}
+"""G(n0) [m3] of each class, the geometric mean of its range. Source: ISO 8608, table of road classes."""
+
+REFERENCE = 0.1
+"""Wavenumber n0 [cycles/m] at which a class states its level (ISO 8608)."""
+
+LOWEST, HIGHEST = 0.011, 10.0
+"""Wavenumbers [cycles/m]: the lower end of ISO 8608, waves of 91 m; waves of 0.1 m, shorter than a contact patch."""
+
+RISE_S = 1.0
+"""Time [s] over which the road rises out of a plane, where the car stands."""
+
+Side = Literal["right", "left"]
+
+
+class Road(Protocol):
+    """Heights of two tracks along a road."""
+
+    @property
+    def repeats(self) -> bool:
+        """True if the heights repeat after the number of places that is asked for."""
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages and headers."""
+
+    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
+        """Heights [m] at equal distances; arguments as of `IsoRoad.height`."""
+
+
+def isotropic_coherence(wavenumber: NDArray[np.float64], track: float) -> NDArray[np.float64]:
+    """Cross spectrum of two tracks over their spectrum, g(n) = y K1(y) with y = 2 pi n b.
+
+    The surface is isotropic: its two-dimensional spectrum depends on the length of the wave vector alone, and falls
+    with its third power where that of a track falls with the second. Then integral of cos(2 pi m b) / (n2 + m2)^(3/2)
+    over m, divided by that at b = 0, is y K1(y) (Basset). The ordinary coherence is g^2.
+
+    Args:
+        wavenumber: n [cycles/m], above 0.
+        track: distance b of the tracks [m].
+
+    Source: Dodds and Robson, Journal of Sound and Vibration 31 (1973); Abramowitz and Stegun 9.6.25.
+    """
+    y = 2.0 * np.pi * np.asarray(wavenumber, dtype=np.float64) * track
+    return np.asarray(y * scipy.special.k1(y))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class IsoRoad:
+    """A road of a class; one seed is one road for a length of it.
+
+    Attributes:
+        level: G(n0) [m3] at 0.1 cycles/m.
+        seed: of the PCG64 generator of the phases.
+        track: distance of the two tracks [m].
+        lowest: smallest wavenumber [cycles/m].
+        highest: largest wavenumber [cycles/m].
+        coherence: None for that of the isotropic plane; 1 for equal tracks, 0 for unrelated ones.
+        patch: length of the contact patch [m]; the tyre averages the road over it, sinc(n a).
+
+    Raises:
+        ConfigurationError: a value out of its range.
+    """
+
+    level: float
+    seed: int
+    track: float
+    lowest: float = LOWEST
+    highest: float = HIGHEST
+    coherence: float | None = None
+    patch: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive("level of the road", self.level, "m3")
+        positive("track", self.track, "m")
+        if not 0.0 < self.lowest < self.highest < np.inf:
+            raise ConfigurationError(
+                f"wavenumbers {self.lowest!r} to {self.highest!r} cycles/m; allowed: 0 < lowest < highest"
+            )
+        if self.coherence is not None and not 0.0 <= self.coherence <= 1.0:
+            raise ConfigurationError(f"coherence {self.coherence!r}; allowed: 0 to 1, or none for the isotropic plane")
+        if not 0.0 <= self.patch < 1.0:
+            raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
+
+    @property
+    def repeats(self) -> bool:
+        """True: a sum of waves repeats after its length."""
+        return True
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages and headers."""
+        related = "isotropic plane" if self.coherence is None else f"coherence {self.coherence:g}"
+        return (
+            f"road of ISO 8608, G(0.1 cycles/m) = {self.level:g} m3, {self.lowest:g} to {self.highest:g} cycles/m, "
+            f"tracks {self.track:g} m apart ({related}), contact patch {self.patch:g} m, seed {self.seed}"
+        )
+
+    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
+        """Heights of a track at equal distances.
+
+        Args:
+            start: first place [m].
+            step: distance of the places [m].
+            steps: number of places N; the road repeats after P = N step.
+            side: right or left track.
+            highest: wavenumber [cycles/m] above which a sampling of `step` shows nothing.
+
+        Returns:
+            z [m], shape (N,).
+
+        Raises:
+            ConfigurationError: no line of the length lies in the band.
+        """
+        length = steps * step
+        lines = np.arange(max(1, int(np.ceil(self.lowest * length))), int(min(self.highest, highest) * length) + 1)
+        if lines.size == 0:
+            raise ConfigurationError(
+                f"{length:.4g} m of road hold no wave of {self.lowest:g} cycles/m; drive farther or raise the edge"
+            )
+        wavenumber = lines / length
+        related = isotropic_coherence(wavenumber, self.track) if self.coherence is None else self.coherence
+        phase = 2.0 * np.pi * np.random.Generator(np.random.PCG64(self.seed)).random((int(lines[-1]), 2))[lines - 1].T
+        sign = 1.0 if side == "right" else -1.0
+        numbers = np.sqrt(0.5 * (1.0 + related)) * np.exp(1j * phase[0])
+        numbers = numbers + sign * np.sqrt(0.5 * (1.0 - related)) * np.exp(1j * phase[1])
+        density = self.level * (wavenumber / REFERENCE) ** -2.0
+        spectrum = np.zeros(steps // 2 + 1, dtype=np.complex128)
+        spectrum[lines] = (
+            numbers
+            * np.sqrt(2.0 * density / length)
+            * np.sinc(wavenumber * self.patch)
+            * np.exp(2j * np.pi * wavenumber * start)
+            * (0.5 * steps)
+        )
+        return np.fft.irfft(spectrum, steps)
+
+
+def drive(
+    road: Road, *, speed: float, wheels: Mapping[str, tuple[float, Side]], duration: float, rate: float = 1000.0
+) -> Signal:
+    """Plate displacements of a car that drives over a road: z(t) = w(V t - d) z(V t - d).
+
+    A wheel that stands d behind the first meets the same road d / V later, exactly (the shift is made on the lines);
+    the rise w out of the plane is a part of the road and is met later too.
+
+    Args:
+        road: the road.
+        speed: V [m/s].
+        wheels: name of each wheel to its distance d [m] behind the foremost one, at least 0, and its track.
+        duration: length of the record [s].
+        rate: samples per second [Hz].
+
+    Returns:
+        Signal with duration * rate + 1 samples for all the wheels.
+
+    Raises:
+        ConfigurationError: a value out of its range.
+    """
+    positive("speed", speed, "m/s")
+    steps = samples_of(duration, rate)
+    needed, there = 8.0 * steps * (len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if needed > 0.5 * there:
+        raise ConfigurationError(
+            f"duration {duration:g} s at {rate:g} Hz: {steps:.3g} samples of {len(wheels)} wheels need "
+            f"{needed / 1e9:.3g} GB, allowed is half the memory of this machine, {0.5 * there / 1e9:.3g} GB; give a "
+            "shorter --duration or a lower --rate"
+        )
+    behind = [distance for distance, _ in wheels.values()]
+    if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():
+        raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")
+    # Longer than the record by the last wheel's delay: no wheel meets the beginning of the road again.
+    period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
+    step, displacement = speed / rate, {}
+    for wheel, (distance, side) in wheels.items():
+        # 0.8 of the Nyquist frequency, as for every generated signal.
+        z = road.height(-distance, step, period, side, 0.4 / step)[: steps + 1]
+        late = np.arange(steps + 1) / rate - distance / speed
+        displacement[wheel] = z * half_cosine_at(late, RISE_S) + 0.0  # no -0.0 in files
+    return Signal(
+        time=uniform_time(samples=steps + 1, timestep=1.0 / rate),
+        displacement=displacement,
+        source=f"{road.words}; {speed * 3.6:.6g} km/h, {RISE_S:g} s rise from rest",
+    )
+
+
+def half_cosine_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
+    """Weights [-] (1 - cos(pi t / length)) / 2 from 0 to `length` [s], 0 before and 1 after."""
+    return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.clip(time / length, 0.0, 1.0))))

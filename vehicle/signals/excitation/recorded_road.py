@@ -1,0 +1,293 @@
+"""A road that was recorded over time together with the speed of the car, and a drive over it at that speed.
+
+The record holds the height z(t) of the road under the foremost wheels and the speed v(t). The distance is
+
+    s(t) = integral of v from the first time to t,
+
+by the trapezoidal rule, exact for a speed that is linear between its samples. A wheel that stands d behind the
+foremost one meets at the time t what the foremost one met at the time tau, where s(tau) = s(t) - d, so
+
+    z_d(t) = w(tau) (z(tau) - z(first)),    0 where s(t) < d.
+
+w is the rise from rest over `RISE_S`, a part of the road as in `iso_road.drive`. tau is found by linear interpolation
+of the inverse of s between samples h apart, with an error below h^2 |dv/dt| / (8 v): 0.4 us at 1 kHz, 3 m/s2 and 1 m/s.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import scipy
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.excitation.iso_road import RISE_S, Side, half_cosine_at
+from vehicle.signals.excitation.measured_road import TRACKS
+from vehicle.signals.excitation.plausibility import acceleration_events
+from vehicle.signals.excitation.road_drive import AFTER_RISE_S, SKIP_S
+from vehicle.signals.excitation.signal import Signal, uniform_time
+from vehicle.signals.excitation.time_grid import FINE_RATE, SMOOTH_RATE
+from vehicle.signals.records.channel import Measurement
+from vehicle.signals.records.choice import Choice, Chosen, choose
+from vehicle.signals.records.clock import UNIFORM_TOLERANCE
+from vehicle.signals.records.integration import displacement
+from vehicle.signals.records.reader import read_record
+from vehicle.signals.records.resampled import resampled
+from vehicle.signals.records.table import USABLE, Vector
+
+PREFIX = "channel:"
+"""Begins a speed that is the name of a channel."""
+
+FASTEST = 111.0
+"""Largest speed of a record [m/s], 400 km/h; above it its unit is wrong."""
+
+BACKWARDS = 0.3
+"""Largest speed [m/s] below zero that is noise of a sensor at rest."""
+
+STANDING = 0.1
+"""Speed [m/s] below which the car stands."""
+
+NAMES = {
+    "left": (*TRACKS["left"], "displacement_fl", "plate_fl_displacement", "height left", "height_left"),
+    "right": (*TRACKS["right"], "displacement_fr", "plate_fr_displacement", "height right", "height_right"),
+    "height": ("height", "profile", "road", "displacement", "elevation"),
+}
+"""Names of channels, in small letters, that are taken where none is chosen."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RecordedDrive:
+    """A drive over a recorded road at its recorded speed; all wheels follow, each with its own delay.
+
+    Attributes:
+        road: the record.
+        channel: number, exact name, or pattern of the speed.
+        wheels: name of each wheel, its distance d behind the foremost one [m], its track.
+        choice: channels of the heights (left and right, or height for both tracks), and what is done to them.
+        duration: length [s]; the whole record where None.
+        rate: samples a second [Hz].
+        driving: speed at which the tyres roll [m/s]; NaN for the mean speed of the record while the car drives, 0 for
+            tyres that stand, None for what the car itself specifies.
+    """
+
+    road: Path
+    channel: str
+    wheels: tuple[tuple[str, float, Side], ...]
+    choice: Choice = field(default_factory=Choice, hash=False)
+    duration: float | None = None
+    rate: float = FINE_RATE
+    driving: float | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the results: "road_record_recorded"."""
+        return f"road_{self.road.stem}_recorded"
+
+    @property
+    def speed(self) -> None:
+        """No constant speed: a film shows the plates without the road."""
+        return
+
+    def signal(self) -> Signal:
+        """Return the plate signals.
+
+        Raises:
+            ConfigurationError: no such file, or a duration longer than the record.
+            DataError: bad data, or a speed that is none.
+        """
+        measurement = read_record(self.road, self.choice.databases)
+        time, heights, highest, notices = self._heights(measurement)
+        v, said = self._driven(measurement, time)
+        notices += said
+        distance = scipy.integrate.cumulative_trapezoid(v, time, initial=0.0)
+        if distance[-1] < max(behind for _, behind, _ in self.wheels):
+            raise DataError(
+                f"{self.road}: {distance[-1]:.4g} m are driven, less than the wheelbase; use a longer record"
+            )
+        grid = uniform_time(samples=self._samples(float(time[-1] - time[0])), timestep=1.0 / self.rate)
+        plates = {}
+        for wheel, behind, side in self.wheels:
+            late = delayed(time - time[0], distance, grid, behind)
+            spline = scipy.interpolate.CubicSpline(time - time[0], heights[side] - heights[side][0])
+            met = np.isfinite(late)
+            at = np.where(met, late, 0.0)
+            plates[wheel] = np.where(met, spline(at) * half_cosine_at(at, RISE_S), 0.0) + 0.0
+        notices += acceleration_events(plates, 1.0 / self.rate)
+        moving = v[v > STANDING]
+        if self.driving is not None and math.isnan(self.driving):
+            notices.append(
+                f"the tyres roll at the mean speed of the record, {moving.mean():.4g} m/s: their slip at "
+                f"{moving.min():.3g} to {moving.max():.3g} m/s is that of the mean"
+            )
+        return Signal(
+            time=grid,
+            displacement=plates,
+            notices=tuple(dict.fromkeys(notices)),
+            source=f"road of {self.road.name} over time, {distance[-1]:.5g} m at {3.6 * float(moving.min()):.3g} to "
+            f"{3.6 * float(v.max()):.3g} km/h, {RISE_S:g} s rise from rest",
+            sha256=measurement.sha256,
+            highest=highest,
+        )
+
+    @property
+    def skip(self) -> float:
+        """Default start of the evaluation [s], see `RoadDrive.skip`: here by the distance at the recorded speed."""
+        measurement = read_record(self.road, self.choice.databases)
+        time = self._heights(measurement)[0]
+        distance = scipy.integrate.cumulative_trapezoid(self._driven(measurement, time)[0], time, initial=0.0)
+        risen = np.interp(RISE_S + AFTER_RISE_S, time - time[0], distance)
+        reached = int(np.searchsorted(distance, risen + max(behind for _, behind, _ in self.wheels)))
+        last = float(time[min(reached, time.size - 1)] - time[0])
+        return max(SKIP_S, math.ceil(10.0 * last) / 10.0)
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """Parameters that the drive sets on its car, as texts of `Car.load`: the speed at which the tyres roll."""
+        if self.driving is None or not math.isnan(self.driving):
+            return () if self.driving is None else (f"driving.speed={self.driving!r}",)
+        measurement = read_record(self.road, self.choice.databases)
+        v = self._driven(measurement, self._heights(measurement)[0])[0]
+        return (f"driving.speed={round(float(v[v > STANDING].mean()), 2)!r}",)
+
+    def _driven(self, measurement: Measurement, time: Vector) -> tuple[Vector, list[str]]:
+        """Return the speed at the times of the heights [m/s], (n,), and all notices on the speed."""
+        speed = choose(measurement, self._choice_of_speed())
+        if speed.quantities["speed"] != "velocity":
+            raise DataError(
+                f"{self.road}: --speed {PREFIX}{self.channel}: a {speed.quantities['speed']}; needed is a velocity; "
+                "choose another channel, or set --unit speed=km/h or speed=m/s if the file is wrong"
+            )
+        v, notices = self._speed(speed, time)
+        return v, [*notices, *speed.notices]
+
+    def _choice_of_speed(self) -> Choice:
+        """Return the choice of the speed: its own unit, the excerpt of the heights."""
+        given = self.choice
+        times = {role: name for role, name in given.channels.items() if role == "time"}
+        units = {role: unit for role, unit in given.units.items() if role in ("speed", "time")}
+        return Choice(channels={**times, "speed": self.channel}, units=units, first=given.first, last=given.last)
+
+    def _samples(self, length: float) -> int:
+        """Return the number of samples of a record of a length [s]."""
+        if self.duration is not None and not 0.0 < self.duration <= length * (1.0 + 1e-9):
+            raise ConfigurationError(
+                f"--duration {self.duration:g} s: the record holds {length:.6g} s; set up to that, or leave it out"
+            )
+        return int(np.floor((self.duration or length) * self.rate * (1.0 + 1e-12))) + 1
+
+    def _heights(self, measurement: Measurement) -> tuple[Vector, dict[str, Vector], float | None, list[str]]:
+        """Return times [s], the heights of both tracks [m], the highest frequency where it is low, and notices."""
+        roles = self._roles(measurement)
+        choice = replace(self.choice, channels={**self.choice.channels, **roles})
+        units = {role: unit for role, unit in choice.units.items() if role != "speed"}
+        chosen = choose(measurement, replace(choice, units=units))
+        chosen.require_uniform(self.road)
+        values, said = displacement(chosen, choice, str(self.road))
+        notices, time = [*chosen.notices, *said], chosen.time
+        rate = (time.size - 1) / float(time[-1] - time[0])
+        if rate < FINE_RATE * (1.0 - UNIFORM_TOLERANCE):
+            values, how = resampled(time, values, FINE_RATE, lambda row: f"{self.road}: sample {row + 1}", True)
+            time = time[0] + np.arange(next(iter(values.values())).size) / FINE_RATE
+            notices.append(how)
+        slow = chosen.highest < USABLE * SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE)
+        if slow:
+            notices.append(f"the heights hold up to {chosen.highest:.4g} Hz; FRFs and comfort end there")
+        if len(values) == 1:
+            (alone,) = values
+            notices.append(f"{self.road.name}: one track, {roles[alone]!r}: both sides of the car drive on it")
+            values = dict.fromkeys(("left", "right"), values[alone])
+        return time, values, chosen.highest if slow else None, notices
+
+    def _roles(self, measurement: Measurement) -> dict[str, str]:
+        """Return the channels of the heights, by the choice or by their names."""
+        asked = {role: name for role, name in self.choice.channels.items() if role != "time"}
+        unknown = next((role for role in asked if role not in NAMES), None)
+        if unknown is not None:
+            raise ConfigurationError(f"--channel {unknown}=...: roles of a recorded road are left and right, or height")
+        if not asked:
+            held = {one.name.strip().rstrip(".").lower(): one.name for one in measurement.channels}
+            for role, names in NAMES.items():
+                hit = next((held[name] for name in names if name in held), None)
+                if hit is not None and not (role == "height" and asked):
+                    asked[role] = hit
+        if not asked or ("height" in asked and len(asked) > 1):
+            listed = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
+            raise DataError(
+                f"{self.road}: which channels are the heights? set --channel left=NAME --channel right=NAME, or "
+                f"--channel height=NAME for both tracks; the file has {listed}"
+            )
+        return asked
+
+    def _speed(self, speed: Chosen, time: Vector) -> tuple[Vector, list[str]]:
+        """Return the speed at the times of the heights [m/s], (n,), and notices."""
+        own, values = speed.time, speed.values["speed"]
+        slack = 1.5 * float(np.median(np.diff(own)))
+        if own[0] > time[0] + slack or own[-1] < time[-1] - slack:
+            raise DataError(
+                f"{self.road}: the speed is known from {own[0]:.6g} to {own[-1]:.6g} s, the heights from {time[0]:.6g} "
+                f"to {time[-1]:.6g} s; set --from {max(own[0], time[0]):.6g} --to {min(own[-1], time[-1]):.6g}"
+            )
+        low, high = float(values.min()), float(values.max())
+        if low < -BACKWARDS or high > FASTEST or high <= STANDING:
+            raise DataError(
+                f"{self.road}: the speed {self.channel!r} goes from {low:.4g} to {high:.4g} m/s; allowed are "
+                f"{-BACKWARDS:g} to {FASTEST:g} m/s and some motion; is its unit right? set --unit speed=km/h "
+                "or speed=m/s"
+            )
+        found = np.maximum(np.interp(time, own, values), 0.0)
+        standing = float(np.mean(found < STANDING))
+        notices = []
+        if standing > 0.0:
+            notices.append(f"the car stands for {100.0 * standing:.3g} % of the record (below {STANDING:g} m/s)")
+        return found, notices
+
+    def identity(self) -> dict[str, object]:
+        """Return what distinguishes the signal from others: the numbers, and the content of the record."""
+        return {
+            "road": hashlib.sha256(self.road.read_bytes()).hexdigest(),
+            "channel": self.channel,
+            "wheels": self.wheels,
+            "choice": repr(self.choice),
+            "duration": self.duration,
+            "rate": self.rate,
+        }
+
+    def summary(self, signal: Signal) -> Mapping[str, object]:
+        """Return the road for the summary of a run.
+
+        Args:
+            signal: signal of the drive.
+        """
+        return {
+            "class": None,
+            "profile": str(self.road),
+            "speed_kmh": None,
+            "speed_channel": self.channel,
+            "seed": None,
+            "coherence": None,
+            "contact_patch_m": 0.0,
+            "behind_m": {name: behind for name, behind, _ in self.wheels},
+            "words": signal.source,
+        }
+
+
+def delayed(time: Vector, distance: Vector, grid: Vector, behind: float) -> Vector:
+    """Return the times tau [s], (m,), with s(tau) = s(t) - d; NaN before the wheel reaches the beginning of the record.
+
+    Args:
+        time: times of the record [s], (n,), increasing.
+        distance: s at these times [m], (n,), not decreasing.
+        grid: times t [s], (m,), within the record.
+        behind: distance d behind the foremost wheel [m], at least 0.
+    """
+    if behind == 0.0:
+        return grid
+    # A car at rest has many times for one place: the last one, from which it drives on.
+    kept = np.append(np.diff(distance) > 0.0, True)
+    place = np.interp(grid, time, distance) - behind
+    late = np.interp(place, distance[kept], time[kept])
+    return np.where(place < distance[0], np.nan, late)

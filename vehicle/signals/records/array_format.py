@@ -1,0 +1,26 @@
+"""An `.npz` of a run as a measurement."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vehicle.signals.records import npz_format
+from vehicle.signals.records.channel import Channel, Measurement
+from vehicle.signals.records.table import TIME, Wanted, key_column, name_and_unit
+
+
+def read(path: Path) -> Measurement:
+    """Read all arrays that are as long as the time.
+
+    Raises:
+        DataError: as of `vehicle.signals.records.npz_format.read`.
+    """
+    needed = "'time', and an array for each channel"
+    table = npz_format.read(path, Wanted(needed=needed, key=key_column(TIME, needed)))
+    time = table.values[:, table.key]
+    channels = []
+    for index, cell in enumerate(table.header.cells):
+        name, unit = name_and_unit(cell)
+        if index != table.key:
+            channels.append(Channel(name=name, unit=unit or "", values=table.values[:, index], axis=time))
+    return Measurement(path=path, format="npz", channels=tuple(channels), sha256=table.sha256, notices=table.notices)

@@ -1,0 +1,110 @@
+"""Parquet files: columns of numbers, and a column of dates or times as their axis."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.signals.records.channel import Channel, Measurement
+from vehicle.signals.records.clock_text import epoch_seconds
+from vehicle.signals.records.heads import TIME_NAME, split_head
+from vehicle.signals.records.reader import digest, extra
+from vehicle.signals.records.table import Vector
+from vehicle.signals.records.text import MEMORY_LIMIT
+from vehicle.signals.records.units import find_unit
+
+
+def read(path: Path) -> Measurement:
+    """Read all columns of numbers of a flat table.
+
+    Raises:
+        MissingPartError: pyarrow is not installed.
+        DataError: damaged, cut off, encrypted, too large, or without numbers.
+    """
+    extra("pyarrow", "parquet", "a Parquet file")
+    parquet = import_module("pyarrow.parquet")
+    notices: list[str] = []
+    try:
+        with parquet.ParquetFile(path) as file:
+            rows, fields = file.metadata.num_rows, file.schema_arrow
+            wanted = [n for n, one in enumerate(fields) if _is_number(one.type) or _is_date(one.type)]
+            needed = 2 * 8 * rows * len(wanted)
+            if needed > MEMORY_LIMIT:
+                raise DataError(
+                    f"{path}: {len(wanted)} columns of {rows} rows need {needed / 1024**3:.3g} GiB of memory; allowed "
+                    f"{MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts"
+                )
+            left = [one.name for n, one in enumerate(fields) if n not in wanted]
+            table = file.read(columns=[fields[n].name for n in wanted])
+            program = str(file.metadata.created_by or "")
+        columns = [(name, *_column(table.column(n))) for n, name in enumerate(table.column_names)]
+    except DataError:
+        raise
+    except Exception as error:  # damaged files raise what they like
+        told = " ".join(str(error).split())
+        raise DataError(f"{path}: no Parquet file that can be read ({told}); export it again, or as CSV") from None
+    if left:
+        notices.append(f"columns that hold no numbers are left out: {', '.join(map(repr, left[:12]))}")
+    axis, key, start = _axis(columns, notices)
+    channels = []
+    for index, (name, values, _) in enumerate(columns):
+        if index != key:
+            text, unit = split_head(name)
+            channels.append(Channel(name=text, values=np.asarray(values, dtype=np.float64), unit=unit, axis=axis))
+    if not channels or not rows:
+        raise DataError(
+            f"{path}: no column of numbers; it holds {', '.join(map(repr, fields.names[:12])) or 'nothing'}"
+        )
+    return Measurement(
+        path=path,
+        format="parquet",
+        channels=tuple(channels),
+        sha256=digest(path),
+        program=program[:80],
+        start=start,
+        notices=tuple(notices),
+    )
+
+
+def _is_number(kind: Any) -> bool:
+    types = import_module("pyarrow.types")
+    return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_decimal(kind) or types.is_duration(kind))
+
+
+def _is_date(kind: Any) -> bool:
+    return bool(import_module("pyarrow.types").is_timestamp(kind))
+
+
+def _column(column: Any) -> tuple[Any, str]:
+    """Numbers of a column, NaN where there is none, and the unit of a date or a duration; whole counts stay whole."""
+    unit = getattr(column.type, "unit", "") if hasattr(column.type, "unit") else ""
+    if unit:
+        column = column.cast("int64")
+    elif not (column.type.bit_width or 0) or str(column.type).startswith("decimal"):
+        column = column.cast("float64")
+    values = np.asarray(column.to_numpy())
+    return values if unit and values.dtype.kind == "i" else values.astype(np.float64), unit
+
+
+def _axis(columns: list[tuple[str, Any, str]], notices: list[str]) -> tuple[Vector | None, int, str]:
+    """Times [s], their column, and their start: a column of dates, of durations, or one called time with a unit."""
+    for index, (name, values, unit) in enumerate(columns):
+        epoch = epoch_seconds(values, unit) if unit else None
+        if epoch is not None:
+            notices.append(f"dates of column {name!r}: the time begins at {epoch[1]}")
+            return epoch[0], index, epoch[1]
+    for index, (name, values, unit) in enumerate(columns):
+        text, told = split_head(name)
+        known = find_unit(unit or told)
+        if (unit or TIME_NAME.fullmatch(text)) and known is not None and known.quantity == "time":
+            return values * known.factor, index, ""
+    for index, (name, values, _) in enumerate(columns):
+        epoch = epoch_seconds(values, "") if TIME_NAME.fullmatch(split_head(name)[0]) else None
+        if epoch is not None:
+            notices.append(f"column {name!r} counts {epoch[2]} since 1970: the time begins at {epoch[1]}")
+            return epoch[0], index, epoch[1]
+    return None, -1, ""

@@ -1,0 +1,204 @@
+"""Comfort of a record of acceleration after ISO 2631-1 or BS 6841, with the offset of its sensor and its SEAT value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.names import AXES
+from vehicle.signals.analysis.evaluation import (
+    LARGEST_MEAN,
+    OFFSET_EFFECT,
+    application,
+    evaluate,
+    offset_effect,
+    offset_line,
+    without_offset,
+)
+from vehicle.signals.analysis.exposure import RunningAverage
+from vehicle.signals.analysis.seat_value import seat_value
+from vehicle.signals.records.acceleration import read_acceleration
+from vehicle.signals.records.channel_faults import copies
+from vehicle.signals.records.choice import Choice
+from vehicle.signals.records.table import Record
+
+OFFSETS = ("refuse", "remove", "keep")
+"""Treatments of the mean and drift of an axis."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RecordComfort:
+    """Comfort values of a record of acceleration.
+
+    Attributes:
+        summary: all values, see `vehicle.signals.analysis.evaluation.evaluate`, with the treatment of the offset,
+            notices, and the SEAT value where the rail was given.
+    """
+
+    summary: Mapping[str, Any]
+
+    @property
+    def weighted_rms(self) -> dict[str, float]:
+        """Weighted RMS acceleration of each measured axis [m/s2]."""
+        return {axis: float(self.summary[axis]["weighted_rms"]) for axis in AXES if self.summary[axis] is not None}
+
+    @property
+    def overall(self) -> float | None:
+        """Vector sum of the weighted RMS accelerations for comfort [m/s2]; None where an axis is missing."""
+        sums = self.summary["vector_sum"]
+        return None if sums is None else float(sums["weighted_rms"])
+
+    @property
+    def seat_value(self) -> float | None:
+        """SEAT value of the weighted RMS along z [-]; None without a rail."""
+        ratio = self.summary.get("seat_value")
+        return None if ratio is None else float(ratio["rms"])
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """Messages on the record, and reasons for values that do not exist."""
+        return (*self.summary["notices"], *self.summary["reasons"])
+
+    def __repr__(self) -> str:
+        """Return the table of all values."""
+        return self.text()
+
+    def text(self) -> str:
+        """Return the values as a table for the console."""
+        result = self.summary
+        axes = list(self.weighted_rms)
+        lines = [
+            f"{result['input']}: {result['duration_s']:g} s at {result['sampling_rate_hz']:g} Hz, {result['place']} "
+            f"({result['standard']})",
+            f"{'':16}" + "".join(f"{axis:>12}" for axis in axes),
+        ]
+        for title, key, unit in ROWS:
+            cells = [result[axis][key] for axis in axes]
+            shown = ["-" if v is None else v if isinstance(v, str) else f"{v:.4g}" for v in cells]
+            lines.append(f"{title:16}" + "".join(f"{cell:>12}" for cell in shown) + f"  {unit}".rstrip())
+        sums = result["vector_sum"]
+        if sums is not None:
+            lines.append(f"vector sum of RMS (comfort)  {sums['weighted_rms']:.4g} m/s2")
+            if sums["health_weighted_rms"] is not None:
+                lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
+            lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
+        if "seat_value" in result:
+            ratio = result["seat_value"]
+            lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")
+        lines.append("values of this record; no statistical error is given (repeat the ride to see the spread)")
+        return "\n".join(lines)
+
+
+ROWS = (
+    ("weighting", "weighting", ""),
+    ("weighted RMS", "weighted_rms", "m/s2"),
+    ("MTVV", "mtvv", "m/s2"),
+    ("crest factor", "crest_factor", ""),
+    ("VDV", "vdv", "m/s^1.75"),
+    ("estimated VDV", "estimated_vdv", "m/s^1.75"),
+    ("MSDV (Wf)", "msdv", "m/s^1.5"),
+)
+"""Title, key and unit of each row of the table."""
+
+
+def evaluate_comfort(
+    file: Path | str,
+    point: str | None = None,
+    *,
+    choice: Choice | None = None,
+    rail: str | None = None,
+    rail_choice: Choice | None = None,
+    place: str = "seat",
+    offset: str = "refuse",
+    average: RunningAverage = "linear",
+    skip: float = 0.0,
+) -> RecordComfort:
+    """Evaluate a record of acceleration: weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums.
+
+    Args:
+        file: table with the columns time [s], x, y, z [m/s2] or [g], or a measurement file of any format.
+        point: point of a run, as "seat_rail" in its time.csv or time.npz; columns x, y, z by default.
+        choice: channels of a measurement file for x, y and z, their units, rate and excerpt.
+        rail: point below the seat, as "seat_rail", for the SEAT value.
+        rail_choice: the same in a measurement file, with a channel for z.
+        place: point of contact, which selects weightings and factors: seat, backrest, feet, standing, ...
+        offset: mean and drift of an axis: "refuse" where they matter, "remove", or "keep" for a record from rest.
+        average: running average of the MTVV, "linear" or "exponential".
+        skip: time left out at the beginning of the weighted records [s].
+
+    Returns:
+        All values; `print` shows them as a table.
+
+    Raises:
+        ConfigurationError: no such file or place, or a SEAT value of a place that is no seat.
+        DataError: bad data, or a mean or drift that matters.
+
+    Source: ISO 2631-1:1997; BS 6841:1987; ISO 10326-1 (SEAT).
+    """
+    application(place)
+    if offset not in OFFSETS:
+        raise ConfigurationError(f"offset: found {offset!r}, must be one of {', '.join(OFFSETS)}")
+    seated = rail is not None or rail_choice is not None
+    if seated and place not in ("seat", "seat_bs6841"):
+        raise ConfigurationError(f"--place {place}: --rail asks for the value of a seat; leave one of them out")
+    record = _read(file, point, choice, place, offset)
+    axes, xyz = list(record.channels), np.array(list(record.channels.values()))
+    twice = [
+        f"{one} and {other} hold the same samples, which the vector sum counts twice: was a channel copied, or chosen "
+        f"twice? Choose another: --channel {other}=NAME"
+        for one, other in copies(record.channels)
+    ]
+    removed = offset == "remove"
+    result = evaluate(
+        record.step,
+        without_offset(xyz) if removed else xyz,
+        place=place,
+        average=average,
+        skip=skip,
+        from_rest=offset == "keep",
+        axes=axes,
+        highest=record.usable,
+    )
+    line = offset_line(xyz)
+    about = {
+        "treatment": "removed" if removed else "kept",
+        "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
+        "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
+    }
+    summary = {"input": str(file), "offset": about, **result, "notices": [*record.notices, *twice]}
+    if seated:
+        below = _read(file, rail, rail_choice, place, offset, judged="z")
+        if "z" not in record.channels or "z" not in below.channels:
+            raise ConfigurationError("--rail: the value of a seat is that of z, which was not measured at both places")
+        both = np.array([record.channels["z"], below.channels["z"]])
+        both = without_offset(both) if removed else both
+        summary["seat_value"] = asdict(seat_value(record.step, both[0], both[1], place=place, skip=skip))
+    return RecordComfort(summary)
+
+
+def _read(
+    file: Path | str, point: str | None, choice: Choice | None, place: str, offset: str, judged: str = "xyz"
+) -> Record:
+    """Read the acceleration of a point; refuse a mean and drift of the judged axes that matter."""
+    record = read_acceleration(file, point, choice)
+    if offset != "refuse":
+        return record
+    xyz = np.array(list(record.channels.values()))
+    line = offset_line(xyz)
+    effects = offset_effect(record.step, xyz, place=place, axes=list(record.channels))
+    for axis, effect, mean, drift in zip(
+        record.channels, effects, xyz.mean(axis=1), line[:, -1] - line[:, 0], strict=True
+    ):
+        if axis in judged and (effect > OFFSET_EFFECT or abs(mean) > LARGEST_MEAN):
+            raise DataError(
+                f"{file}: the mean of column {axis!r} is {mean:.4g} m/s2, its drift {drift:.2g} m/s2; "
+                f"they change its weighted RMS or VDV by {100 * effect:.3g} %, allowed are "
+                f"{100 * OFFSET_EFFECT:g} % and a mean of {LARGEST_MEAN:g} m/s2; give --offset remove if it is a "
+                "sensor's offset or gravity, --offset keep if the record starts at rest and the mean is real"
+            )
+    return record

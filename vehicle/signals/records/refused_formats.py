@@ -1,0 +1,70 @@
+"""Formats that are recognised and not read: the error names the format and what to export instead."""
+
+from __future__ import annotations
+
+from vehicle.errors import DataError
+from vehicle.signals.records.signatures import Head
+
+SIGNATURES = {
+    b"|CF,": ("FAMOS", "UFF 58, MAT or CSV"),
+    b"<usi:tdm": ("TDM", "TDMS or CSV"),
+    b"DEWESOFT": ("Dewesoft", "UFF 58, MAT or MDF4"),
+    b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
+    b"LOGG": (
+        "a log of a CAN bus (Vector BLF)",
+        "MDF4 or ASC, as `python -m can.logconvert IN.blf OUT.asc` of python-can does, and give --dbc FILE with it",
+    ),
+    b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, as `ulog2csv FILE` of pyulog does"),
+}
+"""First bytes: name of the format, and what to export instead."""
+
+ENDINGS = {
+    ".tdm": SIGNATURES[b"<usi:tdm"],
+    ".dxd": SIGNATURES[b"DEWESOFT"],
+    ".d7d": SIGNATURES[b"DEWESOFT"],
+    ".op2": SIGNATURES[b"$OP2"],
+    ".bin": ("Catman or raw numbers", "MAT, MDF4 or CSV"),
+    ".tst": ("Catman", "MAT, MDF4 or CSV"),
+    ".sie": ("SoMat SIE", "RPC III or CSV"),
+    ".dac": ("nCode DAC", "RPC III or CSV"),
+    ".xls": ("Excel before 2007", "XLSX or CSV"),
+    ".lms": ("a Testlab project", "UFF 58 or MAT"),
+    ".pti": ("PULSE time", "UFF 58"),
+    ".atfx": ("ATFX", "UFF 58 or MAT"),
+    ".mp3": ("compressed sound", "WAV"),
+    ".flac": ("compressed sound", "WAV"),
+}
+"""Ending of the name: the same, for binary files without a known signature."""
+
+EBML_SIGNATURE = b"\x1aE\xdf\xa3"
+TEXT_ENDINGS = (".csv", ".txt", ".asc")
+
+
+def refuse(head: Head) -> None:
+    """Raise the error of a file that no reader accepts; return for a file that may be text.
+
+    Args:
+        head: beginning of a file that no format of `vehicle.signals.records.formats` recognises.
+
+    Raises:
+        DataError: a known format that is not read, or binary data.
+    """
+    path, data, ending = head.path, head.data, head.path.suffix.lower()
+    if data.startswith(EBML_SIGNATURE):
+        if b"mide" in data[:64]:
+            raise DataError(
+                f"{path}: is an enDAQ IDE recording, which is not read; export CSV from enDAQ Lab, or with Python: "
+                f"endaq.ide.to_pandas(endaq.ide.get_doc({path.name!r}).channels[8]).to_csv('{path.stem}.csv')"
+            )
+        raise DataError(f"{path}: is a film or another EBML file, which is not read; give a record of measurements")
+    for signature, (name, instead) in SIGNATURES.items():
+        if data.startswith(signature) or (signature == b"<usi:tdm" and signature in data):
+            raise DataError(f"{path}: is {name}, which is not read; export {instead}")
+    if ending in TEXT_ENDINGS:
+        return  # the reader of text names the byte that is not text
+    if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        name, instead = ENDINGS.get(ending, ("of no known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
+        raise DataError(f"{path}: binary file, {name}, which is not read; export {instead}")
+    if ending in ENDINGS and not data.isascii():
+        name, instead = ENDINGS[ending]
+        raise DataError(f"{path}: is {name}, which is not read; export {instead}")

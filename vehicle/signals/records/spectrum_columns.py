@@ -1,0 +1,61 @@
+"""Columns over frequency that belong together: real and imaginary part, magnitude and phase, coherence."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vehicle.signals.records.channel import Channel
+from vehicle.signals.records.units import find_unit
+
+_PART = re.compile(
+    r"(?P<head>.*?)[ _.:,-]*\(?(?:(?P<real>re|real)|(?P<imaginary>im|imag|imaginary)|(?P<magnitude>mag|magnitude|ampl?|"
+    r"amplitude|abs|modulus)|(?P<phase>phase|angle|arg)|(?P<coherence>coh|coherence|gamma2))\)?(?:[ _]?part)?",
+    re.IGNORECASE,
+)
+
+
+def joined(channels: Sequence[Channel]) -> tuple[Channel, ...]:
+    """Channels with real and imaginary parts, or magnitudes and phases, made one frequency response each.
+
+    Args:
+        channels: columns over one frequency axis: `H real`, `H imag`; `H_magnitude`, `H_phase [deg]`; `H coherence`.
+
+    Returns:
+        The responses in the places of their first parts; columns without a partner stay as they are.
+    """
+    parts: dict[str, dict[str, int]] = {}
+    for index, one in enumerate(channels):
+        match = _PART.fullmatch(one.name.strip())
+        if match:
+            kind = next(name for name, text in match.groupdict().items() if text and name != "head")
+            parts.setdefault(match["head"].strip().lower(), {}).setdefault(kind, index)
+    found: dict[int, Channel | None] = dict(enumerate(channels))
+    for held in parts.values():
+        if "coherence" in held:
+            found[held["coherence"]] = replace(channels[held["coherence"]], function="coherence")
+        first, second = ("real", "imaginary") if "real" in held else ("magnitude", "phase")
+        if first not in held or second not in held:
+            continue
+        upper, lower = channels[held[first]], channels[held[second]]
+        if first == "real":
+            if lower.unit not in ("", upper.unit):
+                continue
+            values = np.asarray(upper.values + 1j * lower.values, dtype=np.complex128)
+        else:
+            unit = find_unit(lower.unit or "deg")
+            if unit is None or unit.quantity != "angle":
+                continue
+            values = np.asarray(upper.values * np.exp(1j * unit.factor * lower.values), dtype=np.complex128)
+        match = _PART.fullmatch(upper.name.strip())
+        assert match is not None
+        name = match["head"].strip() or "frequency response"
+        remark = f"of the columns {upper.name!r} and {lower.name!r}" + (
+            "; phase taken in degrees" if first == "magnitude" and not lower.unit else ""
+        )
+        found[held[first]] = replace(upper, name=name, values=values, function="frequency response", remark=remark)
+        found[held[second]] = None
+    return tuple(one for one in found.values() if one is not None)

@@ -1,0 +1,121 @@
+"""Universal files: functions at nodes, geometry and mode shapes, read with the traps that real files hold.
+
+Source: Universal File Datasets, University of Cincinnati SDRL, datasets 15, 18, 55, 58, 58b, 82, 151, 164, 2411, 2412
+and 2414.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.signals.records.channel import Channel, Measurement
+from vehicle.signals.records.geometry import ModeShape
+from vehicle.signals.records.reader import digest
+from vehicle.signals.records.uff_blocks import BEGIN, END, Block, text_of
+from vehicle.signals.records.uff_function import read_function
+from vehicle.signals.records.uff_geometry import Nodes, Units, read_units
+from vehicle.signals.records.uff_shapes import read_shape
+
+
+def read(path: Path) -> Measurement:
+    """Read all functions, mode shapes and the geometry of a file.
+
+    Raises:
+        DataError: damaged, cut off, or without any of them.
+    """
+    data = path.read_bytes()
+    channels: list[Channel] = []
+    late: list[tuple[int, str, list[bytes]]] = []
+    others: Counter[str] = Counter()
+    units: Units | None = None
+    nodes = Nodes()
+    program = start = ""
+    position = 0
+    while (match := BEGIN.search(data, position)) is not None:
+        block = Block(int(match[1]), match[2] == b"b", match[3], match.end())
+        where = f"dataset {block.number} at byte {match.start()}"
+        if block.number == 58:
+            channel, date, position = read_function(path, data, block, f"{where} (function {len(channels) + 1})", units)
+            channels.append(channel)
+            start = start or date
+            continue
+        end = END.search(data, block.start - 1)
+        if end is None:
+            raise DataError(f"{path}: {where} has no end; the file was cut off; export it again")
+        lines = data[block.start : end.start()].splitlines()
+        if block.number == 164:
+            units = read_units(path, where, lines)
+        elif block.number == 151:
+            program = text_of(lines[2])[:40] if len(lines) > 2 else ""
+        elif block.number in (55, 2414):
+            late.append((block.number, where, lines))  # axis systems may stand behind
+        elif not nodes.read(path, block.number, where, lines):
+            others[str(block.number)] += 1
+        position = end.end() - 1
+    shapes: list[ModeShape] = []
+    for number, where, lines in late:
+        shape = read_shape(path, number, where, lines, nodes, units or Units())
+        if isinstance(shape, ModeShape):
+            shapes.append(shape)
+        else:
+            others[f"{number}, {shape}"] += 1
+    held = ", ".join(f"{what} ({count})" for what, count in sorted(others.items()))
+    if not channels and not shapes and not nodes.at:
+        raise DataError(
+            f"{path}: no function, mode shape or node in this universal file; its datasets: {held or 'none'}; export "
+            "the time histories or frequency responses as UFF 58, or mode shapes as UFF 55"
+        )
+    geometry = nodes.geometry(units or Units())
+    notices = [f"other datasets: {held}"] if held else []
+    if nodes.at:
+        notices.append(f"{len(geometry.points)} nodes, {len(geometry.lines)} lines and elements")
+    if units is None and (nodes.at or shapes):
+        notices.append("no dataset 164: coordinates are taken in m")
+    return Measurement(
+        path=path,
+        format="uff",
+        channels=_named([_turned(one, nodes) for one in channels]),
+        sha256=digest(path),
+        program=program,
+        start=start,
+        notices=tuple(notices),
+        geometry=geometry,
+        shapes=tuple(shapes),
+    )
+
+
+def _turned(channel: Channel, nodes: Nodes) -> Channel:
+    """The direction of a channel in the global axes; a remark where it lies along none of them."""
+    if channel.direction[1:] not in ("X", "Y", "Z") or not channel.place.isdecimal():
+        return channel
+    axes = nodes.directions(int(channel.place))
+    if np.array_equal(axes, np.eye(3)):
+        return channel
+    along = axes[:, "XYZ".index(channel.direction[1])] * (-1.0 if channel.direction[0] == "-" else 1.0)
+    largest = int(np.argmax(np.abs(along)))
+    said = f"{channel.direction} of the node's own axes"
+    if abs(along[largest]) > 1.0 - 1e-5:
+        sign = "+" if along[largest] > 0.0 else "-"
+        return replace(channel, direction=f"{sign}{'XYZ'[largest]}", remark=_joined(channel.remark, said))
+    shown = ", ".join(f"{value:.3g}" for value in along)
+    return replace(channel, direction="", remark=_joined(channel.remark, f"{said}, along ({shown})"))
+
+
+def _joined(*texts: str) -> str:
+    return "; ".join(text for text in texts if text)
+
+
+def _named(channels: list[Channel]) -> tuple[Channel, ...]:
+    """The text of a set is its name where it tells it from the others; else its place and direction are."""
+    texts = Counter(one.name for one in channels)
+    named = []
+    for one in channels:
+        point = one.place + one.direction + (f"/{one.reference}" if one.reference else "")
+        alone = one.name and texts[one.name] == 1
+        named.append(one if alone or not point else replace(one, name=point))
+    return tuple(named)

@@ -1,0 +1,72 @@
+"""WAV files of recorders: integers of 8 to 32 bits or floating point; one is full scale, whose value the user knows."""
+
+from __future__ import annotations
+
+import struct
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.signals.records.channel import Channel, Measurement, check_length, uniform_axis
+from vehicle.signals.records.reader import digest
+
+
+def read(path: Path) -> Measurement:
+    """Read all channels; integers become shares of full scale.
+
+    Raises:
+        DataError: damaged, cut off, or compressed.
+    """
+    from scipy.io import wavfile
+
+    _check_chunks(path)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            warnings.filterwarnings("ignore", message="Chunk .* not understood")
+            rate, data = wavfile.read(path)
+    except (
+        ValueError,
+        TypeError,
+        EOFError,
+        OSError,
+        struct.error,
+        OverflowError,
+        ZeroDivisionError,
+        wavfile.WavFileWarning,
+    ) as error:
+        raise DataError(f"{path}: no WAV file that can be read ({error}); export it as uncompressed WAV") from None
+    if data.size == 0 or rate <= 0:
+        raise DataError(f"{path}: {data.size} samples at {rate} Hz; needed is a record")
+    if not np.isfinite(data).all():
+        raise DataError(f"{path}: holds numbers that are not finite; repair the record")
+    values = data.reshape(len(data), -1).astype(np.float64)
+    if data.dtype.kind == "u":
+        values = (values - 128.0) / 128.0
+    elif data.dtype.kind == "i":
+        values /= -float(np.iinfo(data.dtype).min)
+    axis = uniform_axis(len(values), 1.0 / rate)
+    remark = "no unit: shares of full scale; its value is given as --unit '12.5 mm', with the number"
+    channels = tuple(
+        Channel(name=f"channel {n + 1}", values=values[:, n].copy(), axis=axis, remark=remark)
+        for n in range(values.shape[1])
+    )
+    return Measurement(path=path, format="wav", channels=channels, sha256=digest(path))
+
+
+def _check_chunks(path: Path) -> None:
+    """Refuse a chunk that claims more than the file holds."""
+    data = path.read_bytes()
+    order = ">" if data[:4] == b"RIFX" else "<"
+    position = 12
+    while position + 8 <= len(data):
+        name, size = data[position : position + 4], struct.unpack(f"{order}I", data[position + 4 : position + 8])[0]
+        if name == b"data" and data[:4] == b"RF64":
+            return
+        check_length(path, size, len(data) - position - 8, f"chunk {name.decode('latin-1')!r}")
+        if name == b"data":
+            return
+        position += 8 + size + size % 2
+    raise DataError(f"{path}: no chunk of data; the file was cut off; export it again")

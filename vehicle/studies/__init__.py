@@ -1,0 +1,1 @@
+"""Studies of many runs: sweeps, tuning, optimisation, replication of drive signals."""

@@ -1,0 +1,131 @@
+"""Files of a drive that was found from a response: the drive, what it was asked for and what answers, the iteration."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.drawing.rendering.drive_plot import plot_convergence, plot_replication
+from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
+from vehicle.runs.output.own_files import parameters_text, write_own_files
+from vehicle.signals.excitation.signal_file import write_signal
+from vehicle.signals.records.formats import write_record
+from vehicle.signals.records.table import Record
+from vehicle.studies.replication.found_drive import FoundDrive
+from vehicle.studies.replication.iteration import Replication
+
+FILES = {
+    "drive": "drive.csv",
+    "response": "response.csv",
+    "iterations": "iterations.csv",
+    "response_plot": "response.png",
+    "convergence_plot": "convergence.png",
+    "vehicle": "vehicle.toml",
+    "summary": "summary.json",
+}
+
+
+def save_drive(
+    drive: FoundDrive, folder: Path | str, *, force: bool = False, protect: tuple[Path, ...] = ()
+) -> dict[str, Any]:
+    """Write the files of a drive: plate signals, response, iterations, pictures, parameters, summary.
+
+    Args:
+        drive: result of `replicate_drive`.
+        folder: name of the folder.
+        force: replace what was written there before.
+        protect: input files; a folder that holds one of them is never replaced.
+
+    Returns:
+        The content of `summary.json`.
+
+    Raises:
+        ConfigurationError: the folder exists without `force`, or holds other files.
+        OutputError: a file cannot be written.
+    """
+    with output_folder(Path(folder), force=force, protect=protect) as work:
+        return write_drive(work, drive)
+
+
+def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
+    """Write all files of a drive; arguments and result as of `save_drive`, the folder as of `output_folder`."""
+    found, plant, run = drive.replication, drive.plant, drive.run
+    target = plant.target
+    signal, low, high = plant.signal(found.drive), *target.band
+    last = found.steps[-1]
+    errors = dict(zip(target.channels, min(found.steps, key=lambda step: step.error).errors.tolist(), strict=True))
+    about = (
+        f"{target.source.name}, {low:g} to {high:g} Hz; tyres {run.car.vehicle.driving.words}; "
+        f"{run.recording.statistics.engine} engine; error "
+        f"{100.0 * found.error:.3g} % after {last.number} runs"
+    )
+    said = [f"plate displacement found from {target.source.name}", f"{low:g} to {high:g} Hz"]
+    write_whole(folder / FILES["drive"], lambda path: write_signal(path, signal, said))
+    channels: dict[str, np.ndarray] = {}
+    for name, wanted, answered in zip(target.channels, target.values, found.response, strict=True):
+        channels |= {f"target_{name}": wanted, name: answered}
+    record = Record(time=target.time, channels=channels, units=dict.fromkeys(channels, "m/s2"))
+    write_whole(folder / FILES["response"], lambda path: write_record(path, "csv", record, about))
+    write_text(folder / FILES["iterations"], _table(found, target.channels, about))
+    write_whole(
+        folder / FILES["response_plot"],
+        lambda path: plot_replication(
+            path,
+            target.time,
+            {name: (target.values[row], found.response[row]) for row, name in enumerate(target.channels)},
+            dict(zip(plant.wheels, found.drive, strict=True)),
+            target.band,
+            about,
+        ),
+    )
+    write_whole(
+        folder / FILES["convergence_plot"],
+        lambda path: plot_convergence(
+            path,
+            {name: np.array([step.errors[row] for step in found.steps]) for row, name in enumerate(target.channels)},
+            np.array([step.kept for step in found.steps]),
+            f"{about}; {found.outcome}",
+        ),
+    )
+    write_text(folder / FILES["vehicle"], parameters_text(plant.car, "parameters of this drive, as used"))
+    summary = {
+        "target": {
+            "file": target.source.name,
+            "sha256": target.sha256,
+            "channels": list(target.channels),
+            "duration_s": float(target.time[-1]),
+            "band_hz": list(target.band),
+        },
+        "drive": {
+            "wheels": list(plant.wheels),
+            "rms_m": {wheel: signal.rms(wheel) for wheel in plant.wheels},
+            "largest_m": {wheel: float(np.max(np.abs(signal.displacement[wheel]))) for wheel in plant.wheels},
+        },
+        "error": found.error,
+        "errors": errors,
+        "reached": found.reached,
+        "outcome": found.outcome,
+        "engine": run.recording.statistics.engine,
+        "engine_reason": run.engine_reason,
+        "equivalent_damping": {one.name: float(value) for one, value in zip(plant.dampers, plant.damping, strict=True)},
+        "iterations": [
+            {"number": step.number, "gain": step.gain, "error": step.error, "kept": step.kept} for step in found.steps
+        ],
+        "notices": [*target.notices, *plant.ramp, *run.recording.statistics.warnings],
+        "files": FILES | write_own_files(folder, plant.car),
+    }
+    write_json(folder / FILES["summary"], summary)
+    return summary
+
+
+def _table(found: Replication, channels: tuple[str, ...], about: str) -> str:
+    rows = [
+        f"{step.number},{step.gain:g},{int(step.kept)},{step.error:.9g},"
+        + ",".join(f"{value:.9g}" for value in step.errors)
+        for step in found.steps
+    ]
+    heads = ",".join(["iteration", "gain", "kept", "error", *(f"error_{name}" for name in channels)])
+    return "\n".join([f"# {about}", "# error: RMS of target minus response over RMS of target, in the band [-]", heads,
+                      *rows, ""])  # fmt: skip

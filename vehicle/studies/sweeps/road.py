@@ -1,0 +1,110 @@
+"""Records of road as inputs of a sweep, and what is read off a run on one."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+
+from vehicle.names import across
+from vehicle.runs.car import SATURATED_VELOCITY, Run
+from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.signals.analysis.slip import slip_shares
+from vehicle.signals.excitation.exact_road import RATE_HZ, road
+from vehicle.signals.excitation.signal import Signal
+from vehicle.studies.sweeps.measure import of_one
+from vehicle.studies.sweeps.runs import Runs, Vector
+
+SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoadInput:
+    """A record of road as the input of a sweep; `wheel` drives on it, the other arguments are those of `road`."""
+
+    name: str
+    rms: float
+    seed: int
+    duration: float
+    lead: float
+    lower_band_edge: float
+    wheel: str = "fr"
+
+    def signal(self) -> Signal:
+        """Generate the road."""
+        made = road(
+            rms=self.rms, seed=self.seed, duration=self.duration, lead=self.lead, lower_band_edge=self.lower_band_edge
+        )
+        (plate,) = made.displacement.values()
+        return replace(made, displacement={self.wheel: plate})
+
+    def identity(self) -> dict[str, object]:
+        """What the runs depend on."""
+        return {"sha256": hashlib.sha256(self.signal().displacement[self.wheel].tobytes()).hexdigest(), **asdict(self)}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RoadMeasure:
+    """Turns a run on a road into numbers.
+
+    `comfort` is sqrt(RMSx^2 + RMSy^2 + RMSz^2) of the seat rail, unfiltered, 2 to 50 Hz; `gaussian_error` its standard
+    error over Gaussian roads of this spectrum, see `vehicle.signals.analysis.comfort_error`; `slip` and `slip_left` are
+    shares of the time above the slip velocity, damper over the shaker and its counterpart; `saturated` is the share
+    above 1 mm/s over the shaker; `lowest_load` that of the tyre on it; `pulling` the share of the time with a negative
+    load.
+
+    Attributes:
+        lead: seconds at the beginning that are left out.
+        wheel: that the road drives.
+        timestep: longest step of the reduced engine [s].
+    """
+
+    lead: float
+    wheel: str = "fr"
+    timestep: float = 5e-4
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are needed."""
+        return (*SEAT_RAIL, *self._dampers, f"tyre_{self.wheel}_force_z")
+
+    @property
+    def _dampers(self) -> tuple[str, str]:
+        return f"damper_{self.wheel}_velocity", f"damper_{across(self.wheel)}_velocity"
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name of each number to its unit."""
+        return {
+            "comfort": "m/s2",
+            "gaussian_error": "m/s2",
+            "slip": "-",
+            "slip_left": "-",
+            "saturated": "-",
+            "lowest_load": "N",
+            "pulling": "-",
+        }
+
+    def __call__(self, run: Run) -> dict[str, float]:
+        """The numbers of a run."""
+        return of_one(self, run)
+
+    def of(self, runs: Runs) -> dict[str, Vector]:
+        """The numbers of several runs."""
+        # The record ends with the sample that begins its next period.
+        record = slice(round(self.lead * RATE_HZ) + 1, None)
+        found = comfort_values(runs.timestep, runs.stacked(*SEAT_RAIL)[:, :, record])
+        right, left = (runs[name][:, record] for name in self._dampers)
+        load = runs[f"tyre_{self.wheel}_force_z"][:, record]
+        limit = runs.slip_velocity
+        return {
+            "comfort": found.overall,
+            "gaussian_error": found.error * found.overall,
+            "slip": slip_shares(right, limit),
+            "slip_left": slip_shares(left, limit),
+            "saturated": slip_shares(right, np.full_like(limit, SATURATED_VELOCITY)),
+            "lowest_load": np.min(load, axis=1),
+            "pulling": np.mean(load < 0.0, axis=1),
+        }
