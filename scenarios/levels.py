@@ -65,9 +65,6 @@ Vector = npt.NDArray[np.float64]
 PUBLISHED_SLIP = {"low": (0.0, 0.0), "mid": (0.039, 0.0), "high": (0.218, 0.0)}
 """Share of the time in slip of the right and the left damper (table 3.2)."""
 
-SLIP_TOLERANCE = 0.03
-"""Of the comparison of both velocities in `scenarios.published`; the rows have the error of `scenarios.evidence`."""
-
 WHEEL_HZ = 28.0
 """Vertical wheel mode, dampers stuck [Hz] (section 3.2.1)."""
 

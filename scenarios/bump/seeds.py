@@ -77,8 +77,8 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
     """Run both bumps with many seeds of the noise, and the high one with other friction limits.
 
     Args:
-        runs: the car. The reduced engine runs it, where there is a compiler: the parts turn by less than what it
-            vouches for, and one of its runs is beside that of MuJoCo in the notes.
+        runs: the car. The reduced engine runs it, where there is a compiler: the parts turn by less than its
+            limit of validity.
         reading: of the printed amplitude.
         frictions: limits Fd [N].
         count: seeds.
