@@ -1,0 +1,207 @@
+"""Count candidates of compressed or private English in the sources; `plainness.py DIR [--list N] [--json FILE] [--kind K]`.
+
+Every count is a candidate, not a verdict: a reader decides. The sum per 1 000 lines is the number to bring down.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import collections
+import io
+import json
+import re
+import tokenize
+from pathlib import Path
+
+NAMES = {
+    "found": "say what: faults, rows, results, records",
+    "one": "name the item: damper, output, line",
+    "own": "name it: vehicle, points, values",
+    "some": "subset, batch",
+    "made": "built, elements, step_matrix",
+    "given": "user_values, options",
+    "place": "point, output_point, index",
+    "places": "points, output_points",
+    "taken": "used",
+    "told": "known, stated",
+    "what": "quantity, subject",
+    "about": "description, metadata",
+    "here": "block, sample_range",
+    "rest": "remainder, residual",
+    "known": "basis_coefficients, known_points",
+    "most": "maximum",
+    "least": "minimum",
+    "together": "batch",
+    "alone": "single",
+    "many": "batch",
+    "kind": "element_type (where it is a type)",
+    "words": "message",
+    "answers": "outputs",
+    "drives": "inputs",
+    "bends": "breakpoints",
+    "reach": "sparsity, columns",
+    "turning": "rotation",
+    "heights": "plate_displacement",
+}
+"""Identifiers assigned in a function (also arguments and loop variables) that say nothing of the thing."""
+
+PHRASES = {
+    "as of X": r"\bas of (?:`|a |an |the |[A-Z])",
+    "that answers": r"\b(?:that|which|what|with which|it) answers?\b|\banswers (?:the|a|it|as)\b",
+    "what ... is/does": r"^(?:What|Where|When|How|Why|Whose|Which|Who)\b(?!.*\?)",
+    "one of many": r"\b(?:each|every|any|the|this|that|an?other|no) one\b|\bone by one\b|\bones\b|: one\b|\bone (?:that|which|with|of its)\b",
+    "own": r"\b(?:its|their|of its|an?|your|her) own\b|\bof your own\b|\bof its own\b",
+    "such": r"\bsuch (?:a |an )?(?:one|file|thing|of|numbers|that)?\b",
+    "does/do alone": r"\b(?:does|do|may|can|will|has|have|is|are) ?(?:[.,;:)]|$|, )|\bdoes it\b|\bthat do\b|\bthat may\b",
+    "else/beside/behind": r"\bbeside\b|\bbehind (?:it|a|the|--|this)\b|\bbut for\b|\bsave for\b|\bwhere none\b|\bfor which none\b",
+    "none/nothing": r"\b[Nn]one (?:is|are|of|where|for|that)\b|\bnothing (?:is|else|that)\b|\b(?:is|are) none\b",
+    "personified": r"\b(?:says?|tells?|told|asks?|knows?|wants?|answers?|meets?|gives? way|takes? part|stands?|lies|looks)\b",
+    "house words": r"\b(?:house|room|rooms|floor of|sentence|riddle|marched|march(?:es)?|lanes?|plates?' |trimmed|car of source \d)\b",
+    "leading 'A ... into'": r"^(?:A|An|The) [\w ,-]+ (?:into|to|as|from) [\w ,-]+[.;]?$",
+}
+"""Phrases in docstrings, comments and messages."""
+
+VERBS = re.compile(
+    r"\b(?:is|are|was|were|be|been|has|have|had|do|does|did|can|may|must|will|would|should|could|"
+    r"returns?|computes?|reads?|writes?|makes?|adds?|gives?|takes?|raises?|builds?|finds?|checks?|runs?|sets?|gets?|"
+    r"holds?|keeps?|solves?|fits?|draws?|plots?|converts?|loads?|saves?|creates?|stores?|evaluates?|calculates?|"
+    r"yields?|uses?|applies|apply|selects?|prints?|shows?|describes?|contains?|represents?|integrates?|advances?|"
+    r"refuses?|rejects?|estimates?|interpolates?|assembles?|simulates?|optimises?|measures?|lists?|needs?|starts?|"
+    r"stops?|ends?|moves?|turns?|changes?|removes?|replaces?|follows?|depends?|allows?|counts?|splits?|merges?|"
+    r"combines?|compares?|scales?|maps?|maximum|require[sd]?|ensure[sd]?|parses?|opens?|closes?|sorts?|works?|"
+    r"\w+(?:ify|ifies|ise|ises|ize|izes|ate|ates)|[a-z]+ed)\b",
+    re.IGNORECASE,
+)
+"""A rough list: a first sentence of a function without any of these has no verb."""
+
+PRONOUN = re.compile(
+    r"\b(?:it|its|they|them|these|those|that|this|what|which|one|none|such|both|all|else|each)\b", re.IGNORECASE
+)
+
+
+def sentences(text: str) -> list[str]:
+    """First-class sentences of a docstring's prose, without sections, formulas, and tables."""
+    head = re.split(r"\n\s*(?:Args|Returns|Raises|Attributes|Yields):", text)[0]
+    lines = [line for line in head.split("\n") if not line.startswith("    ") and "|" not in line]
+    return [part.strip() for part in re.split(r"(?<=[.;:?])\s+", " ".join(lines)) if len(part.split()) > 2]
+
+
+def strings(tree: ast.AST) -> list[tuple[int, str]]:
+    """Messages: texts of raised errors, warnings, help, notices; f-strings with {} for values."""
+    out = []
+    for node in ast.walk(tree):
+        values: list[ast.expr] = []
+        if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
+            values = list(node.exc.args)
+        elif isinstance(node, ast.Call):
+            values = [k.value for k in node.keywords if k.arg in ("help", "description", "why", "meaning", "epilog")]
+        for value in values:
+            if isinstance(value, ast.Constant) and isinstance(value.value, str):
+                out.append((value.lineno, value.value))
+            elif isinstance(value, ast.JoinedStr):
+                parts = [str(v.value) if isinstance(v, ast.Constant) else "{}" for v in value.values]
+                out.append((value.lineno, "".join(parts)))
+    return out
+
+
+WORDS = collections.Counter[str]()
+"""Words of prose that were looked at: the measure for peers with fewer docstrings."""
+
+
+def examine(path: Path) -> tuple[collections.Counter[str], list[tuple[str, int, str]]]:
+    """Candidates of a file."""
+    source = path.read_text(encoding="utf-8")
+    tree = ast.parse(source)
+    hits: list[tuple[str, int, str]] = []
+    functions = [n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef)]
+    for f in functions:
+        bound = {n.id: n.lineno for n in ast.walk(f) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+        bound |= {a.arg: a.lineno for a in ast.walk(f) if isinstance(a, ast.arg)}
+        hits += [(f"name: {n}", line, f.name) for n, line in bound.items() if n in NAMES]
+    texts: list[tuple[int, str]] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            text = ast.get_docstring(node)
+            if text is None:
+                continue
+            line = getattr(node, "lineno", 1)
+            first = sentences(text)[:1]
+            if first and not isinstance(node, ast.Module):
+                WORDS["first lines"] += 1
+                words = len(first[0].split())
+                if isinstance(node, ast.FunctionDef) and not VERBS.search(first[0]):
+                    hits.append(("sentence without verb", line, first[0]))
+                if words >= 5 and len(PRONOUN.findall(first[0])) * 5 >= words:
+                    hits.append(("riddle: pronouns for nouns", line, first[0]))
+            texts += [(line, s) for s in sentences(text)]
+            sections = re.split(r"\n\s*(?:Args|Returns|Raises|Attributes|Yields):", text)[1:]
+            texts += [(line, s.strip()) for part in sections for s in part.split("\n") if s.strip()]
+        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            texts += [(node.lineno, s) for s in sentences(node.value.value)]
+    texts += strings(tree)
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT and "noqa" not in token.string and "type:" not in token.string:
+            texts.append((token.start[0], token.string.lstrip("# ")))
+    WORDS["prose"] += sum(len(text.split()) for _, text in texts)
+    WORDS["functions"] += len(functions)
+    for line, text in texts:
+        for name, pattern in PHRASES.items():
+            if re.search(pattern, text):
+                hits.append((name, line, text))
+    return collections.Counter(kind for kind, _, _ in hits), hits
+
+
+def main() -> None:
+    """Print counts by kind and by package."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--list", type=int, default=0, metavar="N", help="also print N examples of each kind")
+    parser.add_argument("--kind", default="", help="only kinds that begin so")
+    parser.add_argument("--json", type=Path, help="write the counts, to compare with later")
+    parser.add_argument("--worst", type=int, default=12, help="number of files to name")
+    options = parser.parse_args()
+    total: collections.Counter[str] = collections.Counter()
+    per_file: dict[str, tuple[int, int]] = {}
+    examples: dict[str, list[str]] = collections.defaultdict(list)
+    lines = 0
+    files = [options.folder] if options.folder.is_file() else sorted(options.folder.rglob("*.py"))
+    for path in files:
+        counts, hits = examine(path)
+        size = len(path.read_text(encoding="utf-8").splitlines())
+        lines += size
+        total += counts
+        per_file[str(path)] = (sum(counts.values()), size)
+        for kind, line, text in hits:
+            examples[kind].append(f"{path}:{line} {text}")
+    names = {k: v for k, v in total.items() if k.startswith("name:")}
+    rest = {k: v for k, v in total.items() if not k.startswith("name:")}
+    print(f"{len(files)} files, {lines} lines")
+    print(
+        f"{sum(names.values()):6} functions x names: "
+        + ", ".join(f"{k[6:]} {v}" for k, v in sorted(names.items(), key=lambda i: -i[1]))
+    )
+    for kind, count in sorted(rest.items(), key=lambda i: -i[1]):
+        print(f"{count:6} {kind}")
+    print(f"{sum(total.values()):6} in all, {1000 * sum(total.values()) / max(lines, 1):.1f} per 1 000 lines")
+    print(
+        f"phrases {1000 * sum(rest.values()) / max(WORDS['prose'], 1):.1f} per 1 000 words of prose ({WORDS['prose']} words); "
+        f"names {100 * sum(names.values()) / max(WORDS['functions'], 1):.1f} per 100 functions"
+    )
+    print(
+        f"first lines of functions without a verb {100 * total['sentence without verb'] / max(WORDS['functions'], 1):.1f} %; "
+        f"riddles {100 * total['riddle: pronouns for nouns'] / max(WORDS['first lines'], 1):.1f} % of first lines"
+    )
+    for name, (count, size) in sorted(per_file.items(), key=lambda i: -i[1][0] / max(i[1][1], 40))[: options.worst]:
+        print(f"  {1000 * count / max(size, 1):6.0f} per 1 000 lines  {name}")
+    for kind in sorted(examples):
+        if options.list and kind.startswith(options.kind):
+            print(f"\n## {kind}")
+            step = max(len(examples[kind]) // options.list, 1)
+            print("\n".join(examples[kind][::step][: options.list]))
+    if options.json:
+        options.json.write_text(json.dumps({"lines": lines, "counts": total}, indent=1, sort_keys=True))
+
+
+if __name__ == "__main__":
+    main()
