@@ -22,7 +22,7 @@ LOAD = ("mass", "at", "on", "inertia", "products")
 """Keys of a load."""
 
 
-def own_point(path: str, value: Any) -> Point:
+def point_of(path: str, value: Any) -> Point:
     """A point by its coordinates [m].
 
     Args:
@@ -54,7 +54,7 @@ def _place(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> 
             near = nearest(value, points)
             raise ConfigurationError(f"{path}.at: found {value!r}, no such point; the nearest is {near}")
         return points[value], value
-    return own_point(f"{path}.at", value), name
+    return point_of(f"{path}.at", value), name
 
 
 def _known(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
@@ -134,19 +134,6 @@ def new_loads(overrides: Iterable[str]) -> list[str]:
     return [text for text in texts if re.fullmatch(rf"load\.[A-Za-z0-9_-]+\.({'|'.join(LOAD)})", text)]
 
 
-def load_numbers(path: str, table: Mapping[str, Any]) -> Load:
-    """Return the mass properties of a load.
-
-    Args:
-        path: of its table, shown in messages.
-        table: the table.
-
-    Raises:
-        ConfigurationError: a wrong number.
-    """
-    return build(Load, {key: value for key, value in table.items() if key not in ("on", "at")}, path)
-
-
 def placed_load(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedPart:
     """Return a load of the vehicle file as a part that is fixed to what carries it.
 
@@ -166,11 +153,12 @@ def placed_load(name: str, value: Any, names: set[str], points: Mapping[str, Poi
         name=f"load_{name}",
         parent=_known(path, {"on": "body", **table}, "on", names),
         cog=at,
-        numbers=load_numbers(path, table),
+        numbers=build(Load, {key: inner for key, inner in table.items() if key not in ("on", "at")}, path),
         side=1.0,
         shape="none",
         points={},
         joints=(),
         seat=None,
         path=path,
+        tables=(path,),
     )

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.model.parameters.body import MOST_MODES, BodyInertia, BodyMode, TrimmedBody
-from vehicle.model.parameters.compose import kinds
+from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Driving
 from vehicle.model.parameters.elements import Bushing, Damper, ForceTable, Hydromount, Tyre
-from vehicle.model.parameters.instances import instances
+from vehicle.model.parameters.instance import instances
 from vehicle.names import SIDE_SIGN
 
 
@@ -35,7 +35,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
             *(f"driving.{key}" for key in _keys(Driving, everything=False)),
             *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
         ],
-        kinds(car, table),
+        parameter_kinds(car, table),
     )
     own += [f"body.inertia.{key}" for key in _keys(BodyInertia, everything=False)]
     # An ideal joint becomes a bushing by numbers.

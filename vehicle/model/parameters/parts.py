@@ -57,6 +57,15 @@ class Part:
         moments = (across - less * x * x, across - less * y * y, across - less * z * z)
         return replace(self, inertia=moments, products=(less * x * y, less * z * x, less * y * z))
 
+    def cog(self, center: Point, side: float) -> Point:
+        """Return the centre of gravity of the part on one side [m].
+
+        Args:
+            center: mean of its points [m].
+            side: +1 on the right, -1 on the left.
+        """
+        return (center[0] + self.offset[0], center[1] + side * self.offset[1], center[2] + self.offset[2])
+
     def __post_init__(self) -> None:
         validate(self)
         if self.between is not None and not self.between:

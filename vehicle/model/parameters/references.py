@@ -8,10 +8,11 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.composition import Composition
-from vehicle.model.parameters.hardpoints import require_apart
-from vehicle.model.parameters.instance import Instance
+from vehicle.model.parameters.hardpoints import require_apart, require_triangle
+from vehicle.model.parameters.instance import RIGHT, Instance
 from vehicle.model.parameters.paths import full_path
 from vehicle.model.parameters.toml_file import convert, nearest
+from vehicle.model.parameters.topology import Template
 from vehicle.names import SIDE_SIGN
 
 GROUPS = ("hardpoints", "parts", "bushings", "ports")
@@ -34,6 +35,49 @@ def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
                 if (found := i.part(port, side)) not in names:
                     near = nearest(found, names)
                     raise ConfigurationError(f"{i.name}.ports.{port}: {found!r} is no part; the nearest is {near}")
+
+
+def require_geometry(car: Mapping[str, Instance]) -> None:
+    """Check the geometry of all instances: pairs of points above each other, distinct points, triangles of arms.
+
+    Args:
+        car: instances by name.
+
+    Raises:
+        ConfigurationError: naming the points.
+    """
+    for i in car.values():
+        for high, low in i.template.above:
+            top, bottom = (i.point(name, RIGHT) for name in (high, low))
+            if top[2] <= bottom[2]:
+                raise ConfigurationError(
+                    f"{i.name}.hardpoints.{high}: found z = {top[2]} m, must lie above {i.name}.hardpoints.{low} "
+                    f"(z = {bottom[2]} m)"
+                )
+        for names in _distinct_points(i.template):
+            require_apart({f"{i.name}.hardpoints.{name}": i.point(name, RIGHT) for name in names})
+        for part in i.template.parts.values():
+            if part.shape.endswith("arm") and len(part.points) > 2:
+                require_triangle({f"{i.name}.hardpoints.{name}": i.point(name, RIGHT) for name in part.points})
+
+
+def _distinct_points(template: Template) -> Iterator[tuple[str, ...]]:
+    """Yield groups of points that must not coincide: of a part, an axis, a wheel, the joints of a part."""
+    yield from (part.points for part in template.parts.values())
+    yield from (joint.along for joint in template.joint if joint.along)
+    yield from (connection.axes for connection in template.connection if connection.axes)
+    for name in template.parts:
+        points = [
+            connection.at for connection in template.connection if name in (connection.moving, connection.carrier)
+        ]
+        points += [
+            joint.at
+            for joint in template.joint
+            if joint.at and name in (*joint.child, joint.parent) and not joint.along
+        ]
+        yield tuple(dict.fromkeys(points))
+    if template.wheel is not None:
+        yield (template.wheel.center, template.wheel.patch)
 
 
 def require_sound(car: Composition) -> None:
