@@ -36,7 +36,7 @@ def element_kinds(car: Mapping[str, Instance]) -> dict[str, type]:
             if not connection.ideal or i.has("bushings", connection.name):
                 kinds[f"{i.name}.bushings.{connection.name}"] = _law_kind(i, connection)
         kinds |= {f"{i.name}.{damper.name}": Damper for damper in i.template.damper}
-        kinds |= {f"{i.name}.{spring.name}": _spring_kind(i, spring) for spring in i.template.spring}
+        kinds |= {f"{i.name}.{spring.name}": spring_kind(i.template, spring) for spring in i.template.spring}
     return kinds
 
 
@@ -107,6 +107,16 @@ def _law_kind(i: Instance, e: topology.Connection) -> type[Bushing] | type[Hydro
     return law_kind(i.numbers.get("bushings", {}).get(e.name, {}), plate=e.carrier == "plate")
 
 
+def spring_kind(
+    template: topology.Template, spring: topology.Spring
+) -> type[MainSpring] | type[SlideSpring] | type[Stabilizer]:
+    """Return the parameter class of a spring of a template: between two points, on a slide or on a hinge."""
+    if spring.joint is None:
+        return MainSpring
+    slides = any(joint.kind == "slide" for joint in template.joint if joint.name == spring.joint)
+    return SlideSpring if slides else Stabilizer
+
+
 def placed_springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], list[JointSpring]]:
     """Return the springs of all instances: those between two points, and those on joints.
 
@@ -115,7 +125,11 @@ def placed_springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], lis
     """
     between, on_joints = list[PlacedSpring](), list[JointSpring]()
     for i, e, side in elements(car, "spring"):
-        law, path, tables = i.get(_spring_kind(i, e), side, e.name), f"{i.name}.{e.name}", i.table_paths(side, e.name)
+        law, path, tables = (
+            i.get(spring_kind(i.template, e), side, e.name),
+            f"{i.name}.{e.name}",
+            i.table_paths(side, e.name),
+        )
         if isinstance(law, MainSpring):
             between.append(
                 PlacedSpring(
@@ -132,14 +146,6 @@ def placed_springs(car: Mapping[str, Instance]) -> tuple[list[PlacedSpring], lis
         else:
             on_joints.append(JointSpring(joint=i.label(e.joint or "", side), law=law, path=path, tables=tables))
     return between, on_joints
-
-
-def _spring_kind(i: Instance, spring: topology.Spring) -> type[MainSpring] | type[SlideSpring] | type[Stabilizer]:
-    """Return the parameter class of a spring: between two points, on a slide or on a hinge."""
-    if spring.joint is None:
-        return MainSpring
-    slides = any(joint.kind == "slide" for joint in i.template.joint if joint.name == spring.joint)
-    return SlideSpring if slides else Stabilizer
 
 
 def placed_dampers(car: Mapping[str, Instance]) -> list[PlacedDamper]:

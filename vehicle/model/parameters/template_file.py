@@ -13,7 +13,7 @@ from vehicle.model.parameters.topology import Connection, Damper, Joint, Output,
 LISTS = {"joint": Joint, "connection": Connection, "spring": Spring, "damper": Damper, "output": Output}
 """Lists of elements, and their classes."""
 
-_KEYS: dict[str, Any] = {
+TEMPLATE_KEYS: dict[str, Any] = {
     "mirrored": bool,
     "use": tuple[dict, ...],  # type: ignore[type-arg]
     "hardpoints": Mapping[str, str],
@@ -23,7 +23,7 @@ _KEYS: dict[str, Any] = {
     "above": tuple[tuple[str, ...], ...],
     **dict.fromkeys(LISTS, tuple[dict, ...]),  # type: ignore[type-arg]
 }
-_USE: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str, str], "when": str}
+USE_KEYS: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str, str], "when": str}
 
 
 def read_template_file(path: Path) -> dict[str, Any]:
@@ -41,14 +41,14 @@ def read_template_file(path: Path) -> dict[str, Any]:
     table = read_table(path)
     try:
         for key, value in table.items():
-            if key not in _KEYS:
-                raise ConfigurationError(f"{key}: unknown; the nearest known name is {nearest(key, _KEYS)}")
-            convert(_KEYS[key], value, key)
+            if key not in TEMPLATE_KEYS:
+                raise ConfigurationError(f"{key}: unknown; the nearest known name is {nearest(key, TEMPLATE_KEYS)}")
+            convert(TEMPLATE_KEYS[key], value, key)
         for position, use in enumerate(table.get("use", [])):
-            if "template" not in use or set(use) - set(_USE):
+            if "template" not in use or set(use) - set(USE_KEYS):
                 raise ConfigurationError(f"use: needed is template, allowed are prefix, with, when; found {use}")
             for key, value in use.items():
-                convert(_USE[key], value, f"use.{position}.{key}")
+                convert(USE_KEYS[key], value, f"use.{position}.{key}")
         for pair in table.get("above", []):
             if len(pair) != 2:
                 raise ConfigurationError(f"above: found {pair}; needed are two points, the upper one first")
