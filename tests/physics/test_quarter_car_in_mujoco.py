@@ -16,8 +16,8 @@ from vehicle.engines.lumped.drive import Sampled
 from vehicle.engines.lumped.quarter_car import quarter_car
 from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.errors import ConfigurationError
-from vehicle.model.assembly.quarter_car import quarter_car_spec
-from vehicle.model.parameters.quarter_car import Friction, load_quarter_car
+from vehicle.model.assembly.quarter_car_spec import quarter_car_spec
+from vehicle.model.parameters.quarter_car_parameters import Friction, load_quarter_car
 from vehicle.signals.analysis.slip import slip_share
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal

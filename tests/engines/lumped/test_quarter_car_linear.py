@@ -14,7 +14,7 @@ from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.lumped.quarter_car import quarter_car
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.kelvin import Kelvin
-from vehicle.model.parameters.quarter_car import load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 
 CAR = load_quarter_car()
 

@@ -13,7 +13,11 @@ from vehicle.model.parameters.damper_choice import (
     FrequencyBands,
     damper_choice_parameters,
 )
-from vehicle.model.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
+from vehicle.model.parameters.half_car_rider_parameters import (
+    PUBLISHED,
+    HalfCarRiderParameters,
+    half_car_rider_parameters,
+)
 from vehicle.model.parameters.paths import override
 from vehicle.model.parameters.toml_file import build, read_table
 

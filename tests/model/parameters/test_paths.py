@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.elements import Hydromount
+from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.model.parameters.paths import assignments, full_path, overrides_of, unit_of, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.toml_file import as_table

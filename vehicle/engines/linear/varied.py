@@ -30,7 +30,7 @@ from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.engines.simulation.standing import require_body_modes, require_standing
 from vehicle.engines.simulation.static_trim import AtRest, StaticTrim, at_rest, settle, static_loads, unsolved
 from vehicle.engines.simulation.tables import curve_of
-from vehicle.model.assembly.law_numbers import TURNING, WIDTH, Numbers, element_numbers
+from vehicle.model.assembly.element_numbers import TURNING, WIDTH, Numbers, element_numbers
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.vehicle import Vehicle
 

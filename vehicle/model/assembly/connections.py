@@ -15,7 +15,7 @@ from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Hydromount, Tyre
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]

@@ -18,7 +18,7 @@ from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.elements import Bushing, Hydromount
+from vehicle.model.parameters.force_elements import Bushing, Hydromount
 from vehicle.names import AXES
 
 STRUCTURAL_LOSS_TIME = 1e-4

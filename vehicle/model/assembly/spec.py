@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.model.assembly.elements import ElementBuilder
+from vehicle.model.assembly.element_builder import ElementBuilder
 from vehicle.model.flexbody.attached_mass import with_attached_masses
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
 from vehicle.model.parameters.vehicle import Vehicle

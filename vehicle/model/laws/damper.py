@@ -4,7 +4,7 @@
 
 with the friction of `vehicle.model.laws.friction` and the curve F_c of `vehicle.model.laws.curve`: linear, degressive,
 or a table. Of a controlled damper F_c is that of its softest setting; what is set beyond it is of
-`vehicle.model.laws.semi_active`.
+`vehicle.model.laws.control_laws`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
 from vehicle.model.laws.law import Constant, Parallel
-from vehicle.model.parameters.elements import FRICTION_LAWS, Damper
+from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
 
 RECORD = np.dtype(
     [

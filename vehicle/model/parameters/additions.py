@@ -9,9 +9,9 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes, axes_along
 from vehicle.model.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
-from vehicle.model.parameters.elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Hydromount, Tyre
 from vehicle.model.parameters.hardpoints import Point, require_apart, require_point
-from vehicle.model.parameters.loads import Load
+from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.toml_file import build, convert, nearest
 

@@ -12,7 +12,7 @@ from vehicle.model.parameters.additions import further_connection, further_outpu
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance, instances
-from vehicle.model.parameters.loads import Load
+from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.placed_elements import (
     element_kinds,
     placed_connections,

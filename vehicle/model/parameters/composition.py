@@ -14,7 +14,7 @@ from typing import Any, Self, TypeVar
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes
-from vehicle.model.parameters.elements import (
+from vehicle.model.parameters.force_elements import (
     Bushing,
     Damper,
     ForceTable,
@@ -24,9 +24,9 @@ from vehicle.model.parameters.elements import (
     Stabilizer,
 )
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.loads import Load
-from vehicle.model.parameters.parts import Part
+from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.toml_file import build
 from vehicle.names import AXES
 

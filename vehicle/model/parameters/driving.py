@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.elements import Tyre
+from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.quantity import Validated, quantity
 from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.topology import Template

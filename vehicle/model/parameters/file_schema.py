@@ -15,7 +15,7 @@ from typing import Any
 
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.driving import Driving
-from vehicle.model.parameters.elements import (
+from vehicle.model.parameters.force_elements import (
     NUMBERS,
     Bushing,
     Damper,
@@ -27,10 +27,10 @@ from vehicle.model.parameters.elements import (
     Tyre,
 )
 from vehicle.model.parameters.hardpoints import LARGEST_M
-from vehicle.model.parameters.loads import Load
-from vehicle.model.parameters.parts import Part
+from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.placed_elements import spring_kind
 from vehicle.model.parameters.quantity import NAME_PATTERN
+from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.template import SHIPPED, read_template
 from vehicle.model.parameters.template_file import LISTS, TEMPLATE_KEYS, USE_KEYS, read_template_file
 from vehicle.model.parameters.toml_file import type_hints

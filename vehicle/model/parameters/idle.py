@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable
 
-from vehicle.model.parameters.elements import Hydromount
+from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.model.parameters.paths import meant
-from vehicle.model.parameters.semi_active import SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.model.parameters.vehicle import Vehicle
 
 

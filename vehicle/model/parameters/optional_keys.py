@@ -11,7 +11,7 @@ from typing import Any
 from vehicle.model.parameters.body import MOST_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Driving
-from vehicle.model.parameters.elements import Bushing, Damper, ForceTable, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Damper, ForceTable, Hydromount, Tyre
 from vehicle.model.parameters.instance import instances
 from vehicle.names import SIDE_SIGN
 

@@ -17,9 +17,9 @@ from vehicle.model.parameters.composition import (
     PlacedWheel,
     Rolling,
 )
-from vehicle.model.parameters.elements import Bushing, Damper, Hydromount, MainSpring, SlideSpring, Stabilizer
+from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount, MainSpring, SlideSpring, Stabilizer
 from vehicle.model.parameters.instance import Instance, elements
-from vehicle.model.parameters.parts import Part
+from vehicle.model.parameters.rigid_part import Part
 from vehicle.names import SIDE_SIGN
 
 

@@ -11,7 +11,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.composition import PlacedJoint, PlacedPart
 from vehicle.model.parameters.hardpoints import Point, mirrored
 from vehicle.model.parameters.instance import Instance, elements
-from vehicle.model.parameters.parts import Part
+from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.toml_file import nearest
 from vehicle.model.parameters.topology import Joint
 from vehicle.names import SIDE_SIGN

@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body import MOMENTS
 from vehicle.model.parameters.composition import PlacedWheel
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.loads import Load
+from vehicle.model.parameters.load_mass import Load
 from vehicle.names import AXES
 
 if TYPE_CHECKING:

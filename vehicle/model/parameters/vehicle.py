@@ -15,7 +15,7 @@ from vehicle.model.parameters.compose import compose
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.driving import Driving, driving_of, require_rolling
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.plausible import require_plausible

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from vehicle.model.parameters.axle import Axle
 from vehicle.model.parameters.quantity import Validated, quantity
-from vehicle.model.parameters.semi_active import SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.model.parameters.toml_file import build, read_table
 
 PUBLISHED = Path(__file__).with_name("half_car_rider.toml")

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.parts import Part
 from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.rigid_part import Part
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

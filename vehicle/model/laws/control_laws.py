@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.compiler import jitable
-from vehicle.model.parameters.semi_active import AT_ONCE, SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import AT_ONCE, SemiActiveDamper
 
 SETTING = np.dtype(
     [

@@ -9,7 +9,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.curves import require_curve
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
-from vehicle.model.parameters.semi_active import PASSIVE, SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
 
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}

@@ -11,7 +11,7 @@ PASSIVE = "passive"
 """Word of a damper that nobody controls."""
 
 LAWS = ("skyhook_on_off", "skyhook", "groundhook_on_off", "groundhook", "hybrid_on_off", "hybrid")
-"""Words of the laws of `vehicle.model.laws.semi_active`."""
+"""Words of the laws of `vehicle.model.laws.control_laws`."""
 
 AT_ONCE = 1e12
 """Rate of the coefficient [N s/m per s] that stands for no limit."""

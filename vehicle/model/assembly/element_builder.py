@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.model.assembly.law_numbers import (
+from vehicle.model.assembly.element_numbers import (
     TURNING,
     connection_name,
     connection_numbers,

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.laws.semi_active import PRESENT, act, at_rest, demanded, in_steps, pack
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
-from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
+from vehicle.model.parameters.semi_active_damper import LAWS
 
 DAMPER = half_car_rider_parameters().semi_active
 SPEEDS = np.array([-2.0, -0.3, -1e-9, -1e-300, 0.0, 1e-300, 1e-9, 0.3, 2.0])

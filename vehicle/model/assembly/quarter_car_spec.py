@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.assembly.elements import LEAST_FRICTION
+from vehicle.model.assembly.element_builder import LEAST_FRICTION
 from vehicle.model.laws.damper import RECORD, actuator_parameters
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 
 WHEEL = "fr"
 """The corner; the elements carry the names they have in the complete car."""

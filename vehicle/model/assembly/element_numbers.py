@@ -16,11 +16,11 @@ import numpy.typing as npt
 from vehicle.model.assembly.connections import element_law
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement
-from vehicle.model.laws import semi_active
+from vehicle.model.laws import control_laws
 from vehicle.model.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
-from vehicle.model.parameters.elements import Damper, ForceTable, Tyre
+from vehicle.model.parameters.force_elements import Damper, ForceTable, Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 
@@ -79,7 +79,7 @@ def damper_numbers(placed: PlacedDamper) -> Numbers:
 @lru_cache(maxsize=16)
 def _packed(law: Damper) -> tuple[Vector, Vector | None, Vector]:
     """Steeper pieces, control and record of a damper; those of one axle are alike."""
-    control = None if law.controlled is None else semi_active.pack(law.controlled)
+    control = None if law.controlled is None else control_laws.pack(law.controlled)
     return damper_curve(law).clamped(), control, actuator_parameters(pack(law))
 
 
