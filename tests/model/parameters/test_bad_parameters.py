@@ -51,8 +51,8 @@ CASES = {
     ),
     "24 triangle inequality": (
         "parts.engine.inertia=[5.0, 5.0, 15.0]",
-        "parts.engine.inertia: found [5.0, 5.0, 15.0] kg m2, the two smaller must add up to the largest at least "
-        "(short by 5); no mass distribution has such moments",
+        "parts.engine.inertia: found [5.0, 5.0, 15.0] kg m2, the two smaller must add up to at least the largest "
+        "(short by 5); no mass distribution has these moments",
     ),
     "25 zero step": ("solver.timestep=0", "solver.timestep: found 0.0 s, must be at least 1e-06"),
     "25 negative step": ("solver.timestep=-1e-3", "solver.timestep: found -0.001 s, must be at least 1e-06"),
@@ -81,7 +81,7 @@ CASES = {
     ),
     "26 millimetres": (
         "hardpoints.strut_top=[877.0, 548.0, 1230.0]",
-        "hardpoints.strut_top: found [877.0, 548.0, 1230.0] m, farther than 20.0 m: looks like mm; give metres",
+        "hardpoints.strut_top: found [877.0, 548.0, 1230.0] m, farther than 20.0 m: probably mm; set metres",
     ),
     "28 Stribeck velocity zero": (
         "damper.stribeck_velocity=0",
@@ -107,7 +107,7 @@ CASES = {
     ),
     "31 number for a vector": (
         "body.cog=2.157",
-        "--set body.cog=2.157: body.cog is a vector; give all as [x, y, z], or one component with its axis behind the "
+        "--set body.cog=2.157: body.cog is a vector; set all components as [x, y, z], or one by adding its axis to the "
         "path: body.cog.z=2.157",
     ),
     "31 overflow": (

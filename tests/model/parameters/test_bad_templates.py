@@ -46,7 +46,7 @@ TEMPLATES = {
     "an axis of no length": (
         LINE,
         "axis = [0, 0, 0]",
-        "joint.damper.axis: found [0.0, 0.0, 0.0]; an axis has a length",
+        "joint.damper.axis: found [0.0, 0.0, 0.0]; an axis needs a length",
     ),
     "an axis in the plane": (
         LINE,
@@ -123,7 +123,7 @@ TEMPLATES = {
     "two joints": (
         'name = "lower_ball"',
         'name = "damper"',
-        "joint.damper: comes twice; a joint has a name of its own",
+        "joint.damper: comes twice; rename one joint",
     ),
     "two outputs": ('name = "damper_top", on', 'name = "knuckle", on', "knuckle_fl: two elements have this name"),
     "two wheels": (

@@ -37,7 +37,7 @@ NAMED_TABLES = ("hardpoints", "connection", "outputs", "alias", "load")
 
 
 def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
-    """Compose a car from its vehicle file: read the instances, place their elements, add those of the file, check.
+    """Compose a car: read the instances of its file, place their elements, add those of the file, check the whole.
 
     Args:
         table: vehicle file, see `read_table`.
@@ -90,7 +90,7 @@ def _points(car: Mapping[str, Instance], file_points: Mapping[str, Point]) -> di
     """Return all hardpoints by their names in the model [m]; raise if an instance and the file share a name."""
     points = dict(itertools.chain.from_iterable(map(_instance_points, car.values())))
     if twice := sorted(set(file_points) & set(points)):
-        raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; give it another one")
+        raise ConfigurationError(f"hardpoints.{twice[0]}: an instance has a point of this name; rename one of both")
     return {**file_points, **points}
 
 

@@ -33,11 +33,11 @@ from vehicle.names import AXES
 T = TypeVar("T")
 
 
-def _numbers(kind: type[T], file: Mapping[str, Any], tables: tuple[str, ...]) -> T:
+def _numbers(parameters: type[T], file: Mapping[str, Any], tables: tuple[str, ...]) -> T:
     """Build the numbers of an element from its tables in a vehicle file."""
     merged = {key: value for path in tables for key, value in value_at(file, path).items()}
-    fields = {entry.name for entry in dataclasses.fields(kind)}  # type: ignore[arg-type]
-    return build(kind, {key: value for key, value in merged.items() if key in fields}, tables[-1])
+    fields = {entry.name for entry in dataclasses.fields(parameters)}  # type: ignore[arg-type]
+    return build(parameters, {key: value for key, value in merged.items() if key in fields}, tables[-1])
 
 
 class _WithLaw:
@@ -121,7 +121,7 @@ class PlacedConnection(_WithLaw):
         at: the point [m].
         point: name of the point.
         law: numbers of the force law; None for an ideal ball joint.
-        ground: True if the car stands on it.
+        ground: True for a contact with the ground.
         path, tables: see the module.
         axes: axes of the law; None: those of the carrier.
         rolling: data of a rolling tyre; None for all other connections.
@@ -187,7 +187,7 @@ class JointSpring(_WithLaw):
 
     @property
     def parameter(self) -> str:
-        """Name of the parameter of its stiffness."""
+        """Name of the stiffness parameter."""
         return "stiffness" if isinstance(self.law, SlideSpring) else "torsional_stiffness"
 
     @property
@@ -226,7 +226,7 @@ class PlacedOutput:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedWheel:
-    """A wheel on its plate.
+    """Placed wheel with the plate below.
 
     Attributes:
         name: name of the wheel, as "fr".

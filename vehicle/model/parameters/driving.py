@@ -1,4 +1,4 @@
-"""How a car drives: whether its wheels roll, and what its driver holds; what a template becomes when they roll."""
+"""Driving state of a car: speed and hold of the course; templates with rolling or fixed wheels."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ SPIN = "spin"
 """Name of the hinge about which a wheel turns on its hub."""
 
 ROUND = 1e-6
-"""Largest difference [m, kg m2] that a part which turns with the wheel may have from a body of revolution."""
+"""Tolerance [m, kg m2] within which a part that turns with the wheel is a body of revolution."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Driving(Validated):
-    """A car at constant speed straight ahead, with free wheels; at speed 0 its tyres stand, as on a rig.
+    """Constant speed straight ahead with freely rolling wheels; at speed 0 the tyres are at rest, as on a rig.
 
-    The hold of the course stands for the driver: free rolling leaves the place of the car along x and y and its heading
-    without any stiffness. Comfort does not depend on it: `docs/theory.md`.
+    The hold of the course represents the driver: free rolling leaves the position of the car along x and y and its
+    heading without any stiffness. Comfort does not depend on it: `docs/theory.md`.
     """
 
     speed: float = quantity(
@@ -50,12 +50,12 @@ class Driving(Validated):
 
     @property
     def rolling(self) -> bool:
-        """Whether the wheels turn."""
+        """True if the wheels turn."""
         return self.speed > 0.0
 
     @property
     def words(self) -> str:
-        """What the tyres do, for summaries and captions."""
+        """State of the tyres for summaries and captions, as "rolling at 80 km/h"."""
         return tyre_words([self])
 
 
@@ -63,10 +63,10 @@ STANDING = Driving()
 
 
 def tyre_words(cars: Iterable[Driving]) -> str:
-    """Return what the tyres do in one or several runs: "standing", "rolling at 50, 80 and 120 km/h".
+    """Return the state of the tyres in one or several runs: "standing", "rolling at 50, 80 and 120 km/h".
 
     Args:
-        cars: how the car of each run drives.
+        cars: driving state of each run.
     """
     speeds = sorted({car.speed for car in cars})
     rolling = [f"{3.6 * speed:.4g}" for speed in speeds if speed > 0.0]
@@ -75,19 +75,19 @@ def tyre_words(cars: Iterable[Driving]) -> str:
 
 
 def driving_of(table: Mapping[str, Any]) -> Driving:
-    """The table `driving` of a vehicle file; standing where it has none. Errors as of `build`."""
+    """Return the table `driving` of a vehicle file; without it the tyres are at rest. Errors: see `build`."""
     return build(Driving, convert(dict, table.get("driving", {}), "driving"), "driving")
 
 
 def as_driven(template: Template, driving: Driving) -> Template:
-    """A template whose wheels turn on their hubs, or are fixed to them, as the car drives.
+    """Return a template with its "spin" joints replaced: hinges if the car drives, fixed joints otherwise.
 
-    What rolls hangs on a hinge about y on its hub, the tyre first and what turns with it on the tyre. The force of the
+    A rolling tyre is on a hinge about y on its hub; parts that turn with it are fixed to the tyre. The force of the
     road then acts on the hub: the steady spin turns the point of contact back as fast as the wheel turns.
 
     Args:
-        template: with joints of kind "spin".
-        driving: of the car.
+        template: template, with or without joints of kind "spin".
+        driving: driving state of the car.
     """
     spins = [joint for joint in template.joint if joint.kind == SPIN]
     if not spins:
@@ -112,10 +112,10 @@ def as_driven(template: Template, driving: Driving) -> Template:
 
 
 def require_rolling(vehicle: Vehicle) -> None:
-    """Refuse a rolling car whose tyres or wheels are not known well enough.
+    """Check that a rolling car has all data of its tyres and wheels.
 
     Raises:
-        ConfigurationError: naming what is missing.
+        ConfigurationError: the first parameter that is missing or wrong.
     """
     driving, car = vehicle.driving, vehicle.composition
     if not driving.rolling:

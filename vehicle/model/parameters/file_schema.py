@@ -33,7 +33,6 @@ from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.template import SHIPPED, read_template
 from vehicle.model.parameters.template_file import LISTS, TEMPLATE_KEYS, USE_KEYS, read_template_file
-from vehicle.model.parameters.toml_file import type_hints
 from vehicle.model.parameters.topology import RolePart, Template, Wheel
 from vehicle.model.parameters.vehicle import Head, Solver
 from vehicle.names import SIDE_SIGN
@@ -59,7 +58,9 @@ def vehicle_schema() -> Schema:
     options = {use["when"] for file in files for use in read_template_file(file)["use"] if "when" in use}
     templates = {file.stem: _instance(file, options) for file in files}
     names: Schema = {"properties": {"template": {"enum": [*templates]}}}
-    kinds = {_name(kind, complete): _table(kind, complete) for kind in KINDS for complete in (True, False)}
+    kinds = {
+        _name(parameters, complete): _table(parameters, complete) for parameters in KINDS for complete in (True, False)
+    }
     return {
         "$schema": DRAFT,
         "title": "Vehicle file",
@@ -111,19 +112,19 @@ def vehicle_schema() -> Schema:
 
 def template_schema() -> Schema:
     """Return the JSON Schema of a template file."""
-    lists = {key: {"type": "array", "items": _table(kind)} for key, kind in LISTS.items()}
+    lists: Schema = {key: {"type": "array", "items": _table(parameters)} for key, parameters in LISTS.items()}
     use = _object({key: _value(hint) for key, hint in USE_KEYS.items()}, ["template"])
     pair: Schema = {"type": "array", "items": TEXT, "minItems": 2, "maxItems": 2}
     child = lists["joint"]["items"]["properties"]["child"]
     lists["joint"]["items"]["properties"]["child"] = {"anyOf": [TEXT, child]}  # one part is a list of one
-    known: Schema = {
+    special: Schema = {
         "use": {"type": "array", "items": use},
         "parts": _mapping(_table(RolePart)),
         "wheel": _table(Wheel),
         "above": {"type": "array", "items": {**pair, "description": "the first point lies above the second"}},
         **lists,
     }
-    properties = {key: known.get(key) or _value(hint) for key, hint in TEMPLATE_KEYS.items()}
+    properties = {key: special.get(key) or _value(hint) for key, hint in TEMPLATE_KEYS.items()}
     return {"$schema": DRAFT, "title": "Template of a vehicle file", **_object(properties)}
 
 
@@ -156,24 +157,26 @@ def _vehicle(*, complete: bool) -> Schema:
 
 def _instance(file: Path, options: Iterable[str]) -> Schema:
     """Return the schema of an instance of a template; points and parts that no option adds are required."""
-    template, least = (read_template(file.stem, chosen, ()) for chosen in (options, ()))
+    template, required = (read_template(file.stem, chosen, ()) for chosen in (options, ()))
     sides = {side: _tables(template, None) for side in SIDE_SIGN} if template.mirrored else {}
-    tables = _tables(template, least)["properties"]
+    tables = _tables(template, required)["properties"]
     needed = [key for key in ("hardpoints", "parts") if tables[key].get("required")]
     schema = _object({"template": TEXT, **tables, **sides}, needed)
     return {**schema, "additionalProperties": {"$ref": "#/definitions/instance"}}
 
 
-def _tables(template: Template, least: Template | None) -> Schema:
+def _tables(template: Template, required: Template | None) -> Schema:
     """Return the schema of the tables of an instance; `least` None: those of one side, of which none is required."""
     points = {name: {"description": f"[m] {text}", **PLACE} for name, text in template.hardpoints.items()}
-    whole = least is not None
+    whole = required is not None
     elements: list[tuple[str, type]] = [(spring.name, spring_kind(template, spring)) for spring in template.spring]
     elements += [(damper.name, Damper) for damper in template.damper]
     return _object(
         {
-            "hardpoints": _object(points, least.hardpoints if least else ()),
-            "parts": _object({name: _reference(Part, whole) for name in template.parts}, least.parts if least else ()),
+            "hardpoints": _object(points, required.hardpoints if required else ()),
+            "parts": _object(
+                {name: _reference(Part, whole) for name in template.parts}, required.parts if required else ()
+            ),
             "bushings": _object(
                 {
                     link.name: _bushing(Tyre if link.carrier == "plate" else Bushing, link.least, whole)
@@ -183,43 +186,47 @@ def _tables(template: Template, least: Template | None) -> Schema:
             "ports": _object(
                 {**{key: {**TEXT, "description": text} for key, text in template.ports.items()}, "body": TEXT}
             ),
-            **{name: _reference(kind, whole) for name, kind in elements},
+            **{name: _reference(parameters, whole) for name, parameters in elements},
         }
     )
 
 
-def _bushing(kind: type, least: float, whole: bool) -> Schema:
+def _bushing(parameters: type, lowest_stiffness: float, whole: bool) -> Schema:
     """Return the schema of a connection: a hydromount if a number of the Maxwell branch is given."""
     branch = {"anyOf": [{"required": [key]} for key in ("maxwell_stiffness", "maxwell_damping")]}
-    schema = {"if": branch, "then": _reference(Hydromount, whole), "else": _reference(kind, whole)}
-    return {**schema, "properties": {"stiffness": {"items": {"minimum": least}}}} if least else schema
+    schema = {"if": branch, "then": _reference(Hydromount, whole), "else": _reference(parameters, whole)}
+    return (
+        {**schema, "properties": {"stiffness": {"items": {"minimum": lowest_stiffness}}}}
+        if lowest_stiffness
+        else schema
+    )
 
 
-def _name(kind: type, complete: bool) -> str:
-    return kind.__name__ if complete else f"{kind.__name__}_of_one_side"
+def _name(parameters: type, complete: bool) -> str:
+    return parameters.__name__ if complete else f"{parameters.__name__}_of_one_side"
 
 
-def _reference(kind: type, complete: bool = True) -> Schema:
-    return {"$ref": f"#/definitions/{_name(kind, complete)}"}
+def _reference(parameters: type, complete: bool = True) -> Schema:
+    return {"$ref": f"#/definitions/{_name(parameters, complete)}"}
 
 
-def _table(kind: type[Any], complete: bool = True) -> Schema:
+def _table(parameters: type[Any], complete: bool = True) -> Schema:
     """Return the schema of a parameter class; complete: fields without a default are required."""
-    hints = type_hints(kind)
-    fields = dataclasses.fields(kind)
+    hints = typing.get_type_hints(parameters)
+    fields = dataclasses.fields(parameters)
     properties = {entry.name: _field(hints[entry.name], entry, complete) for entry in fields}
     needed = [
         entry.name
         for entry in fields
         if entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING
     ]
-    if kind not in (Damper, ForceTable):
+    if parameters not in (Damper, ForceTable):
         return _object(properties, needed if complete else [])
     # The points of a curve may be in a file.
     schema = _object({**properties, "curve": {**TEXT, "description": "file with the points of the curve"}})
     if not complete:
         return schema
-    if kind is ForceTable:
+    if parameters is ForceTable:
         return {**schema, "anyOf": [{"required": ["curve"]}, {"required": needed}]}
     by_law = [
         {"if": {"properties": {key: {"const": law}}}, "then": {"required": [*NUMBERS[law]]}}

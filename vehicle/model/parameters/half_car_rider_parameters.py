@@ -26,7 +26,7 @@ class RiderBody(Validated):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limb(Validated):
-    """A mass on a spring and a damper: the seat on the body, or one half of the rider on the seat."""
+    """Mass on a spring and a damper: the seat on the body, or one half of the rider on the seat."""
 
     mass: float = quantity("kg", "mass", above=0.0)
     stiffness: float = quantity("N/m", "stiffness of its support", above=0.0)

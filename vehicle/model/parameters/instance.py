@@ -78,8 +78,8 @@ class Instance:
         }
         elements = [*(spring.name for spring in template.spring), *(damper.name for damper in template.damper)]
         sides = {f"{side}.": self.numbers.get(side, {}) for side in SIDE_SIGN}
-        for prefix, given in (("", self.numbers), *sides.items()):
-            table = convert(dict, given, f"{self.name}.{prefix}".rstrip("."))
+        for prefix, value in (("", self.numbers), *sides.items()):
+            table = convert(dict, value, f"{self.name}.{prefix}".rstrip("."))
             groups = INSTANCE_KEYS if not prefix else tuple(pools)
             for key, inner in table.items():
                 instance = not prefix and isinstance(inner, Mapping) and "template" in inner
@@ -94,8 +94,8 @@ class Instance:
                 if key not in self.numbers.get(group, {}):
                     self.missing(f"{group}.{key}", ", ".join(pools[group]))
 
-    def _unknown(self, path: str, key: str, known: list[str]) -> None:
-        near = f"the nearest known name is {nearest(key, known)}" if known else f"{self.template.file} has none"
+    def _unknown(self, path: str, key: str, names: list[str]) -> None:
+        near = f"the nearest known name is {nearest(key, names)}" if names else f"{self.template.file} has none"
         raise ConfigurationError(f"{self.name}.{path}: unknown parameter; {near}")
 
     def missing(self, path: str, needed: str) -> None:
@@ -114,11 +114,11 @@ class Instance:
         """Return True if the vehicle file gives a table for the instance or for one of its sides."""
         return bool(self._tables(RIGHT, keys) or self._tables(LEFT, keys))
 
-    def get(self, kind: type[T], side: str | None, *keys: str) -> T:
+    def get(self, parameters: type[T], side: str | None, *keys: str) -> T:
         """Return the numbers of an element.
 
         Args:
-            kind: parameter class of the numbers.
+            parameters: parameter class of the numbers.
             side: "right" or "left"; None for an element that exists once.
             keys: path in the table of the instance.
 
@@ -132,9 +132,9 @@ class Instance:
         *_, path = tables
         if len(tables) > 1:
             first, second = tables.values()
-            return build(kind, {**first, **second}, path)
+            return build(parameters, {**first, **second}, path)
         if path not in self.typed:
-            self.typed[path] = build(kind, tables[path], path)
+            self.typed[path] = build(parameters, tables[path], path)
         numbers: T = self.typed[path]
         return numbers
 
@@ -191,9 +191,9 @@ class Instance:
         """
         name, _, ref_side = ref.partition(":")
         side, path = ref_side or side or "", f"{self.name}.hardpoints.{name}"
-        given = self.numbers.get(side, {}).get("hardpoints", {}).get(name) if side in SIDE_SIGN else None
-        if given is not None:
-            point: Point = convert(Point, given, f"{self.name}.{side}.hardpoints.{name}")
+        coordinates = self.numbers.get(side, {}).get("hardpoints", {}).get(name) if side in SIDE_SIGN else None
+        if coordinates is not None:
+            point: Point = convert(Point, coordinates, f"{self.name}.{side}.hardpoints.{name}")
             require_point(f"{self.name}.{side}.hardpoints.{name}", point, right=False)
             if point[1] * SIDE_SIGN[side] < 0.0:
                 raise ConfigurationError(
@@ -256,7 +256,7 @@ def _instance_tables(table: Mapping[str, Any], prefix: str, instance: str) -> It
 
     Args:
         table: table to search.
-        prefix: path of the table, with a dot behind it.
+        prefix: path of the table, with a final dot.
         instance: path of the instance that the table is or belongs to; empty elsewhere.
     """
     for key, value in table.items():
@@ -287,17 +287,17 @@ def _contains_instance(table: Mapping[str, Any]) -> bool:
     return any(set(value) & {"template", *INSTANCE_KEYS} or _contains_instance(value) for value in inner)
 
 
-def elements(car: Mapping[str, Instance], kind: str) -> list[tuple[Instance, Any, str | None]]:
+def elements(car: Mapping[str, Instance], group: str) -> list[tuple[Instance, Any, str | None]]:
     """Return all elements of one type: instance, entry of the template, side.
 
     Args:
         car: instances by name.
-        kind: list of the template: "joint", "connection", "spring", "damper" or "output".
+        group: list of the template: "joint", "connection", "spring", "damper" or "output".
     """
     listed: list[tuple[Instance, Any, str | None]] = []
     for instance in car.values():
         once = {joint.name for joint in instance.template.joint if _names_a_side(joint)}
-        for entry in getattr(instance.template, kind):
+        for entry in getattr(instance.template, group):
             single = _names_a_side(entry) or getattr(entry, "joint", None) in once - {None}
             sides = instance.sides()
             listed += [

@@ -26,7 +26,7 @@ class Load:
     def __post_init__(self) -> None:
         validate(self)
         if self.inertia is None and any(self.products):
-            raise ConfigurationError(f"Load.products: found {list(self.products)} kg m2 without inertia; give both")
+            raise ConfigurationError(f"Load.products: found {list(self.products)} kg m2 without inertia; set both")
         try:
             Part(mass=1.0, inertia=self.inertia, products=self.products)
         except ConfigurationError as error:

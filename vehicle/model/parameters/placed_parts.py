@@ -49,21 +49,21 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
         for child in joint.child:
             name, _, child_side = child.partition(":")
             label, parent = i.part(child, side), i.part(joint.parent, side)
-            place = f"{i.template.file}: joint of {child}"
+            where = f"{i.template.file}: joint of {child}"
             if name not in i.template.parts:
-                raise ConfigurationError(f"{place}: a part of another template cannot hang on a joint of this one")
+                raise ConfigurationError(f"{where}: a part of another template cannot hang on a joint of this one")
             if parent == "body" and (joint.kind != "fixed" or joint.at is None):
                 raise ConfigurationError(
-                    f"{place}: on the trimmed body a part is fixed, with a point in at; one that moves on it is free "
+                    f"{where}: on the trimmed body a part is fixed, with a point in at; one that moves on it is free "
                     "and has a connection, which feels the modes of the body"
                 )
             part = held.setdefault(label, _Held(i, name, child_side or side, parent))
             if part.parent != parent:
-                raise ConfigurationError(f"{place}: {part.parent} holds it already; close a loop by a connection")
+                raise ConfigurationError(f"{where}: {part.parent} holds it already; close a loop by a connection")
             part.joints.append((joint, side))
             if len(part.joints) > 1 and {"free", "fixed"} & {other.kind for other, _ in part.joints}:
                 raise ConfigurationError(
-                    f"{place}: it is {part.joints[0][0].kind} already; a joint beside holds nothing"
+                    f"{where}: it is {part.joints[0][0].kind} already; remove the further joint"
                 )
     for i in car.values():
         for name, side in itertools.product(i.template.parts, i.sides()):
@@ -105,7 +105,7 @@ def _placed_part(label: str, part: _Held) -> PlacedPart:
     if numbers.inertia is None:
         if len(template.points) < 2:
             raise ConfigurationError(
-                f"{i.name}.parts.{name}.inertia: missing; only a rod between two points has its own"
+                f"{i.name}.parts.{name}.inertia: missing; it is optional only for a rod between two points"
             )
         start, end = (mirrored(i.point(point, side), sign) for point in template.points[:2])
         rod = (start, end)

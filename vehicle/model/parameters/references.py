@@ -1,4 +1,4 @@
-"""What a vehicle file names must be there, and what it gives must be taken: slips of the pen that no number shows."""
+"""Checks of a composition: geometry, names that must exist, and entries that no element uses."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from vehicle.model.parameters.topology import Template
 from vehicle.names import SIDE_SIGN
 
 GROUPS = ("hardpoints", "parts", "bushings", "ports")
-"""Tables of an instance that hold a table or a value for each name."""
+"""Tables of an instance with one entry for each name."""
 
 
 def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
-    """Refuse a port that is bound to no part.
+    """Check that all ports are bound to parts.
 
     Args:
         car: instances by name.
-        names: of all parts.
+        names: names of all parts.
 
     Raises:
-        ConfigurationError: naming the port.
+        ConfigurationError: a port is bound to an unknown part.
     """
     for i in car.values():
         for port in i.numbers.get("ports", {}):
             for side in i.sides():
-                if (found := i.part(port, side)) not in names:
-                    near = nearest(found, names)
-                    raise ConfigurationError(f"{i.name}.ports.{port}: {found!r} is no part; the nearest is {near}")
+                if (part := i.part(port, side)) not in names:
+                    near = nearest(part, names)
+                    raise ConfigurationError(f"{i.name}.ports.{port}: {part!r} is no part; the nearest is {near}")
 
 
 def require_geometry(car: Mapping[str, Instance]) -> None:
@@ -81,10 +81,10 @@ def _distinct_points(template: Template) -> Iterator[tuple[str, ...]]:
 
 
 def require_sound(car: Composition) -> None:
-    """Refuse two elements of one name, and one that lies between a part and itself, or between a point and itself.
+    """Check that names are unique and that connections and springs join two different parts or points.
 
     Raises:
-        ConfigurationError: naming the element.
+        ConfigurationError: the first wrong element.
     """
     for connection in car.connections:
         if connection.moving == connection.carrier:
@@ -108,17 +108,17 @@ def require_sound(car: Composition) -> None:
 
 
 def require_taken(car: Mapping[str, Instance]) -> None:
-    """Refuse numbers of one side that nothing takes: of what exists once, or of a template that is not mirrored.
+    """Check that all tables of one side are used; elements that exist once do not use them.
 
     Raises:
-        ConfigurationError: naming the table.
+        ConfigurationError: a table of one side is not used.
     """
     for i in car.values():
         for side in SIDE_SIGN:
-            for place in _places(i.numbers.get(side, {})):
-                if f"{side}.{place}" not in i.taken:
+            for table in _places(i.numbers.get(side, {})):
+                if f"{side}.{table}" not in i.taken:
                     why = "what it is for exists once, on no side" if i.template.mirrored else "it is not mirrored"
-                    raise ConfigurationError(f"{i.name}.{side}.{place}: {i.template.file} does not take it; {why}")
+                    raise ConfigurationError(f"{i.name}.{side}.{table}: {i.template.file} does not take it; {why}")
 
 
 def _places(table: Mapping[str, Any]) -> Iterator[str]:
@@ -127,10 +127,10 @@ def _places(table: Mapping[str, Any]) -> Iterator[str]:
 
 
 def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> None:
-    """Refuse a point of the vehicle file that nothing uses; a body with a model may stand on any.
+    """Check that all hardpoints of the vehicle file are used; with a body model, which may use any, skip the check.
 
     Raises:
-        ConfigurationError: naming the point.
+        ConfigurationError: a point is not used.
     """
     if "superelement" in table["body"]:
         return
@@ -144,10 +144,10 @@ def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> Non
 
 
 def require_aliases(table: Mapping[str, Any]) -> None:
-    """Refuse an alias that leads nowhere.
+    """Check that all aliases are names of parameters.
 
     Raises:
-        ConfigurationError: naming the alias.
+        ConfigurationError: an alias of an unknown parameter.
     """
     for name, path in table.get("alias", {}).items():
         try:

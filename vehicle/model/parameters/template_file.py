@@ -1,4 +1,4 @@
-"""One template file as it is written: its keys, and of which types they are."""
+"""Reading one template file, without the templates that it includes: keys and types."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ USE_KEYS: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str,
 
 
 def read_template_file(path: Path) -> dict[str, Any]:
-    """Read a template without what it uses.
+    """Read a template file without the templates that it includes.
 
     Args:
         path: the file.
 
     Returns:
-        Its tables and lists; empty ones for those that it does not have, None for a missing wheel.
+        Tables and lists; missing tables and lists are empty, a missing wheel is None.
 
     Raises:
-        ConfigurationError: it is no TOML file, or holds an unknown key or a wrong type; the message names the file.
+        ConfigurationError: not a TOML file, an unknown key or a wrong type; the message names the file.
     """
     table = read_table(path)
     try:
@@ -65,5 +65,5 @@ def read_template_file(path: Path) -> dict[str, Any]:
 
 
 def _listed(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """One child is a list of one."""
+    """Return an entry whose child is a list of names."""
     return {**entry, "child": [entry["child"]]} if isinstance(entry.get("child"), str) else dict(entry)
