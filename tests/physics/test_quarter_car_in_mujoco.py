@@ -180,7 +180,7 @@ def test_it_is_made_of_the_elements_of_the_complete_car():
 
 
 def test_refusals():
-    with pytest.raises(ConfigurationError, match=r"^damper: found 'none', allowed are slip, stick, friction$"):
+    with pytest.raises(ConfigurationError, match=r"^damper: found 'none', must be one of slip, stick, friction$"):
         quarter_car_spec(CAR, timestep=1e-3, damper="none")  # type: ignore[arg-type]
     with pytest.raises(ConfigurationError, match=r"^timestep: found nan s, must be finite and greater than 0\.0$"):
         quarter_car_spec(CAR, timestep=float("nan"))

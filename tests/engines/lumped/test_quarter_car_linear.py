@@ -202,7 +202,7 @@ BAD = [
     ),
     (
         {"damper": "slip", "vary": {"wheel.tyre_stiffness": float("nan")}},
-        "wheel.tyre_stiffness: found nan N/m, needed is a finite number (vertical tyre stiffness Kt)",
+        "wheel.tyre_stiffness: found nan N/m, must be a finite number (vertical tyre stiffness Kt)",
     ),
     (
         {"damper": "slip", "vary": {"mount.stifness": 1.0}},

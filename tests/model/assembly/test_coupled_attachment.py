@@ -1,4 +1,4 @@
-"""Bushings and joints behind an attachment that couples the axes: against complex stiffnesses in series, in a car."""
+"""Bushings and joints in series with an attachment that couples the axes: against complex stiffnesses, in a car."""
 
 from __future__ import annotations
 

@@ -16,15 +16,15 @@ INSTANCE = re.compile(r"(?<![\w.])(front|engine|rear)\.(?!toml)")
 CASES = {
     "20 NaN stiffness": (
         "main_spring.stiffness=nan",
-        "main_spring.stiffness: found nan N/m, needed is a finite number (stiffness)",
+        "main_spring.stiffness: found nan N/m, must be a finite number (stiffness)",
     ),
     "20 NaN in a vector": (
         "bushings.tyre.stiffness=[1e5, nan, 1e5]",
-        "bushings.tyre.stiffness: found nan N/m, needed is a finite number (Kx, Ky, Kz)",
+        "bushings.tyre.stiffness: found nan N/m, must be a finite number (Kx, Ky, Kz)",
     ),
     "20 infinite stiffness": (
         "stabilizer.torsional_stiffness=inf",
-        "stabilizer.torsional_stiffness: found inf N m/rad, needed is a finite number "
+        "stabilizer.torsional_stiffness: found inf N m/rad, must be a finite number "
         "(torque over relative angle of the halves)",
     ),
     "21 negative stiffness": (
@@ -95,15 +95,15 @@ CASES = {
         "bushings.hydromount.maxwell_damping=-1",
         "bushings.hydromount.maxwell_damping: found -1.0 N s/m, must be at least 0.0",
     ),
-    "31 text for a number": ('damper.viscous="2250"', "damper.viscous: found '2250', needed is a number"),
-    "31 truth value": ("damper.viscous=true", "damper.viscous: found True, needed is a number"),
+    "31 text for a number": ('damper.viscous="2250"', "damper.viscous: found '2250', must be a number"),
+    "31 truth value": ("damper.viscous=true", "damper.viscous: found True, must be a number"),
     "31 truth value in a vector": (
         "body.cog=[2.157, true, 1.011]",
-        "body.cog: found True, needed is a number",
+        "body.cog: found True, must be a number",
     ),
     "31 two components": (
         "bushings.tyre.stiffness=[1e5, 1e5]",
-        "bushings.tyre.stiffness: found (100000.0, 100000.0), needed is a list of 3 numbers [N/m]",
+        "bushings.tyre.stiffness: found (100000.0, 100000.0), must be a list of 3 numbers [N/m]",
     ),
     "31 number for a vector": (
         "body.cog=2.157",
@@ -112,25 +112,25 @@ CASES = {
     ),
     "31 overflow": (
         "main_spring.stiffness=1e400",
-        "main_spring.stiffness: found inf N/m, needed is a finite number (stiffness)",
+        "main_spring.stiffness: found inf N/m, must be a finite number (stiffness)",
     ),
-    "31 number for a switch": ("body.flexible=1", "body.flexible: found 1, needed is true or false"),
-    "31 number for a text": ("name=3", "name: found 3, needed is a text in quotes"),
+    "31 number for a switch": ("body.flexible=1", "body.flexible: found 1, must be true or false"),
+    "31 number for a text": ("name=3", "name: found 3, must be a text in quotes"),
     "31 unknown word": (
         "damper.friction_law=viscous",
-        "damper.friction_law: found 'viscous', allowed are coulomb, stribeck",
+        "damper.friction_law: found 'viscous', must be one of coulomb, stribeck",
     ),
     "32 XML in a name": (
         'name="a\\"/><b"',
-        "name: found 'a\"/><b', allowed are names of letters, digits, '_', '.', '-'",
+        "name: found 'a\"/><b', must be a name of letters, digits, '_', '.', '-'",
     ),
     "32 newline in a name": (
         'name="a\\nb"',
-        "name: found 'a\\nb', allowed are names of letters, digits, '_', '.', '-'",
+        "name: found 'a\\nb', must be a name of letters, digits, '_', '.', '-'",
     ),
     "32 quote in a file name": (
         'body.superelement="it\'s"',
-        "body.superelement: found \"it's\", allowed are names of letters, digits, '_', '.', '-'",
+        "body.superelement: found \"it's\", must be a name of letters, digits, '_', '.', '-'",
     ),
 }
 

@@ -18,7 +18,11 @@ TEMPLATES = {
         'kynd = "ball"',
         "joint.lower_ball.kynd: unknown parameter; the nearest known name",
     ),
-    "unknown kind": ('kind = "ball"', 'kind = "bell"', "joint.lower_ball.kind: found 'bell', allowed are free, fixed"),
+    "unknown kind": (
+        'kind = "ball"',
+        'kind = "bell"',
+        "joint.lower_ball.kind: found 'bell', must be one of free, fixed",
+    ),
     "unknown part": ('parent = "a_arm"', 'parent = "a_arn"', "joint.lower_ball.parent: 'a_arn' leads nowhere"),
     "unknown moving part": (
         'moving = "damper_top"',
@@ -27,15 +31,15 @@ TEMPLATES = {
     ),
     "unknown point": ('at = "tie_outer"', 'at = "tie_outa"', "'tie_outa' leads nowhere; the nearest is tie_outer"),
     "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: 'dampr' leads nowhere"),
-    "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', allowed are left"),
-    "side of a point": ('at = "tie_outer"', 'at = "tie_outer:links"', "found side 'links', allowed are left, right"),
-    "a number for a part": ('child = "a_arm"', "child = 3", "joint.2.child: found 3, needed is a list"),
+    "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', must be left"),
+    "side of a point": ('at = "tie_outer"', 'at = "tie_outer:links"', "found side 'links', must be left, right"),
+    "a number for a part": ('child = "a_arm"', "child = 3", "joint.2.child: found 3, must be a list"),
     "a number for all": ("joint = [", "spring = 3\njoint = [", "not a TOML file"),
-    "a word for a table": ("joint = [", 'joint = ["a",', "joint: found 'a', needed is a table"),
-    "a word for a switch": ("mirrored = true", 'mirrored = "yes"', "mirrored: found 'yes', needed is true or false"),
+    "a word for a table": ("joint = [", 'joint = ["a",', "joint: found 'a', must be a table"),
+    "a word for a switch": ("mirrored = true", 'mirrored = "yes"', "mirrored: found 'yes', must be true or false"),
     "a number as meaning": ('tie_inner = "steering rod on the body"', "tie_inner = 3", "hardpoints.tie_inner: found 3"),
-    "a number for two points": ("above = [", "above = [3,", "above: found 3, needed is a list"),
-    "one point above": ("above = [", 'above = [["strut_top"],', "above: found ['strut_top']; needed are two points"),
+    "a number for two points": ("above = [", "above = [3,", "above: found 3, must be a list"),
+    "one point above": ("above = [", 'above = [["strut_top"],', "above: found ['strut_top']; must be two points"),
     "not TOML": ("mirrored = true", "mirrored = tru", "not a TOML file: Invalid value (at line"),
     "no axis": (f", {LINE}", "", "joint.damper.along: a slide needs two points in along, or its axis, one of them"),
     "two axes": (
@@ -51,10 +55,10 @@ TEMPLATES = {
     "an axis in the plane": (
         LINE,
         "axis = [0, 1]",
-        "joint.damper.axis: found (0.0, 1.0), needed is a list of 3 numbers",
+        "joint.damper.axis: found (0.0, 1.0), must be a list of 3 numbers",
     ),
-    "along one point": (LINE, 'along = ["strut_top"]', "joint.damper.along: found ['strut_top']; needed are two"),
-    "a damper between a point": (LINE, 'along = ["strut_top", "strut_top"]', "needed are two different points"),
+    "along one point": (LINE, 'along = ["strut_top"]', "joint.damper.along: found ['strut_top']; must be two"),
+    "a damper between a point": (LINE, 'along = ["strut_top", "strut_top"]', "must be two different points"),
     "a spring between a point": (
         'upper = { part = "body", at = "strut_top" } }',
         'upper = { part = "main_spring_lower", at = "spring_lower" } }',
@@ -63,12 +67,12 @@ TEMPLATES = {
     "a damper on a ball": (
         'joint = "damper"',
         'joint = "lower_ball"',
-        "joint: 'lower_ball' is a ball, needed is a slide",
+        "joint: 'lower_ball' is a ball, must be a slide",
     ),
     "one end of a spring": (
         ', upper = { part = "body", at = "strut_top" } }',
         " }",
-        "spring.main_spring.lower: needed are",
+        "spring.main_spring.lower: must have",
     ),
     "a loop": (
         '{ kind = "free", child = "a_arm" }',
@@ -146,15 +150,15 @@ TEMPLATES = {
     "a key of use": (
         'with = { hub = "knuckle" }',
         'wiht = { hub = "knuckle" }',
-        "use: needed is template, allowed are",
+        "must have template, and may have prefix, with, when",
     ),
-    "a number as prefix": ('with = { hub = "knuckle" }', "prefix = 3", "use.0.prefix: found 3, needed is a text"),
+    "a number as prefix": ('with = { hub = "knuckle" }', "prefix = 3", "use.0.prefix: found 3, must be a text"),
     "unbound port": (
         ', with = { hub = "knuckle" }',
         "",
         "use.with.hub: missing; wheel.toml needs it (part that carries",
     ),
-    "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no such port; it has ['hub']"),
+    "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no port of this name; it has ['hub']"),
     "a port without part": ('hub = "knuckle"', 'hub = "knukle"', "'knukle' leads nowhere; the nearest is knuckle"),
 }
 

@@ -46,13 +46,13 @@ def _point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> 
     """Return the point of an element [m], given by its name or by coordinates, and the name of the point."""
     name, value = path.partition(".")[2], table.get("at")
     if not NAME_PATTERN.fullmatch(name):
-        raise ConfigurationError(f"{path}: found {name!r}, allowed are letters, digits, '_', '.', '-'")
+        raise ConfigurationError(f"{path}: found {name!r}, must consist of letters, digits, '_', '.', '-'")
     if value is None:
-        raise ConfigurationError(f"{path}.at: missing; needed is the name of a point, or its coordinates [m]")
+        raise ConfigurationError(f"{path}.at: missing; set the name of a point, or its coordinates [m]")
     if isinstance(value, str):
         if value not in points:
             near = nearest(value, points)
-            raise ConfigurationError(f"{path}.at: found {value!r}, no such point; the nearest is {near}")
+            raise ConfigurationError(f"{path}.at: found {value!r}, unknown point; the nearest is {near}")
         return points[value], value
     return point_of(f"{path}.at", value), name
 
@@ -60,10 +60,10 @@ def _point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> 
 def _part_name(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
     """Return the name of a part that a table gives under a key."""
     if key not in table:
-        raise ConfigurationError(f"{path}.{key}: missing; needed is the name of a part, as body")
+        raise ConfigurationError(f"{path}.{key}: missing; set the name of a part, as body")
     name: str = convert(str, table[key], f"{path}.{key}")
     if name not in names:
-        raise ConfigurationError(f"{path}.{key}: found {name!r}, no such part; the nearest is {nearest(name, names)}")
+        raise ConfigurationError(f"{path}.{key}: found {name!r}, unknown part; the nearest is {nearest(name, names)}")
     return name
 
 
@@ -104,10 +104,10 @@ def _axes(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> A
     for name in names:
         if name not in points:
             near = nearest(name, points)
-            raise ConfigurationError(f"{path}.axes: found {name!r}, no such point; the nearest is {near}")
+            raise ConfigurationError(f"{path}.axes: found {name!r}, unknown point; the nearest is {near}")
     if len(names) != 2 or table.get("ground"):
         raise ConfigurationError(
-            f"{path}.axes: found {list(names)}; needed are two points, of what is not on the ground"
+            f"{path}.axes: found {list(names)}; must be two points of a connection that is not on the ground"
         )
     require_apart({f"{path}.axes, {name}": points[name] for name in names})
     return axes_along(points[names[0]], points[names[1]])
@@ -123,7 +123,7 @@ def further_output(name: str, value: Any, names: set[str], points: Mapping[str, 
     table = convert(dict, value, path)
     for key in table:
         if key not in ("on", "at"):
-            raise ConfigurationError(f"{path}.{key}: unknown parameter; needed are on and at")
+            raise ConfigurationError(f"{path}.{key}: unknown parameter; must be on or at")
     at, point = _point(path, table, points)
     return PlacedOutput(name=name, on=_part_name(path, table, "on", names), at=at, point=point)
 

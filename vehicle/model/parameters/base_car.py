@@ -34,11 +34,11 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
     beside = file.parent / name
     if not beside.is_file() and name not in CARS:
         raise ConfigurationError(
-            f"base: found {name!r}; needed is a shipped car ({', '.join(CARS)}) or a vehicle file beside this one"
+            f"base: found {name!r}; must be a shipped car ({', '.join(CARS)}) or a vehicle file in the same folder"
         )
     base = beside if beside.is_file() else vehicle_file(name)
     if base.resolve() in (*above, file.resolve()):
-        raise ConfigurationError(f"base: {file} builds on itself; name another car")
+        raise ConfigurationError(f"base: {file} is its own base; name another car")
     return with_body(vehicle_table(base, (*above, file.resolve())), table)
 
 

@@ -110,7 +110,7 @@ class TrimmedBody:
         for number in self.modes:
             if not (number.isascii() and number.isdigit() and 1 <= int(number) <= MAX_MODES and number[0] != "0"):
                 raise ConfigurationError(
-                    f"TrimmedBody.modes.{number}: needed is the number of a mode from 1, as body.modes.3"
+                    f"TrimmedBody.modes.{number}: must be the number of a mode from 1, as body.modes.3"
                 )
         if self.flexible and self.superelement is None:
             raise ConfigurationError(

@@ -34,10 +34,10 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
         ConfigurationError: a wrong number of points, or the first wrong point.
     """
     if len(positions) != len(forces):
-        raise ConfigurationError(f"{where}.force: found {len(forces)} numbers for {len(positions)} of {key}; needed is "
+        raise ConfigurationError(f"{where}.force: found {len(forces)} numbers for {len(positions)} of {key}; set "
                                  "a force for each")  # fmt: skip
     if not 2 <= len(positions) <= MAX_POINTS:
-        raise ConfigurationError(f"{where}.{key}: found {len(positions)} points, needed are 2 to {MAX_POINTS}; leave "
+        raise ConfigurationError(f"{where}.{key}: found {len(positions)} points, must be 2 to {MAX_POINTS}; leave "
                                  "out points on a straight line")  # fmt: skip
     for x, following in itertools.pairwise(positions):
         if not x < following:
@@ -71,7 +71,9 @@ def with_curve_files(table: Mapping[str, Any], folder: Path, prefix: str = "") -
         elif key != "curve":
             filled[key] = value
         elif not isinstance(value, str) or "force" in table:
-            raise ConfigurationError(f"{path}: found {value!r}; needed is the name of a file, and no force beside it")
+            raise ConfigurationError(
+                f"{path}: found {value!r}; must be the name of a file, without force in the same table"
+            )
         else:
             # Only dampers have a law of damping.
             filled |= _points(folder / value, path, "velocity" if "viscous_law" in table else "displacement")
@@ -90,7 +92,7 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
 
     def column(header: Header) -> int:
         if missing := set(heads.values()) - set(header.cells):
-            raise ConfigurationError(f"{header.where}: no column {min(missing)!r}; found {header.found}, needed are "
+            raise ConfigurationError(f"{header.where}: no column {min(missing)!r}; found {header.found}, must have "
                                      f"{needed}")  # fmt: skip
         return header.cells.index(HEADS[key])
 

@@ -105,8 +105,10 @@ def as_driven(template: Template, driving: Driving) -> Template:
             if others:
                 joints.append(replace(joint, kind="fixed", at=None, child=tuple(others), parent=tyre))
     connections = tuple(
-        replace(one, moving=hubs.get(one.moving, one.moving)) if one.carrier == "plate" else one
-        for one in template.connection
+        replace(connection, moving=hubs.get(connection.moving, connection.moving))
+        if connection.carrier == "plate"
+        else connection
+        for connection in template.connection
     )
     return replace(template, joint=tuple(joints), connection=connections)
 
@@ -121,11 +123,12 @@ def require_rolling(vehicle: Vehicle) -> None:
     if not driving.rolling:
         return
     standing = "let the tyres stand: --tyre standing, or driving.speed=0"
-    mend = f"give it, or {standing}"
-    on_plates = {one.carrier: one for one in car.connections}
-    if not car.wheels or any(one.ground and one.rolling is None for one in car.connections):
+    remedy = f"set it, or {standing}"
+    on_plates = {link.carrier: link for link in car.connections}
+    if not car.wheels or any(link.ground and link.rolling is None for link in car.connections):
         raise ConfigurationError(
-            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} does not stand on wheels alone; {standing}"
+            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} has other ground contacts "
+            f"than wheels; {standing}"
         )
     for wheel in car.wheels:
         tyre = on_plates[wheel.plate]
@@ -134,21 +137,22 @@ def require_rolling(vehicle: Vehicle) -> None:
         for key in ("slip_stiffness", "cornering_stiffness", "carcass_longitudinal", "carcass_lateral"):
             if getattr(tyre.law, key) is None:
                 raise ConfigurationError(
-                    f"{tyre.path}.{key}: missing; a rolling tyre needs it (driving.speed {driving.speed:g} m/s); {mend}"
+                    f"{tyre.path}.{key}: missing; a rolling tyre needs it (driving.speed {driving.speed:g} m/s); "
+                    f"{remedy}"
                 )
         if tyre.moving == wheel.part:
             raise ConfigurationError(
-                f'{tyre.path}: its template fixes {wheel.part} to the hub; give it a joint of kind = "spin", as '
-                f"wheel.toml has; {mend}"
+                f'{tyre.path}: its template fixes {wheel.part} to the hub; use a joint of kind = "spin", as '
+                f"wheel.toml has; {remedy}"
             )
         if abs(wheel.center[0] - wheel.patch[0]) > ROUND:
             raise ConfigurationError(
-                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, needed is that of {wheel.paths[0]}, "
+                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, must be that of {wheel.paths[0]}, "
                 f"{wheel.center[0]:g} m: ahead of the centre the load would drive or brake a rolling wheel"
             )
         spinning = {part.name for part in car.parts if part.parent == wheel.part and not part.joints} | {wheel.part}
-        held = [(one.path, {one.moving, one.carrier}) for one in car.connections]
-        held += [(f"outputs.{one.name}", {one.on}) for one in car.outputs]
+        held = [(link.path, {link.moving, link.carrier}) for link in car.connections]
+        held += [(f"outputs.{link.name}", {link.on}) for link in car.outputs]
         for path, parts in held:
             if parts & spinning:
                 raise ConfigurationError(
@@ -162,6 +166,6 @@ def require_rolling(vehicle: Vehicle) -> None:
             ixx, _, izz = part.numbers.inertia or (0.0, 0.0, 0.0)
             if max(abs(x), abs(z), abs(ixx - izz), *map(abs, part.numbers.products)) > ROUND:
                 raise ConfigurationError(
-                    f"{part.path}: turns with the wheel and is no body of revolution about its axle; needed are "
+                    f"{part.path}: turns with the wheel and is no body of revolution about its axle; must have "
                     "inertia.x = inertia.z, no products, and an offset along y alone"
                 )

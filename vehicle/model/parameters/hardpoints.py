@@ -37,9 +37,9 @@ def require_point(path: str, point: Point, *, right: bool) -> None:
         ConfigurationError: not three finite numbers, in millimetres, or on the wrong side.
     """
     if len(point) != 3:
-        raise ConfigurationError(f"{path}: found {point!r}, needed is a list of 3 numbers [m]")
+        raise ConfigurationError(f"{path}: found {point!r}, must be a list of 3 numbers [m]")
     if not all(map(math.isfinite, point)):
-        raise ConfigurationError(f"{path}: found {list(point)} m, needed are finite numbers")
+        raise ConfigurationError(f"{path}: found {list(point)} m, must be finite numbers")
     if max(map(abs, point)) > LARGEST_M:
         raise ConfigurationError(f"{path}: found {list(point)} m, farther than {LARGEST_M} m: probably mm; set metres")
     if right and point[1] <= 0.0:

@@ -198,7 +198,7 @@ class Instance:
             if point[1] * SIDE_SIGN[side] < 0.0:
                 raise ConfigurationError(
                     f"{self.name}.{side}.hardpoints.{name}: found y = {point[1]} m, which is on the other side; points "
-                    "of one side are where they really are, y > 0 on the right"
+                    "of one side are not mirrored, y > 0 on the right"
                 )
             self.taken.add(f"{side}.hardpoints.{name}")
             return point
@@ -208,8 +208,8 @@ class Instance:
             other, _, other_point = value.rpartition(".")
             if other not in self.others or other_point not in self.others[other].template.hardpoints:
                 raise ConfigurationError(
-                    f"{path}: found {value!r}; needed are coordinates, the name of a point of [hardpoints], or "
-                    "INSTANCE.POINT of another one"
+                    f"{path}: found {value!r}; must be coordinates, the name of a point of [hardpoints], or "
+                    "INSTANCE.POINT of another instance"
                 )
             if path in asked:
                 raise ConfigurationError(f"{path}: found {value!r}, which leads back to it; give one its coordinates")
@@ -265,7 +265,7 @@ def _instance_tables(table: Mapping[str, Any], prefix: str, instance: str) -> It
             continue
         if isinstance(value, Mapping) and "template" in value:
             if not NAME_PATTERN.fullmatch(key):
-                raise ConfigurationError(f"{path}: found {key!r}, allowed are letters, digits, '_', '.', '-'")
+                raise ConfigurationError(f"{path}: found {key!r}, must consist of letters, digits, '_', '.', '-'")
             yield path, value
             yield from _instance_tables(value, f"{path}.", path)
         elif instance:

@@ -123,7 +123,7 @@ def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
     """
     if isinstance(overrides, str | bytes):
         raise ConfigurationError(
-            f"overrides: found the text {overrides!r}; needed is a list, as [{str(overrides)!r}], or {{path: value}}"
+            f"overrides: found the text {overrides!r}; must be a list, as [{str(overrides)!r}], or {{path: value}}"
         )
     if isinstance(overrides, Mapping):
         return [f"{path}={_toml(path, value)}" for path, value in overrides.items()]
@@ -144,7 +144,7 @@ def _toml(path: str, value: Any) -> str:
         return "{" + ", ".join(f"{key} = {_toml(path, inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, Sequence):
         return "[" + ", ".join(_toml(path, inner) for inner in value) + "]"
-    raise ConfigurationError(f"overrides: {path} is a {type(value).__name__}; needed is a number, a text or a list")
+    raise ConfigurationError(f"overrides: {path} is a {type(value).__name__}; must be a number, a text or a list")
 
 
 def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Optional = list) -> dict[str, Any]:
@@ -164,7 +164,7 @@ def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Opt
     for assignment in assignments:
         name, separator, text = (part.strip() for part in assignment.partition("="))
         if not separator or not name:
-            raise ConfigurationError(f"--set {assignment}: needed is PATH=VALUE, as in damper.coulomb_friction=93.75")
+            raise ConfigurationError(f"--set {assignment}: must be PATH=VALUE, as in damper.coulomb_friction=93.75")
         try:
             paths = meant(result, name, optional)
         except ConfigurationError as error:

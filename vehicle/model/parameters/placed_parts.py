@@ -62,9 +62,7 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
                 raise ConfigurationError(f"{where}: {part.parent} holds it already; close a loop by a connection")
             part.joints.append((joint, side))
             if len(part.joints) > 1 and {"free", "fixed"} & {other.kind for other, _ in part.joints}:
-                raise ConfigurationError(
-                    f"{where}: it is {part.joints[0][0].kind} already; remove the further joint"
-                )
+                raise ConfigurationError(f"{where}: it is {part.joints[0][0].kind} already; remove the further joint")
     for i in car.values():
         for name, side in itertools.product(i.template.parts, i.sides()):
             if (side is not None or not i.template.mirrored) and i.label(name, side) not in held:

@@ -49,7 +49,7 @@ def require_plausible(vehicle: Vehicle) -> None:
 def _within(path: str, value: float, unit: str, limits: tuple[float, float, str]) -> None:
     low, high, why = limits
     if not low <= value <= high:
-        raise ConfigurationError(f"{path}: found {value:g} {unit}, allowed are {low:g} to {high:g} {unit} ({why})")
+        raise ConfigurationError(f"{path}: found {value:g} {unit}, must be {low:g} to {high:g} {unit} ({why})")
 
 
 def require_parts(vehicle: Vehicle) -> None:

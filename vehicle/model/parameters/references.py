@@ -91,14 +91,14 @@ def require_sound(car: Composition) -> None:
             raise ConfigurationError(f"{connection.path}: holds {connection.moving} on itself; name two parts")
         if getattr(connection.law, "one_sided", False) and not connection.ground:
             raise ConfigurationError(
-                f"{connection.path}.one_sided: found true, allowed is false; only a contact with the ground lifts off"
+                f"{connection.path}.one_sided: found true, must be false; only a contact with the ground lifts off"
             )
     for spring in car.springs:
         require_apart(dict(zip((f"{spring.path}, lower end", "upper end"), spring.at, strict=True)))
     joints = [joint.name for part in car.parts for joint in part.joints]
-    parts, links = [one.name for one in car.parts], [one.name for one in car.connections]
-    laws, outputs = [one.name for one in car.springs], [one.name for one in car.outputs]
-    laws += [one.name for one in car.dampers]
+    parts, links = [element.name for element in car.parts], [element.name for element in car.connections]
+    laws, outputs = [element.name for element in car.springs], [element.name for element in car.outputs]
+    laws += [element.name for element in car.dampers]
     for names in (parts, joints, links, laws, outputs):
         for name, other in itertools.pairwise(sorted(names)):
             if name == other:
@@ -140,7 +140,7 @@ def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> Non
     used |= {value for one in tables for value in one.get("hardpoints", {}).values() if isinstance(value, str)}
     for name in table.get("hardpoints", {}):
         if name not in used:
-            raise ConfigurationError(f"hardpoints.{name}: nothing uses it; take it out, or name it in an output")
+            raise ConfigurationError(f"hardpoints.{name}: nothing uses it; remove it, or name it in an output")
 
 
 def require_aliases(table: Mapping[str, Any]) -> None:

@@ -132,7 +132,7 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
     for port in bound:
         if port not in table["ports"] and port not in FREE_PORTS:
             raise ConfigurationError(
-                f"use.with.{port}: {use['template']}.toml has no such port; it has {[*table['ports']]}"
+                f"use.with.{port}: {use['template']}.toml has no port of this name; it has {[*table['ports']]}"
             )
     free = [port for port in table["ports"] if port not in bound]
     if free:
@@ -176,7 +176,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
         for element in getattr(template, key):
             if joints.get(element.joint, kinds[0]) not in kinds:
                 raise ConfigurationError(
-                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]}, needed is a "
+                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]}, must be a "
                     f"{' or a '.join(kinds)}"
                 )
 
@@ -200,7 +200,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                 head, _, side = str(word).partition(":")
                 if key == "name" and not NAME_PATTERN.fullmatch(head):
                     raise ConfigurationError(
-                        f"{where}.name: found {word!r}, allowed are letters, digits, '_', '.', '-'"
+                        f"{where}.name: found {word!r}, must consist of letters, digits, '_', '.', '-'"
                     )
                 if allowed is not None and head not in allowed:
                     besides = f", and in every template there are {', '.join(FREE_PORTS)}" if allowed is parts else ""
@@ -208,7 +208,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                         f"{where}.{key}: {word!r} leads nowhere; the nearest is {nearest(head, allowed)}{besides}"
                     )
                 if allowed is not None and side not in ("", "left", "right", "middle"):
-                    raise ConfigurationError(f"{where}.{key}: found side {side!r}, allowed are left, right, middle")
+                    raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")
                 if allowed is template.hardpoints:
                     used.add(head)
 

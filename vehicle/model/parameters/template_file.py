@@ -46,12 +46,12 @@ def read_template_file(path: Path) -> dict[str, Any]:
             convert(TEMPLATE_KEYS[key], value, key)
         for position, use in enumerate(table.get("use", [])):
             if "template" not in use or set(use) - set(USE_KEYS):
-                raise ConfigurationError(f"use: needed is template, allowed are prefix, with, when; found {use}")
+                raise ConfigurationError(f"use: found {use}; must have template, and may have prefix, with, when")
             for key, value in use.items():
                 convert(USE_KEYS[key], value, f"use.{position}.{key}")
         for pair in table.get("above", []):
             if len(pair) != 2:
-                raise ConfigurationError(f"above: found {pair}; needed are two points, the upper one first")
+                raise ConfigurationError(f"above: found {pair}; must be two points, the upper one first")
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
     return {

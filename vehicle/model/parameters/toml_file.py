@@ -189,36 +189,36 @@ def convert(hint: Any, value: Any, path: str) -> Any:
         inner = [option for option in typing.get_args(hint) if option is not type(None)]
         return convert(inner[0], value, path)
     if hint is dict and not isinstance(value, Mapping):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
+        raise ConfigurationError(f"{path}: found {value!r}, must be a table")
     if dataclasses.is_dataclass(hint):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, needed is a table of parameters")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a table of parameters")
         return build(typing.cast(type[Any], hint), value, path)
     if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a table")
         inner_hint = typing.get_args(hint)[1]
         return types.MappingProxyType(
             {key: convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
         )
     if origin is tuple:
         if not isinstance(value, list | tuple):
-            raise ConfigurationError(f"{path}: found {value!r}, needed is a list")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a list")
         return tuple(convert(typing.get_args(hint)[0], item, path) for item in value)
     if hint is str and not isinstance(value, str):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is a text in quotes")
+        raise ConfigurationError(f"{path}: found {value!r}, must be a text in quotes")
     if hint is bool and not isinstance(value, bool):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is true or false")
+        raise ConfigurationError(f"{path}: found {value!r}, must be true or false")
     return value
 
 
 def _number(value: Any, path: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is a number")
+        raise ConfigurationError(f"{path}: found {value!r}, must be a number")
     try:
         return float(value)
     except OverflowError:
-        raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, needed is a finite number") from None
+        raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, must be a finite number") from None
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

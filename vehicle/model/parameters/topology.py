@@ -47,7 +47,7 @@ class Joint:
         if self.kind in ("hinge", "slide", "cardan") and (self.along is None) == (self.axis is None):
             raise ConfigurationError(f"Joint.along: a {self.kind} needs two points in along, or its axis, one of them")
         if self.along is not None and (len(self.along) != 2 or self.along[0] == self.along[1]):
-            raise ConfigurationError(f"Joint.along: found {list(self.along)}; needed are two different points")
+            raise ConfigurationError(f"Joint.along: found {list(self.along)}; must be two different points")
         if self.axis is not None and not any(self.axis):
             raise ConfigurationError(f"Joint.axis: found {list(self.axis)}; an axis needs a length above 0")
         if self.kind == "free" and self.parent != "world":
@@ -76,7 +76,7 @@ class Connection:
 
     def __post_init__(self) -> None:
         if self.axes is not None and (len(self.axes) != 2 or self.axes[0] == self.axes[1]):
-            raise ConfigurationError(f"Connection.axes: found {list(self.axes)}; needed are two different points")
+            raise ConfigurationError(f"Connection.axes: found {list(self.axes)}; must be two different points")
         if self.axes is not None and (self.ground or self.carrier == "plate"):
             raise ConfigurationError(
                 "Connection.axes: found on the ground, whose axes are those of the car; leave them out"
@@ -104,7 +104,7 @@ class Spring:
 
     def __post_init__(self) -> None:
         if (self.lower is None) != (self.upper is None) or (self.lower is None) == (self.joint is None):
-            raise ConfigurationError("Spring.lower: needed are lower and upper, or a joint")
+            raise ConfigurationError("Spring.lower: must have lower and upper, or a joint")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

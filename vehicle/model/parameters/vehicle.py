@@ -288,21 +288,21 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
     table = vehicle_table(file)
     if "/" in (name := _body_file(table)):
         raise ConfigurationError(
-            f"body.superelement: found {name!r}, allowed are names of letters, digits, '_', '.', '-'; a file elsewhere "
-            f"is given with --set body.superelement={name}"
+            f"body.superelement: found {name!r}, must be a name of letters, digits, '_', '.', '-'; set a file in "
+            f"another folder with --set body.superelement={name}"
         )
     texts = list(overrides)
     merged = varied_table(table, texts, lambda: [*optional_paths(table, file.parent), *new_loads(texts)])
     if "/" in (name := _body_file(merged)):
-        file_of_body = Path(name).expanduser()
-        if not file_of_body.is_absolute():  # workers of a sweep may run elsewhere
+        model_file = Path(name).expanduser()
+        if not model_file.is_absolute():  # workers of a sweep may run elsewhere
             raise ConfigurationError(
-                f"--set body.superelement={name}: allowed are names of letters, digits, '_', '.', '-', of a file "
-                f"beside the vehicle file or of the package, or a whole path: {file_of_body.resolve()}"
+                f"--set body.superelement={name}: must be a name of letters, digits, '_', '.', '-', of a "
+                f"file in the folder of the vehicle file or of the package, or an absolute path: {model_file.resolve()}"
             )
-        if not file_of_body.is_file():
+        if not model_file.is_file():
             raise ConfigurationError(f"--set body.superelement={name}: no such file, or not a file")
-        merged["body"]["superelement"] = str(file_of_body)
+        merged["body"]["superelement"] = str(model_file)
     return merged
 
 
