@@ -9,7 +9,6 @@ from importlib import import_module
 
 from vehicle.commands import COMMANDS
 from vehicle.commands.command_line import begin_process, run_command
-from vehicle.commands.schema_text import schema_text
 from vehicle.errors import ConfigurationError
 
 
@@ -28,21 +27,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given and given[0] in COMMANDS:
         code: int = import_module(f"vehicle.commands.{given[0]}").main(given[1:])
         return code
-    if given[:1] == ["--schema"]:
-        return run_command(lambda: print(schema_text(given[1:])))
     return run_command(lambda: _list(given))
 
 
 def _list(given: Sequence[str]) -> None:
-    """Print a line for each command; refuse a name that is none of them."""
+    """Print a JSON Schema, or a line for each command; raise for an unknown command."""
+    if given and given[0] == "--schema":
+        from vehicle.commands.schema_text import schema_text
+
+        print(schema_text(given[1:]))
+        return
     if given and given[0] not in ("-h", "--help"):
         close = get_close_matches(given[0], COMMANDS, n=1)
         nearest = f"; did you mean {close[0]}?" if close else ""
         raise ConfigurationError(f"no command {given[0]!r}; allowed are {', '.join(COMMANDS)}{nearest}")
-    print("usage: python -m vehicle COMMAND [options]; --help behind a command lists its options;")
-    print("       python -m vehicle --schema [template] prints the JSON Schema of a vehicle file [of a template]\n")
+    print("usage: python -m vehicle COMMAND [options]; --help behind a command lists its options\n")
     for name in COMMANDS:
         print(f"  {name:<11} {import_module(f'vehicle.commands.{name}').parser().description}")
+    print("\n--schema prints the JSON Schema of a vehicle file, --schema template that of a template")
 
 
 if __name__ == "__main__":

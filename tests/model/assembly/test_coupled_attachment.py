@@ -63,7 +63,7 @@ def test_an_ideal_joint_becomes_the_sheet_metal_itself():
     np.testing.assert_allclose(b, 1e-4 * k)
 
 
-def test_a_table_behind_it_is_refused():
+def test_a_table_in_series_is_rejected():
     table = replace(SOFT, table_z=ForceTable(displacement=(-0.01, 0.0, 0.01), force=(-100.0, 0.0, 100.0)))
     with pytest.raises(ConfigurationError, match=r"engine\.bushings\.mount\.table_z: found a table behind"):
         coupled_law(connection(table), flexibility())

@@ -295,11 +295,11 @@ class Composition:
         """
         updated: dict[str, Any] = {}
         left = set(changed)
-        for kind in WITH_NUMBERS:
-            before: tuple[Any, ...] = getattr(self, kind)
+        for group in WITH_NUMBERS:
+            before: tuple[Any, ...] = getattr(self, group)
             chosen = {element.path for element in before if element.tables and element.path in changed}
             if chosen:
-                updated[kind] = tuple(
+                updated[group] = tuple(
                     element.with_numbers(file) if element.path in chosen else element for element in before
                 )
                 left -= chosen

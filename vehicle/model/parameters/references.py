@@ -134,10 +134,10 @@ def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> Non
     """
     if "superelement" in table["body"]:
         return
-    users = [one for key in ("outputs", "connection", "load") for one in table.get(key, {}).values()]
-    used = {one.get("at") for one in users if isinstance(one.get("at"), str)}
+    users = [entry for key in ("outputs", "connection", "load") for entry in table.get(key, {}).values()]
+    used = {entry.get("at") for entry in users if isinstance(entry.get("at"), str)}
     tables = [side for i in car.values() for side in (i.numbers, *(i.numbers.get(word, {}) for word in SIDE_SIGN))]
-    used |= {value for one in tables for value in one.get("hardpoints", {}).values() if isinstance(value, str)}
+    used |= {value for entry in tables for value in entry.get("hardpoints", {}).values() if isinstance(value, str)}
     for name in table.get("hardpoints", {}):
         if name not in used:
             raise ConfigurationError(f"hardpoints.{name}: nothing uses it; remove it, or name it in an output")

@@ -44,9 +44,9 @@ def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) ->
     Raises:
         ConfigurationError: a missing template, an unknown key, or a name that does not exist; with file and table.
     """
-    places = (*folders, SHIPPED)
-    files = [file for place in places[:-1] for file in sorted(place.glob("*.toml")) if file.is_file()]
-    return _read_once(name, frozenset(options), places, tuple((file, file.stat().st_mtime_ns) for file in files))
+    searched = (*folders, SHIPPED)
+    files = [file for folder in searched[:-1] for file in sorted(folder.glob("*.toml")) if file.is_file()]
+    return _read_once(name, frozenset(options), searched, tuple((file, file.stat().st_mtime_ns) for file in files))
 
 
 def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
@@ -58,7 +58,7 @@ def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
     """
     files, listed = dict[str, Path](), list(names)
     for name in listed:
-        path = next(place / f"{name}.toml" for place in (*folders, SHIPPED) if (place / f"{name}.toml").is_file())
+        path = next(folder / f"{name}.toml" for folder in (*folders, SHIPPED) if (folder / f"{name}.toml").is_file())
         if name not in files:
             files[name] = path
             listed += [use["template"] for use in read_template_file(path)["use"]]
@@ -68,15 +68,16 @@ def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
 # A sweep composes thousands of cars of the same templates; a changed file is read again.
 @functools.lru_cache(maxsize=32)
 def _read_once(
-    name: str, options: frozenset[str], places: tuple[Path, ...], stamps: tuple[tuple[Path, int], ...]
+    name: str, options: frozenset[str], searched: tuple[Path, ...], stamps: tuple[tuple[Path, int], ...]
 ) -> Template:
-    raw = _merged(name, options, places, ())
+    raw = _merged(name, options, searched, ())
     try:
         lists: dict[str, Any] = {
             key: tuple(
-                build(kind, entry, f"{key}.{entry.get('name', position)}") for position, entry in enumerate(raw[key])
+                build(parameters, entry, f"{key}.{entry.get('name', position)}")
+                for position, entry in enumerate(raw[key])
             )
-            for key, kind in LISTS.items()
+            for key, parameters in LISTS.items()
         }
         parts = {part: build(RolePart, table, f"parts.{part}") for part, table in raw["parts"].items()}
         wheel = None if raw["wheel"] is None else build(Wheel, raw["wheel"], "wheel")
@@ -94,11 +95,11 @@ def _read_once(
     return template
 
 
-def _merged(name: str, options: frozenset[str], places: tuple[Path, ...], above: tuple[str, ...]) -> dict[str, Any]:
+def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], above: tuple[str, ...]) -> dict[str, Any]:
     """Return the merged tables of a template: included templates, the template, templates included by option."""
-    path = next((place / f"{name}.toml" for place in places if (place / f"{name}.toml").is_file()), None)
+    path = next((folder / f"{name}.toml" for folder in searched if (folder / f"{name}.toml").is_file()), None)
     if path is None or not NAME_PATTERN.fullmatch(name) or name in above:
-        names = sorted({file.stem for place in places for file in place.glob("*.toml")})
+        names = sorted({file.stem for folder in searched for file in folder.glob("*.toml")})
         reason = "uses itself" if name in above else "no such file beside the vehicle file nor in the package"
         raise ConfigurationError(
             f"template {name!r}: {reason}; the nearest is {nearest(name, set(names) - {name})}, there are "
@@ -106,7 +107,7 @@ def _merged(name: str, options: frozenset[str], places: tuple[Path, ...], above:
         )
     template = read_template_file(path)
     chosen = [use for use in template.pop("use") if use.get("when") is None or use["when"] in options]
-    used = [(use, _merged(use["template"], options, places, (*above, name))) for use in chosen]
+    used = [(use, _merged(use["template"], options, searched, (*above, name))) for use in chosen]
     merged: dict[str, Any] = {"mirrored": template["mirrored"], "wheel": None}
     try:
         first = [_renamed(other, use) for use, other in used if "when" not in use]

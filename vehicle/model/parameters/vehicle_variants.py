@@ -74,8 +74,10 @@ class VehicleVariants:
         if body_moves(self.vehicle.table, table):
             optional = partial(optional_paths, table, self.folder)
             earlier = [meant(table, text.partition("=")[0].strip(), optional) for text in before]
-            given = [path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()]
-            for path, value in followers(self.vehicle.table["body"], table["body"], {*chain(*earlier), *given}).items():
+            set_paths = [path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()]
+            for path, value in followers(
+                self.vehicle.table["body"], table["body"], {*chain(*earlier), *set_paths}
+            ).items():
                 _put(table, path, value, copies)
         return self._with_tables(table, changed)
 

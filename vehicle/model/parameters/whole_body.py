@@ -42,8 +42,8 @@ def varied_table(
     varied = override(table, overrides, optional)
     if body_moves(table, varied):
         texts = (text.partition("=")[0].strip() for text in (*before, *overrides))
-        given = {path for text in dict.fromkeys(texts) for path in meant(varied, text, optional)}
-        put(varied, followers(table["body"], varied["body"], given))
+        set_paths = {path for text in dict.fromkeys(texts) for path in meant(varied, text, optional)}
+        put(varied, followers(table["body"], varied["body"], set_paths))
     return varied
 
 
@@ -101,18 +101,18 @@ def _numbers(body: Mapping[str, Any]) -> tuple[float, list[float], dict[str, flo
         return None
     moments = {name: inertia[name] for name in MOMENTS if name in inertia}
     every = [mass, *cog, *moments.values(), body.get("model_mass", mass)]
-    if any(isinstance(one, bool) or not isinstance(one, int | float) for one in every):
+    if any(isinstance(value, bool) or not isinstance(value, int | float) for value in every):
         return None
     try:
-        mass, *others = (float(one) for one in every)
+        mass, *others = (float(value) for value in every)
     except OverflowError:
         return None
     if not (mass > 0.0 and all(map(math.isfinite, (mass, *others)))):
         return None
     return (
         mass,
-        [float(one) for one in cog],
-        {name: float(one) for name, one in moments.items()},
+        [float(value) for value in cog],
+        {name: float(value) for name, value in moments.items()},
         str(inertia.get("about", "cog")),
     )
 
@@ -158,8 +158,8 @@ def _notices(vehicle: Vehicle, texts: Mapping[str, str]) -> list[str]:
         # An optional parameter may have its default again.
         with contextlib.suppress(ConfigurationError):
             text_of_path |= dict.fromkeys(meant(vehicle.table, path), text)
-    given = any(path.startswith("body.inertia.") for path in text_of_path)
-    exception = ", but for what is given of body.inertia" if given else ""
+    inertia_set = any(path.startswith("body.inertia.") for path in text_of_path)
+    exception = ", but for what is given of body.inertia" if inertia_set else ""
     moved = dict.fromkeys(
         text for path, text in text_of_path.items() if path == "body.cog" or path.startswith("body.cog.")
     )
