@@ -130,6 +130,6 @@ def test_a_template_without_ends_has_no_sensors(tmp_path):
     assert load_vehicle(file).wheels
     with pytest.raises(ConfigurationError) as caught:
         load_vehicle(file, changes("skyhook"))
-    assert "front.damper.control.law: found 'skyhook', but macpherson.toml does not say where the sensors sit" in str(
+    assert "front.damper.control.law: found 'skyhook', but macpherson.toml has no positions of its sensors" in str(
         caught.value
     )

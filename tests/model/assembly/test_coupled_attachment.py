@@ -65,7 +65,7 @@ def test_an_ideal_joint_becomes_the_sheet_metal_itself():
 
 def test_a_table_in_series_is_rejected():
     table = replace(SOFT, table_z=ForceTable(displacement=(-0.01, 0.0, 0.01), force=(-100.0, 0.0, 100.0)))
-    with pytest.raises(ConfigurationError, match=r"engine\.bushings\.mount\.table_z: found a table behind"):
+    with pytest.raises(ConfigurationError, match=r"engine\.bushings\.mount\.table_z: found a table in series"):
         coupled_law(connection(table), flexibility())
 
 

@@ -118,7 +118,7 @@ def test_a_file_over_another_car(tmp_path):
     assert vehicle_table(other)["rear"] == {"template": "blocks", "hardpoints": {"rear_support": [3.4, 0.5, 0.7]}}
     for text, message in {
         'base = "fokus"': r"base: found 'fokus'; must be a shipped car \(focus, .*\) or a vehicle file in the",
-        'base = "own.toml"': "base: .*own.toml is its own base; name another car",
+        'base = "own.toml"': "base: .*own.toml is its own base, directly or not; name",
         "base = 3": "base: ",
     }.items():
         own.write_text(text, encoding="utf-8")

@@ -88,7 +88,7 @@ VEHICLES = {
     "of itself": (
         "tie_inner = [0.985, 0.335, 0.66]",
         'tie_inner = "front.tie_inner"',
-        "tie_inner', which leads back to",
+        "tie_inner', which refers back to",
     ),
     "in the plane": (
         "strut_top = [0.877, 0.548, 1.23]",
@@ -160,7 +160,7 @@ VEHICLES = {
     "a part of a port": (
         "[front.hardpoints]",
         'ports = { body = "engin" }\n[front.hardpoints]',
-        "front.ports.body: 'engin'",
+        "front.ports.body: found 'engin'",
     ),
     "moving part": (
         *put(f"[connection.x]\n{LINK.replace('engine', 'engin')}"),
@@ -169,7 +169,7 @@ VEHICLES = {
     "carrier": (*put(f"[connection.x]\n{LINK.replace('body', 'bodi')}"), "connection.x.carrier: found 'bodi', unknown"),
     "the same part": (
         *put(f"[connection.x]\n{LINK.replace('body', 'engine')}"),
-        "connection.x: holds engine on itself",
+        "connection.x: connects engine to itself",
     ),
     "place": (*put(f"[connection.x]\n{LINK.replace('at', '#')}"), "connection.x.at: missing"),
     "part of an output": (
@@ -191,7 +191,7 @@ VEHICLES = {
     ),
     "side of what is not mirrored": (
         *put("[engine.left.bushings.hydromount]\nstiffness = [1e5, 1e5, 1e5]"),
-        "engine.left.bushings.hydromount: three_mounts.toml does not take it; it is not mirrored",
+        "engine.left.bushings.hydromount: three_mounts.toml does not use it; it is not mirrored",
     ),
     "nothing to stand on": (
         TEXT[TEXT.index("[rear]") : TEXT.index("# Channels")],

@@ -23,14 +23,18 @@ TEMPLATES = {
         'kind = "bell"',
         "joint.lower_ball.kind: found 'bell', must be one of free, fixed",
     ),
-    "unknown part": ('parent = "a_arm"', 'parent = "a_arn"', "joint.lower_ball.parent: 'a_arn' leads nowhere"),
+    "unknown part": ('parent = "a_arm"', 'parent = "a_arn"', "joint.lower_ball.parent: found 'a_arn', unknown name"),
     "unknown moving part": (
         'moving = "damper_top"',
         'moving = "damper_tip"',
-        "suspension_mount.moving: 'damper_tip' leads",
+        "suspension_mount.moving: found 'damper_tip', unknown",
     ),
-    "unknown point": ('at = "tie_outer"', 'at = "tie_outa"', "'tie_outa' leads nowhere; the nearest is tie_outer"),
-    "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: 'dampr' leads nowhere"),
+    "unknown point": (
+        'at = "tie_outer"',
+        'at = "tie_outa"',
+        "found 'tie_outa', unknown name; the nearest is tie_outer",
+    ),
+    "unknown joint": ('joint = "damper"', 'joint = "dampr"', "damper.damper.joint: found 'dampr', unknown name"),
     "side of a part": ('child = "a_arm"', 'child = "a_arm:lft"', "joint.2.child: found side 'lft', must be left"),
     "side of a point": ('at = "tie_outer"', 'at = "tie_outer:links"', "found side 'links', must be left, right"),
     "a number for a part": ('child = "a_arm"', "child = 3", "joint.2.child: found 3, must be a list"),
@@ -77,17 +81,17 @@ TEMPLATES = {
     "a loop": (
         '{ kind = "free", child = "a_arm" }',
         '{ kind = "ball", name = "x", child = "a_arm", parent = "knuckle", at = "lower_ball" }',
-        "lead to no free part; close a loop by a connection",
+        "form a loop without a free part",
     ),
     "on itself": (
         'carrier = "body", at = "arm_front"',
         'carrier = "a_arm", at = "arm_front"',
-        "holds a_arm_fr on itself",
+        "connects a_arm_fr to itself",
     ),
     "held twice": (
         '{ kind = "free", child = "a_arm" }',
         '{ kind = "free", child = ["a_arm", "knuckle"] }',
-        "joint of knuckle: world holds it already; close a loop by a connection",
+        "joint of knuckle: it has the parent world already; close a loop by a connection",
     ),
     "fixed and hinged": (
         '{ kind = "free", child = "a_arm" }',
@@ -99,46 +103,50 @@ TEMPLATES = {
         'child = "a_arm", parent = "knuckle" }',
         "joint.2.parent: found 'knuckle'; a",
     ),
-    "held by nothing": (', "main_spring_lower"]', "]", "nothing holds main_spring_lower_fr; give it a joint"),
+    "held by nothing": (', "main_spring_lower"]', "]", "main_spring_lower_fr has no joint; add one"),
     "a joint on the body": (
         '{ kind = "fixed", child = "main_spring_upper", parent = "body", at = "strut_top" }',
         '{ kind = "ball", child = "main_spring_upper", parent = "body", at = "strut_top" }',
-        "on the trimmed body a part is fixed, with a point in at",
+        "a part on the trimmed body must be fixed, with a point in at",
     ),
     "a part on a bracket": (
         '["damper_bottom", "main_spring_lower"], parent = "knuckle" }',
         '"damper_bottom", parent = "knuckle" }, { kind = "slide", child = "main_spring_lower", '
         'parent = "main_spring_upper", at = "spring_lower", axis = [0, 0, 1] }',
-        "joint of main_spring_lower_fr: main_spring_upper_fr is fixed to the trimmed body, and what hangs on it would",
+        "joint of main_spring_lower_fr: main_spring_upper_fr is fixed to the trimmed body; a joint on it would",
     ),
     "a part of others": (
         'child = "a_arm" }',
         'child = ["a_arm", "body"] }',
-        "joint of body: a part of another template",
+        "joint of body: not a part of this template",
     ),
     "no points": (MOUNT, MOUNT.replace('"strut_top"', ""), "parts.suspension_mount.points: found none"),
     "a point too many": (
         "tie_inner = ",
         'spare = "nothing"\ntie_inner = ',
-        "hardpoints.spare: nothing of the template",
+        "hardpoints.spare: not used in the template",
     ),
-    "a point of another": ("tie_inner = ", 'wheel_center = "x"\ntie_inner = ', "hardpoints.wheel_center: comes twice"),
+    "a point of another": (
+        "tie_inner = ",
+        'wheel_center = "x"\ntie_inner = ',
+        "hardpoints.wheel_center: defined twice",
+    ),
     "two connections": ('name = "arm_front"', 'name = "arm_rear"', "arm_rear_fl: two elements have this name"),
     "two joints": (
         'name = "lower_ball"',
         'name = "damper"',
-        "joint.damper: comes twice; rename one joint",
+        "joint.damper: defined twice; rename one joint",
     ),
     "two outputs": ('name = "damper_top", on', 'name = "knuckle", on', "knuckle_fl: two elements have this name"),
     "two wheels": (
         "use = [",
         'use = [{ template = "wheel", prefix = "b_", with = { hub = "knuckle" } },',
-        "wheel: comes",
+        "wheel: defined",
     ),
     "a wheel twice": (
         "use = [",
         'use = [{ template = "wheel", with = { hub = "knuckle" } },',
-        "comes twice; give what it",
+        "defined twice; set a prefix",
     ),
     "a name with a slash": ('name = "arm_front"', 'name = "arm/front"', "connection.arm/front.name: found 'arm/front'"),
     "no such template": (
@@ -159,7 +167,11 @@ TEMPLATES = {
         "use.with.hub: missing; wheel.toml needs it (part that carries",
     ),
     "no such port": ("hub = ", "hob = ", "use.with.hob: wheel.toml has no port of this name; it has ['hub']"),
-    "a port without part": ('hub = "knuckle"', 'hub = "knukle"', "'knukle' leads nowhere; the nearest is knuckle"),
+    "a port without part": (
+        'hub = "knuckle"',
+        'hub = "knukle"',
+        "found 'knukle', unknown name; the nearest is knuckle",
+    ),
 }
 
 

@@ -38,7 +38,7 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
         )
     base = beside if beside.is_file() else vehicle_file(name)
     if base.resolve() in (*above, file.resolve()):
-        raise ConfigurationError(f"base: {file} is its own base; name another car")
+        raise ConfigurationError(f"base: {file} is its own base, directly or not; name another car")
     return with_body(vehicle_table(base, (*above, file.resolve())), table)
 
 

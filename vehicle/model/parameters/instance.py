@@ -212,7 +212,9 @@ class Instance:
                     "INSTANCE.POINT of another instance"
                 )
             if path in asked:
-                raise ConfigurationError(f"{path}: found {value!r}, which leads back to it; give one its coordinates")
+                raise ConfigurationError(
+                    f"{path}: found {value!r}, which refers back to this point; set the coordinates of one point"
+                )
             other_side = (side or None) if self.others[other].template.mirrored else None
             return self.others[other].point(other_point, other_side, (*asked, path))
         if path not in self.typed:
@@ -277,7 +279,7 @@ def _instance_tables(table: Mapping[str, Any], prefix: str, instance: str) -> It
         else:
             near = nearest(key, [other for other in (table if prefix else (*VEHICLE_KEYS, *table)) if other != key])
             raise ConfigurationError(
-                f"{path}: unknown parameter; the nearest known name is {near}. A table of its own needs template = NAME"
+                f"{path}: unknown parameter; the nearest known name is {near}. A new table needs template = NAME"
             )
 
 

@@ -51,15 +51,17 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
             label, parent = i.part(child, side), i.part(joint.parent, side)
             where = f"{i.template.file}: joint of {child}"
             if name not in i.template.parts:
-                raise ConfigurationError(f"{where}: a part of another template cannot hang on a joint of this one")
+                raise ConfigurationError(f"{where}: not a part of this template, so a joint cannot hold it")
             if parent == "body" and (joint.kind != "fixed" or joint.at is None):
                 raise ConfigurationError(
-                    f"{where}: on the trimmed body a part is fixed, with a point in at; one that moves on it is free "
-                    "and has a connection, which feels the modes of the body"
+                    f"{where}: a part on the trimmed body must be fixed, with a point in at; for a moving part use "
+                    'kind = "free" and a connection, which includes the modes of the body'
                 )
             part = held.setdefault(label, _Held(i, name, child_side or side, parent))
             if part.parent != parent:
-                raise ConfigurationError(f"{where}: {part.parent} holds it already; close a loop by a connection")
+                raise ConfigurationError(
+                    f"{where}: it has the parent {part.parent} already; close a loop by a connection"
+                )
             part.joints.append((joint, side))
             if len(part.joints) > 1 and {"free", "fixed"} & {other.kind for other, _ in part.joints}:
                 raise ConfigurationError(f"{where}: it is {part.joints[0][0].kind} already; remove the further joint")
@@ -67,7 +69,7 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
         for name, side in itertools.product(i.template.parts, i.sides()):
             if (side is not None or not i.template.mirrored) and i.label(name, side) not in held:
                 raise ConfigurationError(
-                    f"{i.template.file}: parts.{name}: nothing holds {i.label(name, side)}; give it a joint, or "
+                    f"{i.template.file}: parts.{name}: {i.label(name, side)} has no joint; add one, or "
                     'kind = "free" and connections'
                 )
     return held
@@ -81,16 +83,16 @@ def _parents_first(held: Mapping[str, _Held]) -> list[str]:
     for bracket in children.get("body", []):
         for label in children.get(bracket, []):
             raise ConfigurationError(
-                f"{held[label].instance.template.file}: joint of {label}: {bracket} is fixed to the trimmed body, and "
-                "what hangs on it would not feel the modes there; hold it by a connection"
+                f"{held[label].instance.template.file}: joint of {label}: {bracket} is fixed to the trimmed body; a "
+                "joint on it would ignore the body flexibility; use a connection instead"
             )
     order = [*children.get("body", []), *children.get("world", [])]
     for label in order:
         order[order.index(label) + 1 : order.index(label) + 1] = children.get(label, [])
     if loose := [label for label in held if label not in order]:
         raise ConfigurationError(
-            f"{held[loose[0]].instance.template.file}: joints of {', '.join(loose)} lead to no free part; close a loop "
-            "by a connection"
+            f"{held[loose[0]].instance.template.file}: joints of {', '.join(loose)} form a loop without a free part; "
+            "replace one of them by a connection"
         )
     return order
 

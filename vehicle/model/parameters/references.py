@@ -34,7 +34,9 @@ def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
             for side in i.sides():
                 if (part := i.part(port, side)) not in names:
                     near = nearest(part, names)
-                    raise ConfigurationError(f"{i.name}.ports.{port}: {part!r} is no part; the nearest is {near}")
+                    raise ConfigurationError(
+                        f"{i.name}.ports.{port}: found {part!r}, unknown part; the nearest is {near}"
+                    )
 
 
 def require_geometry(car: Mapping[str, Instance]) -> None:
@@ -88,7 +90,7 @@ def require_sound(car: Composition) -> None:
     """
     for connection in car.connections:
         if connection.moving == connection.carrier:
-            raise ConfigurationError(f"{connection.path}: holds {connection.moving} on itself; name two parts")
+            raise ConfigurationError(f"{connection.path}: connects {connection.moving} to itself; name two parts")
         if getattr(connection.law, "one_sided", False) and not connection.ground:
             raise ConfigurationError(
                 f"{connection.path}.one_sided: found true, must be false; only a contact with the ground lifts off"
@@ -103,7 +105,7 @@ def require_sound(car: Composition) -> None:
         for name, other in itertools.pairwise(sorted(names)):
             if name == other:
                 raise ConfigurationError(
-                    f"{name}: two elements have this name; rename one, or give its template a prefix"
+                    f"{name}: two elements have this name; rename one, or set a prefix for its template"
                 )
 
 
@@ -118,7 +120,7 @@ def require_taken(car: Mapping[str, Instance]) -> None:
             for table in _places(i.numbers.get(side, {})):
                 if f"{side}.{table}" not in i.taken:
                     why = "what it is for exists once, on no side" if i.template.mirrored else "it is not mirrored"
-                    raise ConfigurationError(f"{i.name}.{side}.{table}: {i.template.file} does not take it; {why}")
+                    raise ConfigurationError(f"{i.name}.{side}.{table}: {i.template.file} does not use it; {why}")
 
 
 def _places(table: Mapping[str, Any]) -> Iterator[str]:

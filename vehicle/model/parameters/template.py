@@ -115,12 +115,14 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
             for key in ("hardpoints", "parts"):
                 twice = set(merged.setdefault(key, {})) & set(table[key])
                 if twice:
-                    raise ConfigurationError(f"{key}.{min(twice)}: comes twice; give what it uses a prefix")
+                    raise ConfigurationError(
+                        f"{key}.{min(twice)}: defined twice; set a prefix for an included template"
+                    )
                 merged[key] |= table[key]
             for key in (*LISTS, "above"):
                 merged[key] = [*merged.get(key, []), *table[key]]
             if merged["wheel"] and table["wheel"]:
-                raise ConfigurationError("wheel: comes twice; a template has one wheel, on both sides")
+                raise ConfigurationError("wheel: defined twice; a template has one wheel, on both sides")
             merged["wheel"] = merged["wheel"] or table["wheel"]
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
@@ -172,7 +174,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
     names = [joint.name for joint in template.joint if joint.name is not None]
     for name in names:
         if names.count(name) > 1:
-            raise ConfigurationError(f"joint.{name}: comes twice; rename one joint")
+            raise ConfigurationError(f"joint.{name}: defined twice; rename one joint")
     for key, kinds in _ON.items():
         for element in getattr(template, key):
             if joints.get(element.joint, kinds[0]) not in kinds:
@@ -206,7 +208,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                 if allowed is not None and head not in allowed:
                     besides = f", and in every template there are {', '.join(FREE_PORTS)}" if allowed is parts else ""
                     raise ConfigurationError(
-                        f"{where}.{key}: {word!r} leads nowhere; the nearest is {nearest(head, allowed)}{besides}"
+                        f"{where}.{key}: found {word!r}, unknown name; the nearest is {nearest(head, allowed)}{besides}"
                     )
                 if allowed is not None and side not in ("", "left", "right", "middle"):
                     raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")
@@ -222,6 +224,6 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
     look("above", {"at": [point for pair in raw["above"] for point in pair]})
     if spare := [name for name in template.hardpoints if name not in used]:
         raise ConfigurationError(
-            f"hardpoints.{spare[0]}: nothing of the template uses it; take it out, or put it into [hardpoints] of the "
+            f"hardpoints.{spare[0]}: not used in the template; remove it, or move it to [hardpoints] of the "
             "vehicle file"
         )

@@ -43,7 +43,7 @@ class Joint:
     def __post_init__(self) -> None:
         validate(self)
         if self.kind in ("ball", "hinge", "slide", "cardan", "spin") and self.at is None:
-            raise ConfigurationError(f"Joint.at: missing; a {self.kind} has a point")
+            raise ConfigurationError(f"Joint.at: missing; a {self.kind} needs a point")
         if self.kind in ("hinge", "slide", "cardan") and (self.along is None) == (self.axis is None):
             raise ConfigurationError(f"Joint.along: a {self.kind} needs two points in along, or its axis, one of them")
         if self.along is not None and (len(self.along) != 2 or self.along[0] == self.along[1]):
@@ -53,7 +53,7 @@ class Joint:
         if self.kind == "free" and self.parent != "world":
             raise ConfigurationError(f"Joint.parent: found {self.parent!r}; a free part has no parent")
         if not self.child:
-            raise ConfigurationError("Joint.child: found none; a joint holds one part or more")
+            raise ConfigurationError("Joint.child: found none; a joint needs one part or more")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -79,7 +79,7 @@ class Connection:
             raise ConfigurationError(f"Connection.axes: found {list(self.axes)}; must be two different points")
         if self.axes is not None and (self.ground or self.carrier == "plate"):
             raise ConfigurationError(
-                "Connection.axes: found on the ground, whose axes are those of the car; leave them out"
+                "Connection.axes: found on the ground, where axes are those of the car; remove them"
             )
 
 
