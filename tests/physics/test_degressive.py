@@ -11,7 +11,7 @@ from tests.engines.simulation.python_form import difference, python_run
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
 from vehicle.engines.simulation.callbacks import compiled_rows
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.model.laws.degressive import Degressive
 from vehicle.runs.car import Car
 

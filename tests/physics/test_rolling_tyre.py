@@ -28,7 +28,7 @@ from tests.physics.rolling_car import (
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.iso_road import IsoRoad, drive
 from vehicle.signals.excitation.signal import Signal, uniform_time

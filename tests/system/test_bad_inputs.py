@@ -140,7 +140,7 @@ def test_item_36_a_lost_state_gives_no_numbers(shaker, short_signal, tmp_path, m
             data.qfrc_applied[0] = np.nan
 
     monkeypatch.setattr(Rows, "__call__", break_down)
-    monkeypatch.setattr("vehicle.engines.simulation.run.compiled_rows", PythonRows)
+    monkeypatch.setattr("vehicle.engines.simulation.stepping.compiled_rows", PythonRows)
     outcome = shaker("--input", "short.csv")
     assert outcome.code == 4
     assert "no longer finite at t = 1.50" in outcome.err and "joint" in outcome.err

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from vehicle.engines.simulation import run
+from vehicle.engines.simulation import stepping
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.compiled import CompiledRows
@@ -76,8 +76,8 @@ class PythonRows:
 def python_run(car: CarModel, signal: Signal, **options: Any) -> Recording:
     """Run a car with the Python form."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run, "compiled_rows", PythonRows)
-        return run.simulate(car, signal, **options)
+        patch.setattr(stepping, "compiled_rows", PythonRows)
+        return stepping.simulate(car, signal, **options)
 
 
 def difference(rows: Rows, compiled: CompiledRows) -> str:

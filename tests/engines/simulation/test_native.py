@@ -19,7 +19,7 @@ from vehicle.engines.simulation.callbacks import compiled_rows, installed
 from vehicle.engines.simulation.compiled import CompiledRows
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.errors import MissingPartError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal

@@ -17,10 +17,10 @@ import numpy.typing as npt
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
-from vehicle.engines.simulation.layout import numeric, places_of, wheels_of
+from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.static_trim import StaticTrim
-from vehicle.engines.simulation.tables import curve_of
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]

@@ -19,9 +19,9 @@ from llvmlite import ir
 from vehicle.compiler import OPTIONS, numba_module, stamp
 from vehicle.engines.simulation.kernel import damper_force, rewrite
 from vehicle.engines.simulation.record_pointers import at, packed
-from vehicle.engines.simulation.records import Efc, Simulation, Ticket
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
+from vehicle.engines.simulation.step_records import Efc, Simulation, Ticket
 from vehicle.engines.simulation.structures import offsets
 from vehicle.errors import SimulationError
 

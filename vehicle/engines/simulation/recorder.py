@@ -8,15 +8,15 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.layout import numeric
-from vehicle.engines.simulation.loads import LoadPlaces, spring_coordinates
+from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
 from vehicle.engines.simulation.plate_arrays import PlateArrays
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Energies, Recording, Statistics
+from vehicle.engines.simulation.row_layout import numeric
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.sampling import Order, Samples, Sources, empty_samples, keep_sample
-from vehicle.engines.simulation.tables import curve_of
 from vehicle.names import AXES, channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 

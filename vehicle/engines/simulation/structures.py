@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import mujoco
 
-from vehicle.engines.simulation.records import Efc
+from vehicle.engines.simulation.step_records import Efc
 from vehicle.errors import MissingPartError
 
 Layout = type[ctypes.Structure]

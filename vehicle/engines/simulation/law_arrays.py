@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from vehicle.engines.simulation.element_records import Layout, Tables, Vector
-from vehicle.engines.simulation.tables import tables_through
+from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.law_numbers import AVERAGED, TURNING, WIDTH
 from vehicle.model.laws.damper import unpack
 from vehicle.model.laws.semi_active import in_steps

@@ -24,8 +24,8 @@ from vehicle.engines.simulation.element_records import (
     Table,
     Vector,
 )
-from vehicle.engines.simulation.law_numbers import law_names, laws_of, model_numbers, with_numbers
-from vehicle.engines.simulation.tables import tables_through
+from vehicle.engines.simulation.force_curves import tables_through
+from vehicle.engines.simulation.law_arrays import law_names, laws_of, model_numbers, with_numbers
 from vehicle.model.assembly.law_numbers import TURNING
 from vehicle.model.laws.damper import unpack
 from vehicle.model.laws.semi_active import in_steps

@@ -10,11 +10,11 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.acceleration import AHEAD
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.judgement import judge_energy
 from vehicle.engines.simulation.plate_arrays import PlateArrays, PlateBlock
+from vehicle.engines.simulation.recorded_acceleration import AHEAD
 from vehicle.engines.simulation.recorder import CHUNK, Recorder
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.engines.simulation.rows import Rows
