@@ -27,11 +27,9 @@ from vehicle.names import AXES
 Vector = npt.NDArray[np.float64]
 Numbers = dict[str, Vector]
 
-WIDTH = 14
-"""Length of the field of a law along three axes."""
-
 TURNING, AVERAGED = 12, 13
-"""Places in it of the stiffness against rotation, and of the mark of a stiffness that is averaged."""
+"""Indices of the rotational stiffness, and of the mark of an averaged stiffness, in the field of a law along three
+axes. A law may have any number of further values after them."""
 
 
 def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> Numbers:
