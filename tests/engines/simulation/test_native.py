@@ -114,7 +114,7 @@ def test_without_numba_a_run_names_it(car: Car, second: Signal, monkeypatch: pyt
 
 def shifted(name: str) -> type[ctypes.Structure]:
     """Return the layout of a structure with all fields shifted by one number."""
-    fields = structures.layout(name, "nuserdata" if name == "mjModel" else "")._fields_  # type: ignore[misc]
+    fields = structures.layout(name, "nuserdata" if name == "mjModel" else "")._fields_
     return type(name, (ctypes.Structure,), {"_fields_": [("shift", structures.PLAIN_TYPES["mjtNum"]), *fields]})
 
 
