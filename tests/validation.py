@@ -453,11 +453,11 @@ def main(arguments: list[str]) -> int:
         read_rows(PAGE.read_text(encoding="utf-8")) if PAGE.exists() else [],
         [Row(**json.loads(text)) for text in written],
     )
-    if repeated := twice(rows):
-        sys.exit("claims that occur more than once: " + "; ".join(repeated))
     PAGE.write_text(page(rows), encoding="utf-8")
     print(f"{PAGE.relative_to(ROOT)}: {headline(rows)}")
-    return status
+    if repeated := twice(rows):
+        print("claims that occur more than once: " + "; ".join(repeated))
+    return int(status or bool(repeated))
 
 
 if __name__ == "__main__":
