@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
 
 from tests import validation
-from tests.validation import PAGE, RED, Row, check_page, headline, merged, page, read_rows, twice, validated
+from tests.validation import PAGE, RED, ROOT, Row, check_page, headline, merged, page, read_rows, twice, validated
 from vehicle.signals.analysis.weighting import weighting
 
 LEAST_ROWS = 300
@@ -34,6 +35,13 @@ def test_the_page_is_written_from_its_rows():
     rows = read_rows(text)
     assert page(rows) == text, "docs/validation.md: run python -m tests.validation"
     assert len(rows) >= LEAST_ROWS and not twice(rows)
+
+
+def test_other_pages_quote_its_numbers():
+    text = PAGE.read_text(encoding="utf-8")
+    for path in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md")):
+        for quoted in re.findall(r"\d+ of \d+ claims hold", path.read_text(encoding="utf-8")):
+            assert quoted in text, f"{path.relative_to(ROOT)}: found {quoted!r}, must be that of docs/validation.md"
 
 
 def test_every_row_has_its_test():

@@ -52,7 +52,7 @@ def test_a_mass_is_thrown_back_by_a_bump_stop():
     # sampled every 4 ms
     validated(
         "Bushings, springs and stops", "turning point of a mass that hits a bump stop", deepest, expected, rel=5e-3,
-        unit="m", source="conservation law: kinetic energy is the area under the table",
+        unit="m", source="conservation: kinetic energy is the area under the table",
     )  # fmt: skip
     # And the whole flight against quadrature in time, with second order.
     steps, speeds = np.array([4e-3, 2e-3, 1e-3, 5e-4]), SPEED * np.linspace(0.9, 1.1, 7)

@@ -132,7 +132,7 @@ def test_momentum_is_conserved_while_the_modes_ring():
     samples = run.step(200, run.position)
     validated(
         "Integration in MuJoCo", "motion of the centre of gravity while free modes ring", samples[:, :3], 0.0,
-        abs=1e-12, unit="m", source="conservation law: momentum",
+        abs=1e-12, unit="m", source="conservation: momentum",
     )  # fmt: skip
     assert np.ptp(samples[:, 7]) > 0.05
     assert mujoco.get_mjcb_control() is None

@@ -201,7 +201,7 @@ def test_energy_of_free_rolling_over_a_ramp(tmp_path: Path) -> None:
     residual = energies.work_in - energies.dissipated - energies.stored
     validated(
         "Tyres", "energy that is missing after rolling over a ramp, of the dissipated one",
-        residual / energies.dissipated, 0.0, abs=1e-4, source="conservation law: work in = dissipated + stored",
+        residual / energies.dissipated, 0.0, abs=1e-4, source="conservation: work in = dissipated + stored",
     )  # fmt: skip
     # Up the ramp the wheels are pushed back, +x, by the load on the slope.
     assert np.max(run.channels["knuckle_fr_acc_x"]) > 1.0

@@ -28,7 +28,7 @@ def test_energy_balance(high_run):
     # Four seconds that end in motion, sampled at 1 kHz through stick and slip.
     validated(
         "Integration in MuJoCo", "energy that is missing after 4 s on the high input, of the work in",
-        energies.residual, 0.0, abs=1e-3, source="conservation law: work in = dissipated + stored",
+        energies.residual, 0.0, abs=1e-3, source="conservation: work in = dissipated + stored",
     )  # fmt: skip
     assert energies.residual == pytest.approx(
         abs(energies.work_in - energies.dissipated - energies.stored) / energies.work_in
@@ -40,7 +40,7 @@ def test_energy_balance_without_slip(car):
     validated(
         "Integration in MuJoCo",
         "energy that is missing after 4 s on a road that is too small for slip, of the work in", energies.residual, 0.0,
-        abs=1e-3, source="conservation law: work in = dissipated + stored",
+        abs=1e-3, source="conservation: work in = dissipated + stored",
     )  # fmt: skip
 
 

@@ -23,7 +23,7 @@ def at_rest(seconds):
 def test_the_residual_is_below_a_micrometre(car):
     validated(
         "Static equilibrium", "rest of the car: displacement that is left after the trim", car.model.static.residual,
-        0.0, abs=1e-6, unit="m", source="conservation law: equilibrium of all forces",
+        0.0, abs=1e-6, unit="m", source="conservation: equilibrium of all forces",
     )  # fmt: skip
 
 
@@ -34,7 +34,7 @@ def test_the_loads_carry_the_weight(car):
     weight = car.vehicle.gravity * model.body_mass.sum()
     validated(
         "Static equilibrium", "sum of all wheel and support loads is the weight", loads.sum(), weight, rel=1e-9,
-        unit="N", source="conservation law: m g from the masses of all bodies",
+        unit="N", source="conservation: m g from the masses of all bodies",
     )  # fmt: skip
     assert np.all(loads > 1000.0)
 
@@ -60,7 +60,7 @@ def test_ground_forces_and_weight_are_in_equilibrium(car):
         force += weight
         moment += np.cross(data.xipos[body], weight)
     total = car.vehicle.gravity * model.body_mass.sum()
-    law = "conservation law: forces of tyres and supports at their points, weight of every body at its place"
+    law = "conservation: forces of tyres and supports at their points, weight of every body at its place"
     validated(
         "Static equilibrium", "forces on the parked car are in equilibrium", force, np.zeros(3), abs=1e-9 * total,
         unit="N", source=law,
@@ -94,7 +94,7 @@ def test_left_and_right_carry_nearly_the_same(car):
     static = car.model.static
     validated(
         "Static equilibrium", "right front wheel carries as much as the left one", static.tyre_load["fr"],
-        static.tyre_load["fl"], rel=1e-3, unit="N", source="conservation law: masses mirrored at the middle plane",
+        static.tyre_load["fl"], rel=1e-3, unit="N", source="conservation: masses mirrored at the middle plane",
     )  # fmt: skip
     assert static.support_load["rear_support_right"] == pytest.approx(
         static.support_load["rear_support_left"], rel=1e-3
@@ -109,7 +109,7 @@ def test_without_input_nothing_moves(settings):
     largest = max(np.max(np.abs(run[channel])) for channel in run.car.vehicle.acceleration_channels)
     validated(
         "Static equilibrium", f"without input nothing accelerates, {settings or 'nominal car'}", largest, 0.0, abs=1e-6,
-        unit="m/s2", source="conservation law: a car at rest stays at rest",
+        unit="m/s2", source="conservation: a car at rest stays at rest",
     )  # fmt: skip
     assert max(np.max(np.abs(run[f"damper_{wheel}_velocity"])) for wheel in ("fr", "fl")) < 1e-9
     static = run.car.model.static

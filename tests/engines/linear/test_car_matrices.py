@@ -82,7 +82,7 @@ def test_matrices_are_symmetric_and_positive(car):
     # Preloads are in equilibrium, so the tangent is that of a potential: symmetric among the free motions.
     validated(
         "Linear system", "stiffness of the free motions is symmetric", free, free.T, peak=1e-4, unit="1/s2",
-        source="conservation law: gravity and elements have a potential",
+        source="conservation: gravity and elements have a potential",
     )  # fmt: skip
 
 

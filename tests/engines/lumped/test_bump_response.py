@@ -103,7 +103,7 @@ def test_acceleration_obeys_the_equation_of_motion():
     left += MODEL.stiffness @ moved["displacement"]
     validated(
         "Quarter and half cars", "M x'' + C x' + K x of the half car on a bump is the force of the road", left, force,
-        peak=1e-9, unit="N", source="conservation law: equation of motion at every sample",
+        peak=1e-9, unit="N", source="conservation: equation of motion at every sample",
     )  # fmt: skip
 
 

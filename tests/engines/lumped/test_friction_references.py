@@ -126,7 +126,7 @@ def test_energy_lost_in_free_decay_is_friction_times_path():
     validated(
         "Dampers and friction", "work of Coulomb friction in free decay", work,
         0.5 * 100 * 0.1**2 - 0.5 * 100 * x[-1] ** 2 - 0.5 * v[-1] ** 2, rel=1e-5, unit="J",
-        source="conservation law: loss of energy of spring and mass",
+        source="conservation: loss of energy of spring and mass",
     )  # fmt: skip
 
 

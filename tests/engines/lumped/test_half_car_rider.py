@@ -92,7 +92,7 @@ def test_static_loads_balance_weight_and_moment():
     wheels = CAR.front.unsprung_mass + CAR.rear.unsprung_mass
     validated(
         "Static equilibrium", "half car with rider: sum of the wheel loads", front + rear,
-        9.81 * (CAR.body.mass + limbs + wheels), rel=1e-10, unit="N", source="conservation law: weight",
+        9.81 * (CAR.body.mass + limbs + wheels), rel=1e-10, unit="N", source="conservation: weight",
     )  # fmt: skip
     a1, a2, a3 = CAR.body.front_arm, CAR.body.rear_arm, CAR.body.seat_arm
     about_rear = CAR.body.mass * a2 + limbs * (a2 + a3) + CAR.front.unsprung_mass * (a1 + a2)

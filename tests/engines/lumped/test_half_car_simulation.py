@@ -146,7 +146,7 @@ def test_wheel_in_the_air_is_pulled_by_nothing_but_its_suspension():
     validated(
         "Quarter and half cars", "force on a wheel in the air", 60.0 * history.acceleration("front_wheel")[air],
         pull[air], rel=1e-9, unit="N",
-        source="conservation law: Newton, spring, damper and static load of the suspension alone",
+        source="conservation: Newton, spring, damper and static load of the suspension alone",
     )  # fmt: skip
 
 

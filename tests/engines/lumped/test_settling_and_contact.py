@@ -71,5 +71,5 @@ def test_tyre_loads_carry_all_inertia():
     total = linear_tyre_load(car, history).sum(axis=0)
     validated(
         "Quarter and half cars", "sum of the tyre loads of the half car on a bump", total, expected, peak=1e-7,
-        unit="N", source="conservation law: Newton, weight and sum of m a",
+        unit="N", source="conservation: Newton, weight and sum of m a",
     )  # fmt: skip

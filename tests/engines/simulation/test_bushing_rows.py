@@ -94,7 +94,7 @@ def test_between_a_light_and_a_heavy_body():
     centre = (light * x[:, :3] + heavy * x[:, 7:10]) / (light + heavy)
     validated(
         "Bushings, springs and stops", "centre of gravity of two bodies that a bushing connects", centre,
-        np.array(np.broadcast_to(centre[0], centre.shape)), abs=1e-15, unit="m", source="conservation law: momentum",
+        np.array(np.broadcast_to(centre[0], centre.shape)), abs=1e-15, unit="m", source="conservation: momentum",
     )  # fmt: skip
 
 

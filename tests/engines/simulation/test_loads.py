@@ -92,7 +92,7 @@ def test_ground_forces_move_the_car(bumped):
     # The two sums are those of the solver: left is what joints in closed loops give way within a step.
     validated(
         "Integration in MuJoCo", "motion of the centre of gravity on a bump from the forces of the ground", found,
-        expected, peak=2e-3, unit="m", source="conservation law: Newton, summed twice over time",
+        expected, peak=2e-3, unit="m", source="conservation: Newton, summed twice over time",
     )  # fmt: skip
 
 
@@ -115,7 +115,7 @@ def test_plates_carry_and_move_a_car_on_the_road():
     assert np.all(np.max(np.abs(expected), axis=0) > 1e-5)
     validated(
         "Integration in MuJoCo", "motion of the centre of gravity on a class C road from the forces of the plates",
-        found, expected, peak=1e-4, unit="m", source="conservation law: Newton, summed twice over time",
+        found, expected, peak=1e-4, unit="m", source="conservation: Newton, summed twice over time",
     )  # fmt: skip
     named = sum(run[f"tyre_{wheel}_force_z"] for wheel in car.vehicle.wheels)
     np.testing.assert_allclose(plates[:, 2], named, rtol=1e-12)
@@ -136,7 +136,7 @@ def test_forces_move_the_body(bumped):
     validated(
         "Integration in MuJoCo", "vertical motion of the body on a bump from the recorded forces on it", found[:, 2],
         expected[:, 2], abs=1e-2 * np.max(np.abs(expected)), unit="m",
-        source="conservation law: Newton, summed twice over time",
+        source="conservation: Newton, summed twice over time",
     )  # fmt: skip
 
 

@@ -239,7 +239,7 @@ def same_answers(one: dict[str, Any], two: dict[str, Any], other: dict[str, str]
         words = "turned around" if other["fr"] == "rr" else "with left and right exchanged"
         validated(
             "Linear system", f"frequencies of a car {words}, dampers {stuck}", second, first, rel=1e-5, unit="Hz",
-            source="conservation law: symmetry, the same car from its other side",
+            source="conservation: symmetry, the same car from its other side",
         )  # fmt: skip
     for wheel, counterpart in other.items():
         for axis in ("x", "y", "z"):
@@ -268,7 +268,7 @@ def test_the_road_car_stands_and_rides(road):
     weight = road.vehicle.gravity * (model.body_mass.sum() - 9e-9)
     validated(
         "Static equilibrium", "focus on four wheels: sum of the wheel loads", sum(static.tyre_load.values()), weight,
-        rel=1e-9, unit="N", source="conservation law: m g from the masses of all bodies",
+        rel=1e-9, unit="N", source="conservation: m g from the masses of all bodies",
     )  # fmt: skip
     sliding = {next(iter(mode.motions)): mode.frequency for mode in road.modes("sliding")}
     assert 1.2 < sliding["body heave (z)"] < 1.6

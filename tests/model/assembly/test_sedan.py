@@ -85,7 +85,7 @@ def test_it_stands_and_rides(sedan):
     )  # fmt: skip
     validated(
         "Static equilibrium", "sedan: sum of the wheel loads", sum(loads.values()), gravity * model.body_mass.sum(),
-        rel=1e-9, unit="N", source="conservation law: m g from the masses of all bodies",
+        rel=1e-9, unit="N", source="conservation: m g from the masses of all bodies",
     )  # fmt: skip
     assert loads["fr"] == pytest.approx(loads["fl"], rel=1e-6) and static.residual < 1e-6
     sliding = [(mode.description, mode.frequency) for mode in sedan.modes("sliding")]

@@ -14,7 +14,7 @@ def test_periodogram_holds_the_mean_square_exactly(samples):
     validated(
         "FRF estimation and spectra", f"area under the periodogram of {samples} samples",
         spectrum.density.sum(axis=1) * spectrum.resolution_hz, (signal**2).mean(axis=1), rel=1e-13,
-        source="conservation law: Parseval's theorem",
+        source="conservation: Parseval's theorem",
     )  # fmt: skip
 
 
