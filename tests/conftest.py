@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.validation import check_page
+from tests.validation_page import check_page
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal

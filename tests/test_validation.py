@@ -8,8 +8,9 @@ import re
 import numpy as np
 import pytest
 
-from tests import validation
-from tests.validation import PAGE, RED, ROOT, Row, check_page, headline, merged, page, read_rows, twice, validated
+from tests import validation, validation_page
+from tests.validation import Row, validated
+from tests.validation_page import PAGE, RED, ROOT, check_page, exists, headline, merged, page, read_rows, twice
 from vehicle.signals.analysis.weighting import weighting
 
 LEAST_ROWS = 300
@@ -21,7 +22,7 @@ def recorded(monkeypatch):
     rows: dict[str, list[Row]] = {}
     monkeypatch.setattr(validation, "RECORDED", rows)
     monkeypatch.setattr(validation, "current_test", lambda: "tests/test_validation.py::test_an_example")
-    monkeypatch.delenv(validation.FOLDER, raising=False)
+    monkeypatch.delenv(validation_page.FOLDER, raising=False)
     return lambda: [row for each in rows.values() for row in each]
 
 
@@ -45,7 +46,7 @@ def test_other_pages_quote_its_numbers():
 
 
 def test_every_row_has_its_test():
-    gone = [row.test for row in read_rows(PAGE.read_text(encoding="utf-8")) if not validation.exists(row.test)]
+    gone = [row.test for row in read_rows(PAGE.read_text(encoding="utf-8")) if not exists(row.test)]
     assert not gone, "docs/validation.md: run python -m tests.validation"
 
 
@@ -111,11 +112,13 @@ def test_an_outdated_page_fails_with_the_command_that_writes_it(recorded, monkey
     record(10.001)
     (row,) = recorded()
     for there in ([], [dataclasses.replace(row, expected="11 N")], [row, dataclasses.replace(row, claim="another")]):
-        monkeypatch.setattr(validation, "committed", lambda there=there: {row.test: there})
+        monkeypatch.setattr(validation_page, "committed", lambda there=there: {row.test: there})
         with pytest.raises(AssertionError, match=r"outdated are .*; run python -m tests\.validation tests/test_valid"):
             check_page(row.test)
     # Round-off of another machine, and other versions of a foreign package, are no reason.
-    monkeypatch.setattr(validation, "committed", lambda: {row.test: [dataclasses.replace(row, computed="9.999 N")]})
+    monkeypatch.setattr(
+        validation_page, "committed", lambda: {row.test: [dataclasses.replace(row, computed="9.999 N")]}
+    )
     check_page(row.test)
 
 
@@ -130,7 +133,7 @@ def test_a_page_changes_only_where_its_tests_ran(recorded, monkeypatch):
         )
     )
     deleted = dataclasses.replace(row, test="tests/physics/test_static.py::test_x")
-    monkeypatch.setattr(validation, "exists", lambda test: "test_x" not in test)
+    monkeypatch.setattr(validation_page, "exists", lambda test: "test_x" not in test)
     assert merged([elsewhere, row, deleted], []) == [elsewhere, row]
     assert merged([elsewhere, other_case], [row]) == [elsewhere, row]
     assert merged([row], [dataclasses.replace(row, used="20 %")]) == [row]
@@ -139,6 +142,6 @@ def test_a_page_changes_only_where_its_tests_ran(recorded, monkeypatch):
 
 
 def test_rows_of_tests_that_are_gone_are_dropped():
-    assert validation.exists("tests/physics/test_static.py::test_the_residual_is_below_a_micrometre")
-    assert not validation.exists("tests/physics/test_static.py::test_x")
-    assert not validation.exists("tests/physics/test_no_such_file.py::test_x[1]")
+    assert exists("tests/physics/test_static.py::test_the_residual_is_below_a_micrometre")
+    assert not exists("tests/physics/test_static.py::test_x")
+    assert not exists("tests/physics/test_no_such_file.py::test_x[1]")
