@@ -194,8 +194,8 @@ def _share(share: float) -> str:
         return "0"
     if share <= 0.01:
         return "< 1 %"
-    if not math.isfinite(share):
-        return "no limit"
+    if not share <= 10.0:
+        return "more than 10 times"
     size = 10.0 ** math.floor(math.log10(100.0 * share))
     return f"{math.ceil(100.0 * share / size - 1e-9) * size:g} %"
 

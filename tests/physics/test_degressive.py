@@ -54,7 +54,7 @@ def test_the_force_is_the_law_at_the_present_velocity(velocity, friction):
         "Dampers and friction",
         f"force of the degressive damper at {velocity:g} m/s, friction {friction[0]:g} and {friction[1]:g} N", found,
         force_of(velocity, friction), rel=1e-5, unit="N",
-        source="publication: Bommer 2006, appendix C.2, with Coulomb or Stribeck friction",
+        source="closed form: Bommer 2006, appendix C.2, with Coulomb or Stribeck friction",
     )  # fmt: skip
 
 

@@ -45,7 +45,7 @@ def test_below_the_limit_it_sticks_at_any_step(step, force):
     validated(
         "Dampers and friction", f"creep of a stuck damper under {force:g} N, step {1e3 * step:g} ms", velocity[-1],
         force / (CREEP + VISCOUS), rel=1e-6, unit="m/s",
-        source="publication: Bommer 2006, slope 2 Fd eps / pi of the atan law at rest",
+        source="closed form: slope 2 Fd eps / pi of the atan law of Bommer 2006 at rest",
     )  # fmt: skip
     assert np.max(np.abs(velocity)) < 2e-5
 
@@ -144,7 +144,7 @@ def test_den_hartogs_forced_oscillator(ratio, share):
         "Dampers and friction",
         f"amplitude of a forced oscillator with Coulomb friction, w / w0 = {ratio}, Ff / F0 = {share}",
         0.5 * np.ptp(tail), exact, rel=4e-3, unit="m",
-        source="publication: Den Hartog, Trans. ASME 53, 1931, equation 30",
+        source="closed form: Den Hartog, Trans. ASME 53, 1931, equation 30",
     )  # fmt: skip
 
 

@@ -154,7 +154,7 @@ def test_the_recorded_damper_force_is_its_law(high_run):
     exact = damper.viscous * velocity + np.sign(velocity) * damper.coulomb_friction
     validated(
         "Integration in MuJoCo", "recorded damper force above 20 mm/s", force[fast], exact[fast], rel=1e-3, abs=0.5,
-        unit="N", source="publication: Bommer 2006: D v + Fd sign v",
+        unit="N", source="closed form: D v + Fd sign v",
     )  # fmt: skip
     # Never more than the limit: neither while it sticks nor while it breaks away.
     assert np.max(np.abs(force) - damper.viscous * np.abs(velocity)) <= damper.coulomb_friction + 0.5

@@ -65,7 +65,7 @@ def test_den_hartog_without_stops(ratio, share):
         "Dampers and friction",
         f"lumped oscillator with Coulomb friction, amplitude, w / w0 = {ratio}, Ff / F0 = {share}",
         steady_amplitude(time, history.displacement("mass"), period), 0.3 * den_hartog(ratio, share), rel=2e-3,
-        unit="m", source="publication: Den Hartog, Trans. ASME 53, 1931",
+        unit="m", source="closed form: Den Hartog, Trans. ASME 53, 1931",
     )  # fmt: skip
 
 
@@ -218,7 +218,7 @@ def test_switch_and_smooth_law_agree_above_the_published_velocity():
     # (110 - 50)/15000 = 4e-3 m/s, less what the inertia costs (w m/D)^2 = 1e-6.
     validated(
         "Published cars", "mass on the damper: peak velocity with the switch model", np.abs(vs).max(), 4e-3, rel=1e-4,
-        unit="m/s", source="publication: Bommer 2006, figure 2.10",
+        unit="m/s", source="publication: Bommer 2006, figures 2.9 and 2.10",
     )  # fmt: skip
     # It sticks while |F| < 50 N: (2/pi) asin(50/110) of the time, to two samples at each of four ends.
     validated(

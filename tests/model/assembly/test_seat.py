@@ -54,8 +54,8 @@ def test_the_matrices_have_the_apparent_mass(seated):
     force = frequency_response(form, frequency, "force") + frequency_response(form, frequency, "drag", "velocity")
     found = force / frequency_response(form, frequency, "seat_acc_z", "acceleration")
     validated(
-        "Published cars", "apparent mass of a sitting person, 0.05 to 50 Hz", found, apparent_mass(frequency), rel=1e-3,
-        unit="kg", source="publication: Fairley and Griffin 1989, one mass on a spring",
+        "Linear system", "apparent mass of a sitting person, 0.05 to 50 Hz", found, apparent_mass(frequency), rel=1e-3,
+        unit="kg", source="closed form: Fairley and Griffin 1989, one mass on a spring",
     )  # fmt: skip
     assert found[0] == pytest.approx(SITTING, rel=1e-3)
 

@@ -67,7 +67,7 @@ def test_its_damper_is_that_of_the_source():
         assert own.name == "damper_fr"
         validated(
             "Dampers and friction", f"damper of the sedan, {'bump' if sign > 0.0 else 'rebound'}, 0.01 to 2 m/s", force,
-            exact, rel=0.02, unit="N", source="publication: source of the sedan, c v / (1 + 1.3 v)",
+            exact, rel=0.02, unit="N", source="closed form: law of the source of the sedan, c v / (1 + 1.3 v)",
         )  # fmt: skip
 
 

@@ -79,7 +79,7 @@ def test_degressive_damper_follows_c1():
     validated(
         "Dampers and friction", "degressive law at 0.01, 0.02, 0.1 and -0.1 m/s",
         law.force(np.array([0.01, 0.02, 0.1, -0.1])), np.array([150.0, 300.0, 420.0, -420.0]), rel=1e-14, unit="N",
-        source="publication: Bommer 2006, equation C.1, by hand",
+        source="closed form: Bommer 2006, equation C.1, by hand",
     )  # fmt: skip
     assert law.force(0.02 * (1 - 1e-12)) == pytest.approx(law.force(0.02 * (1 + 1e-12)), rel=1e-11)
 
@@ -91,7 +91,7 @@ def test_smooth_coulomb_follows_2_4_and_the_regularised_law_has_its_slope_at_res
     assert smooth.force(1e-5) == pytest.approx(75.0 * 0.5, rel=1e-14)  # atan(1) = pi/4
     validated(
         "Dampers and friction", "smooth Coulomb law at 1 mm/s, of its limit", smooth.force(1e-3) / 75.0, 0.99363,
-        abs=5e-6, source="publication: Bommer 2006, equation 2.4: 2 / pi atan(eps v)",
+        abs=5e-6, source="closed form: Bommer 2006, equation 2.4: 2 / pi atan(eps v)",
     )  # fmt: skip
     assert hard.slope(0.0) == pytest.approx(coefficient, rel=1e-15) == smooth.slope(0.0)
     assert hard.force(np.array([1e-6, 1.0, -1.0])) == pytest.approx([coefficient * 1e-6, 75.0, -75.0], rel=1e-14)
@@ -118,7 +118,7 @@ def test_stribeck_follows_3_2():
     assert law.limit(0.0) == 125.0
     validated(
         "Dampers and friction", "Stribeck limit at the Stribeck velocity", law.limit(0.03), 65.0 + 60.0 * np.exp(-1.0),
-        rel=1e-14, unit="N", source="publication: Bommer 2006, equation 3.2",
+        rel=1e-14, unit="N", source="closed form: Bommer 2006, equation 3.2",
     )  # fmt: skip
     assert law.limit(np.array([-0.5, 1e6])) == pytest.approx([65.0, 65.0], rel=1e-14)
     assert law.force(0.03) == pytest.approx((65.0 + 60.0 / np.e) * 2.0 / np.pi * np.arctan(3e3), rel=1e-14)

@@ -23,7 +23,7 @@ def test_complex_stiffness_is_the_printed_fraction():
     validated(
         "Bushings, springs and stops", "complex stiffness of the engine mount, 0.01 to 1e5 rad/s",
         ENGINE_MOUNT.complex_stiffness(OMEGA), printed, rel=1e-13, unit="N/m",
-        source="publication: Bommer 2006, equation 2.13, written as a fraction",
+        source="closed form: Bommer 2006, equation 2.13, written as a fraction",
     )  # fmt: skip
 
 

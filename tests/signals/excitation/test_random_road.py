@@ -19,7 +19,7 @@ def test_rms_and_mean_are_exact(rms, taper):
     # rounding of 60001 samples
     validated(
         "Roads and excitation", f"RMS of a random input of {1e3 * rms:g} mm, taper {taper:g} s", signal.rms("fr"), rms,
-        rel=1e-12, unit="m", source="publication: Bommer 2006, levels of the shaker",
+        rel=1e-12, unit="m", source="closed form: the RMS that was asked for",
     )  # fmt: skip
     assert abs(np.mean(signal.displacement["fr"])) < 1e-12 * rms
     assert signal.time.size == 60001

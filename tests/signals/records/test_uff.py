@@ -103,7 +103,7 @@ def test_units_are_those_that_the_file_tells_or_open(tmp_path, given, unit, fact
         said = ", ".join(f"{key} {value}" for key, value in given.items())
         validated(
             "File readers", f"2 units of a universal file in SI, {said}", channel.si_values, 2.0 * factor, rel=1e-12,
-            source="standard: universal file dataset 164, SI factors",
+            source="closed form: SI factors of the units, dataset 164",
         )  # fmt: skip
 
 
