@@ -42,7 +42,8 @@ RECORD = np.dtype(
     ],
     align=True,
 )
-"""Record of the laws of a damper, of the length of the parameters of an actuator."""
+"""Record of the laws of a damper, at least as long as the 10 parameters of an actuator; a longer record is also a field
+of the model."""
 
 
 def pack(damper: Damper) -> npt.NDArray[Any]:
@@ -87,13 +88,13 @@ def damper_curve(damper: Damper) -> Curve:
 
 
 def actuator_parameters(record: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    """Return the parameters of the actuator of a damper with this record; (10,)."""
+    """Return the parameters of the actuator of a damper with this record; (n,), n the length of `RECORD`."""
     return np.atleast_1d(record).view(np.float64)
 
 
 def unpack(parameters: npt.ArrayLike) -> npt.NDArray[Any]:
-    """Return the records (w,) of the parameters (w, 10) of actuators."""
-    return np.array(parameters, dtype=np.float64, ndmin=2).view(RECORD).reshape(-1)
+    """Return the records (w,) of the parameters of w actuators, n for each, n the length of `RECORD`."""
+    return np.reshape(np.array(parameters, dtype=np.float64), -1).view(RECORD)
 
 
 def damper_law(damper: Damper) -> Parallel:
