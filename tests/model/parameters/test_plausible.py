@@ -35,7 +35,7 @@ ABSURD = {
     ),
     "rear support without stiffness": (
         "bushings.rear_support.stiffness.z=0",
-        "bushings.rear_support.stiffness.z: found 0 N/m, must be at least 5000 N/m (the rear of the car stands on it; ",
+        "bushings.rear_support.stiffness.z: found 0 N/m, must be at least 5000 N/m (it supports the rear of the car; ",
     ),
     "strut mount without stiffness": (
         "bushings.suspension_mount.stiffness.z=0",
