@@ -144,7 +144,7 @@ def element_numbers(
     makers: list[Callable[[Any], Numbers]] = []
     elements: list[list[Any]] = []
     for one in (vehicle, like[0] if like else vehicle):
-        car, own = one.composition, list[Any]([one.body])
+        car, listed = one.composition, list[Any]([one.body])
         makers = [lambda part: body_numbers(part, body)]
         for chosen, make in (
             (car.parts, mass_numbers),
@@ -154,9 +154,9 @@ def element_numbers(
             (car.dampers, damper_numbers),
             ((one,), hold_numbers),
         ):
-            own += chosen
+            listed += chosen
             makers += [make] * len(chosen)
-        elements.append(own)
+        elements.append(listed)
     if like is None:
         return [make(one) for make, one in zip(makers, elements[0], strict=True)]
     return [

@@ -114,7 +114,7 @@ def as_driven(template: Template, driving: Driving) -> Template:
 
 
 def require_rolling(vehicle: Vehicle) -> None:
-    """Check that a rolling car has all data of its tyres and wheels.
+    """Check the data that tyres and wheels of a rolling car need.
 
     Raises:
         ConfigurationError: the first parameter that is missing or wrong.

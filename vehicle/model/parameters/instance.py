@@ -290,7 +290,7 @@ def _contains_instance(table: Mapping[str, Any]) -> bool:
 
 
 def elements(car: Mapping[str, Instance], group: str) -> list[tuple[Instance, Any, str | None]]:
-    """Return all elements of one type: instance, entry of the template, side.
+    """Return the elements of a type on each side: instance, entry of the template, side.
 
     Args:
         car: instances by name.

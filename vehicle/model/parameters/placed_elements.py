@@ -41,7 +41,7 @@ def element_kinds(car: Mapping[str, Instance]) -> dict[str, type]:
 
 
 def placed_wheels(car: Mapping[str, Instance]) -> Iterator[PlacedWheel]:
-    """Yield the wheels of all axles, the right one first."""
+    """Yield the wheels of all axles, the right wheel first."""
     for i in car.values():
         if (wheel := i.template.wheel) is None:
             continue

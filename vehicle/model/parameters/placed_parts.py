@@ -29,7 +29,7 @@ class _Held:
 
 
 def placed_parts(car: Mapping[str, Instance]) -> list[PlacedPart]:
-    """Return all parts of the instances, each after its parent.
+    """Return the parts of all instances; a parent comes before its children.
 
     Args:
         car: instances by name.
@@ -76,7 +76,7 @@ def _held_parts(car: Mapping[str, Instance]) -> dict[str, _Held]:
 
 
 def _parents_first(held: Mapping[str, _Held]) -> list[str]:
-    """Return the names of all parts, each after its parent; raise for a part on a bracket, or in a loop."""
+    """Return the names of the parts, parents before children; raise for a part on a bracket, or in a loop."""
     children: dict[str, list[str]] = {}
     for label, part in held.items():
         children.setdefault(part.parent, []).append(label)

@@ -20,7 +20,7 @@ GROUPS = ("hardpoints", "parts", "bushings", "ports")
 
 
 def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
-    """Check that all ports are bound to parts.
+    """Check that every port is bound to a part.
 
     Args:
         car: instances by name.
@@ -110,7 +110,7 @@ def require_sound(car: Composition) -> None:
 
 
 def require_taken(car: Mapping[str, Instance]) -> None:
-    """Check that all tables of one side are used; elements that exist once do not use them.
+    """Check that every table of a side is used; elements that exist once do not use them.
 
     Raises:
         ConfigurationError: a table of one side is not used.
@@ -129,7 +129,7 @@ def _places(table: Mapping[str, Any]) -> Iterator[str]:
 
 
 def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> None:
-    """Check that all hardpoints of the vehicle file are used; with a body model, which may use any, skip the check.
+    """Check that every hardpoint of the vehicle file is used; skipped with a body model, which may use any hardpoint.
 
     Raises:
         ConfigurationError: a point is not used.
@@ -146,7 +146,7 @@ def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> Non
 
 
 def require_aliases(table: Mapping[str, Any]) -> None:
-    """Check that all aliases are names of parameters.
+    """Check that every alias is the name of a parameter.
 
     Raises:
         ConfigurationError: an alias of an unknown parameter.

@@ -34,7 +34,7 @@ _ON = {"damper": ("slide",), "spring": ("slide", "hinge")}
 
 
 def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) -> Template:
-    """Read a template with all templates that it includes.
+    """Read a template and merge the templates that it includes.
 
     Args:
         name: name of the file, without its extension.

@@ -27,7 +27,7 @@ USE_KEYS: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str,
 
 
 def read_template_file(path: Path) -> dict[str, Any]:
-    """Read a template file without the templates that it includes.
+    """Read a template file without included templates.
 
     Args:
         path: the file.

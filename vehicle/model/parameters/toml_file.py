@@ -84,7 +84,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
             missing.append(entry)
     if missing:
         first, *others = missing
-        also = f"; so must {', '.join(f'{one.name}{_needed(one)}' for one in others)}" if others else ""
+        also = f"; so must {', '.join(f'{entry.name}{_needed(entry)}' for entry in others)}" if others else ""
         raise ConfigurationError(
             f"{_join(path, first.name)}: missing; every parameter must be given{_needed(first)}{also}"
         )
@@ -239,6 +239,6 @@ def _join(path: str, name: str) -> str:
 
 
 @functools.cache
-def type_hints(kind: type[Any]) -> dict[str, Any]:
+def type_hints(parameters: type[Any]) -> dict[str, Any]:
     """Return the types of the fields of a dataclass; cached, because a sweep needs them thousands of times."""
-    return typing.get_type_hints(kind)
+    return typing.get_type_hints(parameters)

@@ -142,7 +142,7 @@ class Wheel:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Template:
-    """Template merged with all templates that it includes."""
+    """Template, merged with the included templates."""
 
     file: str
     mirrored: bool
