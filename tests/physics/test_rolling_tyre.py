@@ -29,7 +29,7 @@ from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.iso_road import IsoRoad, drive
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -195,7 +195,7 @@ def ramp(car: Car, speed: float) -> Signal:
 def test_energy_of_free_rolling_over_a_ramp(tmp_path: Path) -> None:
     speed = 15.0
     car = rolling_car(tmp_path, speed, gravity=9.81, tyre={"trail": 0.03}, overrides=["solver.timestep=0.0005"])
-    run = simulate(car.model, ramp(car, speed), native=False)
+    run = simulate(car.model, ramp(car, speed))
     energies = run.statistics.energies
     assert energies is not None
     residual = energies.work_in - energies.dissipated - energies.stored
@@ -220,7 +220,7 @@ def test_engines_agree_on_a_road() -> None:
     }
     road = IsoRoad(level=1e-8, seed=1, track=1.5, patch=0.1)
     signal = drive(road, speed=speed, wheels=wheels, duration=0.5)  # type: ignore[arg-type]
-    whole, few = simulate(car.model, signal, native=False), car.run(signal, engine="reduced").recording
+    whole, few = simulate(car.model, signal), car.run(signal, engine="reduced").recording
     for name in car.vehicle.acceleration_channels:
         if name.startswith(("knuckle", "seat", "engine")):
             assert np.std(few[name] - whole.channels[name]) < 0.01 * np.std(whole.channels[name]), name

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.engines.simulation.law_numbers import law_names
-from vehicle.engines.simulation.layout import read_layout
+from vehicle.engines.simulation.law_arrays import law_names
+from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal, uniform_time
 

@@ -17,7 +17,7 @@ from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.engines.reduced.many import simulate_many
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.run import simulate_reduced
-from vehicle.engines.simulation.acceleration import acceleration
+from vehicle.engines.simulation.recorded_acceleration import acceleration
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.stribeck import Stribeck
 from vehicle.model.parameters.quarter_car import load_quarter_car

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tests.validation import validated
-from vehicle.engines.simulation.acceleration import AHEAD, WEIGHTS, acceleration
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS, acceleration
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 
