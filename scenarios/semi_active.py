@@ -24,7 +24,7 @@ from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.semi_active import LAWS, PASSIVE
+from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Run

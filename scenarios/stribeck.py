@@ -24,7 +24,7 @@ from scenarios.study import car_study, computed_by, setting
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.reduced.march import has_compiler
 from vehicle.model.laws.damper import damper_law
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.analysis.slip import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases

@@ -31,7 +31,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _list(given: Sequence[str]) -> None:
-    """Print a line for each command; refuse a name that is none of them."""
+    """Print a JSON Schema, or a line for each command; raise for an unknown command."""
+    if given and given[0] == "--schema":
+        from vehicle.commands.schema_text import schema_text
+
+        print(schema_text(given[1:]))
+        return
     if given and given[0] not in ("-h", "--help"):
         close = get_close_matches(given[0], COMMANDS, n=1)
         nearest = f"; did you mean {close[0]}?" if close else ""
@@ -39,6 +44,7 @@ def _list(given: Sequence[str]) -> None:
     print("usage: python -m vehicle COMMAND [options]; --help behind a command lists its options\n")
     for name in COMMANDS:
         print(f"  {name:<11} {import_module(f'vehicle.commands.{name}').parser().description}")
+    print("\n--schema prints the JSON Schema of a vehicle file, --schema template that of a template")
 
 
 if __name__ == "__main__":

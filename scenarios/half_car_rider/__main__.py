@@ -19,8 +19,12 @@ from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, stud
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
 from scenarios.study import VERTICAL_TYRES, lumped_study
 from vehicle.engines.lumped.half_car_rider import ENDS
-from vehicle.model.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
-from vehicle.model.parameters.semi_active import LAWS, PASSIVE
+from vehicle.model.parameters.half_car_rider_parameters import (
+    PUBLISHED,
+    HalfCarRiderParameters,
+    half_car_rider_parameters,
+)
+from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 
 TITLE = "Half car with seat and rider (Parametric study of rider's comfort in a vehicle with semi-active suspension)"
 

@@ -14,7 +14,7 @@ from scenarios.half_car_rider.runs import SPEEDS, VARIED, Motion, Outcome
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.lumped.half_car_rider import linear_tyre_load
 from vehicle.engines.lumped.history import History
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 BUMP = "Half-sine bump 0.05 m high, 0.5 m long"
 

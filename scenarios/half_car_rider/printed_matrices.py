@@ -12,7 +12,7 @@ import numpy as np
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.lumped.half_car_rider import half_car_rider
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 
 def printed_system(parameters: HalfCarRiderParameters) -> LinearSystem:

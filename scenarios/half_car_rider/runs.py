@@ -15,8 +15,8 @@ from vehicle.engines.lumped.history import Array, History
 from vehicle.engines.lumped.semi_active import simulate_bump
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axle import Axle
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
-from vehicle.model.parameters.semi_active import PASSIVE
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
+from vehicle.model.parameters.semi_active_damper import PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value
 
 Motion = Literal["displacement", "acceleration"]

@@ -14,7 +14,7 @@ from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import Runs
 from scenarios.study import lumped_study
-from vehicle.model.parameters.quarter_car import PUBLISHED, load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import PUBLISHED, load_quarter_car
 
 
 def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | str:

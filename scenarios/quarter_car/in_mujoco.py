@@ -18,10 +18,10 @@ from vehicle.engines.lumped.quarter_car import quarter_car
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.model.assembly.quarter_car import WHEEL, quarter_car_spec
+from vehicle.model.assembly.quarter_car_spec import WHEEL, quarter_car_spec
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.friction import Clamped
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 from vehicle.signals.analysis.slip import slip_share
 from vehicle.signals.excitation.signal import Signal
 

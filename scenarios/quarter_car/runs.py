@@ -18,7 +18,7 @@ from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.switch import Switch
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal

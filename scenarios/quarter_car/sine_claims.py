@@ -9,7 +9,7 @@ from scenarios.places import placed
 from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Array, Runs, rms
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.lumped.history import History
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 
 NEARLY = 0.1
 """"Nearly equal" [-]."""

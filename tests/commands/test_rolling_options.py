@@ -84,7 +84,7 @@ def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
             [*ROAD, "--tyre", "standing", "--set", "driving.speed=3", "--vehicle", "sedan"],
             "--tyre standing beside --set driving.speed",
         ),
-        ([*ROAD, "--tyre", "rolling"], "does not stand on wheels alone"),
+        ([*ROAD, "--tyre", "rolling"], "has other ground contacts than wheels"),
     ],
 )
 def test_what_does_not_go_together_is_refused(

@@ -11,7 +11,7 @@ from scenarios.road.__main__ import main
 from scenarios.road.findings import friction_claims, ratio, scaling_claim
 from scenarios.road.runs import Ride, RideRuns, one_sided_tyres
 from tests.scenarios.test_comfort_sensitivity import needs_reduced
-from vehicle.model.parameters.elements import Bushing
+from vehicle.model.parameters.force_elements import Bushing
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle
 

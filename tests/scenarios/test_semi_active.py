@@ -10,7 +10,7 @@ import pytest
 
 from scenarios import semi_active
 from scenarios.semi_active import LEAD_S, RideMeasure, Setting, main, settings
-from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.weighting import weighted_record
 from vehicle.studies.sweeps.runs import Runs

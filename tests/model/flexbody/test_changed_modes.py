@@ -66,7 +66,7 @@ def test_a_table_that_is_no_number_is_refused(car, tmp_path):
     file = tmp_path / "vehicle.toml"
     text = write_text(car.vehicle)
     file.write_text(text + "\n[body.modes.torsion]\nfrequency_factor = 1.1\n", encoding="utf-8")
-    with pytest.raises(ConfigurationError, match=r"body\.modes\.torsion: needed is the number of a mode from 1"):
+    with pytest.raises(ConfigurationError, match=r"body\.modes\.torsion: must be the number of a mode from 1"):
         Car.load(file)
 
 

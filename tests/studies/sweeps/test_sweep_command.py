@@ -85,7 +85,7 @@ def test_a_table_of_variations(tmp_path):
         (["--table", "missing.csv"], "cannot be read", 3),
         (["--vary", "damper.viscous=1000", "--executor", "..:x"], "--executor ..:x: TypeError", 2),
         (["--vary", "damper.viscous=1000", "--executor", "json:nothing"], "has no attribute 'nothing'", 2),
-        (["--vary", "bushings.tyre.stiffness=1e5"], "is a vector; give all as [x, y, z]", 2),
+        (["--vary", "bushings.tyre.stiffness=1e5"], "is a vector; set all components as [x, y, z]", 2),
     ],
 )
 def test_bad_usage(arguments, message, code, signal, tmp_path, capsys):

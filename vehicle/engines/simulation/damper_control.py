@@ -11,7 +11,7 @@ from __future__ import annotations
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.element_records import Layout
 from vehicle.engines.simulation.step_records import Fields, State
-from vehicle.model.laws.semi_active import PRESENT, act
+from vehicle.model.laws.control_laws import PRESENT, act
 
 
 @jitable

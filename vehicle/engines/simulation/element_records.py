@@ -109,7 +109,7 @@ class Controls(NamedTuple):
 
     Attributes:
         dampers: which they are; (k,).
-        laws: records of `vehicle.model.laws.semi_active`; (k,).
+        laws: records of `vehicle.model.laws.control_laws`; (k,).
         sites: of the sensors, on the wheel and on the body; (k, 2).
         shapes: modal shapes there, x of all modes, y, z; (2 k, 3 modes).
         dofs: what moves them: control, sensor (0 wheel, 1 body), velocity coordinate, its tree; a row each.

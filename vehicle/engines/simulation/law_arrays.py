@@ -1,4 +1,4 @@
-"""Numbers of laws by the names of `vehicle.model.assembly.law_numbers` -> the records of the rows."""
+"""Numbers of laws by the names of `vehicle.model.assembly.element_numbers` -> the records of the rows."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from vehicle.engines.simulation.element_records import Layout, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
-from vehicle.model.assembly.law_numbers import AVERAGED, TURNING
+from vehicle.model.assembly.element_numbers import AVERAGED, TURNING
+from vehicle.model.laws.control_laws import in_steps
 from vehicle.model.laws.damper import unpack
-from vehicle.model.laws.semi_active import in_steps
 from vehicle.names import AXES
 
 Numbers = Mapping[str, Vector]

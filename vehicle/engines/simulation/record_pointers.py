@@ -16,8 +16,8 @@ import numpy.typing as npt
 from llvmlite import ir
 
 from vehicle.compiler import numba_module
+from vehicle.model.laws.control_laws import SETTING
 from vehicle.model.laws.damper import RECORD
-from vehicle.model.laws.semi_active import SETTING
 
 numba = numba_module()
 types, extending, templates = numba.types, numba.extending, numba.core.typing.templates

@@ -26,9 +26,9 @@ from vehicle.engines.simulation.element_records import (
 )
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.engines.simulation.law_arrays import law_names, laws_of, model_numbers, with_numbers
-from vehicle.model.assembly.law_numbers import TURNING
+from vehicle.model.assembly.element_numbers import TURNING
+from vehicle.model.laws.control_laws import in_steps
 from vehicle.model.laws.damper import unpack
-from vehicle.model.laws.semi_active import in_steps
 
 
 def numeric(model: mujoco.MjModel, name: str) -> Vector | None:

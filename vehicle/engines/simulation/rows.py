@@ -15,7 +15,7 @@ from vehicle.engines.simulation.law_arrays import Numbers, law_names, with_numbe
 from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 from vehicle.engines.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
-from vehicle.model.laws.semi_active import RING
+from vehicle.model.laws.control_laws import RING
 
 Vector = npt.NDArray[np.float64]
 

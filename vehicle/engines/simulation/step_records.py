@@ -80,7 +80,7 @@ class State(NamedTuple):
         contact: elastic force of the one-sided elements [N], and their r' at the last evaluation [m/s]; (2, k).
         coefficient: what the dampers have in place of D v, F = c v [N s/m]; (w,).
         sensed: velocities at the sensors in the middle of the past step and of the one before it [m/s]; (2 k, 2).
-        past: what controlled dampers remember, as of `vehicle.model.laws.semi_active`; (k, ...).
+        past: what controlled dampers remember, as of `vehicle.model.laws.control_laws`; (k, ...).
         steps: number of the present step; (1,).
     """
 

@@ -33,8 +33,8 @@ from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import vehicle_file
-from vehicle.model.parameters.varied import Family
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
+from vehicle.model.parameters.vehicle_variants import VehicleVariants
 from vehicle.model.parameters.whole_body import varied_table
 from vehicle.names import ENGINES
 from vehicle.runs.car.road import Road
@@ -64,7 +64,7 @@ class Car:
         self._checked: set[str] = set()
         self._stepped: Car | None = None
         self._base: Car | None = None
-        self._family = Family(self.vehicle, folder or Path(), self._anew)
+        self._variants = VehicleVariants(self.vehicle, folder or Path(), self._anew)
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Overrides = ()) -> Car:
@@ -85,7 +85,9 @@ class Car:
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
-        car._family = Family(car.vehicle, car.folder or Path(), lambda more: load_vehicle(file, [*changes, *more]))
+        car._variants = VehicleVariants(
+            car.vehicle, car.folder or Path(), lambda more: load_vehicle(file, [*changes, *more])
+        )
         return car
 
     def varied(self, overrides: Overrides) -> Car:
@@ -102,7 +104,7 @@ class Car:
             ConfigurationError: a name or a value is wrong.
         """
         more = assignments(overrides)
-        car = Car(self._family.vehicle_of(more, self.overrides), folder=self.folder)
+        car = Car(self._variants.variant(more, self.overrides), folder=self.folder)
         car.overrides = (*self.overrides, *more)
         car.origin = {**self.origin, "overrides": list(car.overrides)}
         car._base = self

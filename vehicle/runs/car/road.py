@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.elements import Tyre
+from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive

@@ -1,4 +1,4 @@
-"""Rigid parts: mass, moments of inertia and where their centre of gravity lies."""
+"""Rigid parts: mass, moments of inertia and centre of gravity."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
 
 ROD_RADIUS = 0.01
-"""Radius [m] of a rod whose inertia is not given, assumed: as that of a steering or stabilizer rod."""
+"""Default radius [m] of a rod without inertia, assumed: that of a steering or stabilizer rod."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,10 +42,10 @@ class Part:
     offset: Point = quantity("m", "added to that mean; right side", length=3, default=(0.0, 0.0, 0.0))
 
     def as_rod(self, start: Point, end: Point) -> Part:
-        """The part with the inertia of a rod, where none is given: m L2/12 + m r2/4 across it, m r2/2 about its axis.
+        """Return the part as a rod if it has no inertia: m L2/12 + m r2/4 across, m r2/2 about its axis.
 
         Args:
-            start, end: of the rod, right side [m].
+            start, end: ends of the rod, right side [m].
         """
         if self.inertia is not None:
             return self
@@ -57,22 +57,31 @@ class Part:
         moments = (across - less * x * x, across - less * y * y, across - less * z * z)
         return replace(self, inertia=moments, products=(less * x * y, less * z * x, less * y * z))
 
+    def cog(self, center: Point, side: float) -> Point:
+        """Return the centre of gravity of the part on one side [m].
+
+        Args:
+            center: mean of its points [m].
+            side: +1 on the right, -1 on the left.
+        """
+        return (center[0] + self.offset[0], center[1] + side * self.offset[1], center[2] + self.offset[2])
+
     def __post_init__(self) -> None:
         validate(self)
         if self.between is not None and not self.between:
-            raise ConfigurationError("Part.between: found no hardpoint; give one or more, or leave it out")
+            raise ConfigurationError("Part.between: found no hardpoint; set one or more, or remove the key")
         if self.inertia is None:
             return
         a, b, c = sorted(self.inertia)
         if a + b < c * (1.0 - 1e-9):
             raise ConfigurationError(
-                f"Part.inertia: found {list(self.inertia)} kg m2, the two smaller must add up to the largest at least "
-                f"(short by {c - a - b:.3g}); no mass distribution has such moments"
+                f"Part.inertia: found {list(self.inertia)} kg m2, the two smaller must add up to at least the largest "
+                f"(short by {c - a - b:.3g}); no mass distribution has these moments"
             )
         self._require_products(self.inertia)
 
     def _require_products(self, moments: Point) -> None:
-        """The integrals of x x, x y, ... are a positive semidefinite matrix: none of its minors is negative."""
+        """Check the products: the matrix of the integrals of x x, x y, ... must have no negative minor."""
         total = sum(moments)
         if not any(self.products) or total == 0.0:
             return
@@ -82,6 +91,6 @@ class Part:
                   xx * (yy * zz - yz**2) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx))  # fmt: skip
         if min(minors) < -1e-12:
             raise ConfigurationError(
-                f"Part.products: found {list(self.products)} kg m2, too large beside the moments {list(moments)} kg "
-                "m2; no mass distribution has such a tensor"
+                f"Part.products: found {list(self.products)} kg m2, too large for the moments {list(moments)} kg "
+                "m2; no mass distribution has this tensor"
             )

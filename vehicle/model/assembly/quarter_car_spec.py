@@ -1,4 +1,4 @@
-"""The quarter car in the elements of the complete car: bushing rows, main spring, damper with friction row, plate."""
+"""Quarter car with the elements of the complete car: bushing rows, main spring, damper with friction row, plate."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.assembly.elements import LEAST_FRICTION
+from vehicle.model.assembly.element_builder import MIN_FRICTION
 from vehicle.model.laws.damper import RECORD, actuator_parameters
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 
 WHEEL = "fr"
-"""The corner; the elements carry the names they have in the complete car."""
+"""Name of the corner; elements have their names of the complete car."""
 
 HEIGHTS = {"plate": 0.0, "wheel": 0.3, "strut_top": 0.8}
-"""Heights [m] of the plate, of the wheel and of the upper mount: any will do on a vertical line."""
+"""Heights [m] of the plate, of the wheel and of the upper mount, arbitrary on a vertical line."""
 
 VERTICAL = (0.0, 0.0, 1.0)
 
@@ -28,7 +28,7 @@ VERTICAL = (0.0, 0.0, 1.0)
 def quarter_car_spec(
     car: QuarterCar, *, timestep: float, damper: Literal["slip", "stick", "friction"] = "friction"
 ) -> mujoco.MjSpec:
-    """Quarter car for MuJoCo, in the names that the element rows of the complete car read.
+    """Return the quarter car for MuJoCo, with the names that the element rows of the complete car read.
 
     Masses slide vertically: `body`, `wheel`, and with friction `damper_top_fr` on the joint `damper_fr` of the wheel,
     whose coordinate is the travel of the damper. Elements: `main_spring_fr`, `bushing/tyre_fr` to the mocap plate
@@ -44,8 +44,8 @@ def quarter_car_spec(
 
     Args:
         car: the parameters.
-        timestep: step [s].
-        damper: how the shock absorber is modelled.
+        timestep: time step [s].
+        damper: model of the shock absorber.
 
     Returns:
         The specification, with an acceleration sensor `<place>_acc` for body, wheel and damper.
@@ -56,7 +56,7 @@ def quarter_car_spec(
     Source: Bommer 2006, equations 2.1, 2.2, 2.6.
     """
     if damper not in ("slip", "stick", "friction"):
-        raise ConfigurationError(f"damper: found {damper!r}, allowed are slip, stick, friction")
+        raise ConfigurationError(f"damper: found {damper!r}, must be one of slip, stick, friction")
     if not (np.isfinite(timestep) and timestep > 0.0):
         raise ConfigurationError(f"timestep: found {timestep!r} s, must be finite and greater than 0.0")
     corner = _Corner(timestep)
@@ -82,7 +82,7 @@ def quarter_car_spec(
 
 
 class _Corner:
-    """Adds masses and elements to a specification."""
+    """Builder of the masses and elements of a quarter car."""
 
     def __init__(self, timestep: float) -> None:
         self.spec = mujoco.MjSpec()
@@ -106,27 +106,27 @@ class _Corner:
         body.explicitinertial = True
         body.mass, body.ipos, body.inertia = mass, np.zeros(3), np.full(3, mass)
         body.add_joint(name=joint, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=VERTICAL)
-        place = "damper" if joint == f"damper_{WHEEL}" else name
-        body.add_site(name=f"place/{place}")
+        output = "damper" if joint == f"damper_{WHEEL}" else name
+        body.add_site(name=f"place/{output}")
         self.spec.add_sensor(
-            name=f"{place}_acc",
+            name=f"{output}_acc",
             type=mujoco.mjtSensor.mjSENS_FRAMELINACC,
             objtype=mujoco.mjtObj.mjOBJ_SITE,
-            objname=f"place/{place}",
+            objname=f"place/{output}",
         )
         self.heights[name] = height + self.heights.get(parent.name, 0.0)
         return body
 
     def add_plate(self) -> None:
-        """Shaker plate under the tyre."""
+        """Add the shaker plate under the tyre."""
         self.spec.worldbody.add_body(name=f"plate_{WHEEL}", pos=[0.0, 0.0, HEIGHTS["plate"]], mocap=True)
         self.heights[f"plate_{WHEEL}"] = HEIGHTS["plate"]
 
-    def add_bushing(self, name: str, moving: str, carrier: str, place: str, law: Kelvin | Maxwell) -> None:
-        """Add a vertical element; a connect row, since nothing turns."""
+    def add_bushing(self, name: str, moving: str, carrier: str, height: str, law: Kelvin | Maxwell) -> None:
+        """Add a vertical element as a connect row, because no body rotates."""
         name = f"bushing/{name}_{WHEEL}"
-        self._site(f"{name}/moving", moving, place)
-        self._site(f"{name}/carrier", carrier, place)
+        self._site(f"{name}/moving", moving, height)
+        self._site(f"{name}/carrier", carrier, height)
         self.spec.add_equality(
             name=name,
             type=mujoco.mjtEq.mjEQ_CONNECT,
@@ -142,7 +142,7 @@ class _Corner:
         self._numeric(f"law/{name}", constants)
 
     def add_main_spring(self, stiffness: float) -> None:
-        """Main spring as a tendon between wheel and body, held by an equality row."""
+        """Add the main spring as a tendon between wheel and body, with an equality row."""
         name = f"main_spring_{WHEEL}"
         self._site(f"{name}/lower", "wheel", "wheel")
         self._site(f"{name}/upper", "body", "strut_top")
@@ -153,10 +153,10 @@ class _Corner:
         self._numeric(f"law/{name}", [stiffness])
 
     def add_damper(self, car: QuarterCar) -> None:
-        """Damper as a user actuator on its slide joint; the joint's friction row holds the set-valued part."""
+        """Add the damper as a user actuator on its slide joint, whose friction row has the set-valued part."""
         name, limit = f"damper_{WHEEL}", car.friction.limit
         # MuJoCo makes no friction row for a joint without friction; the callback sets the limit anyway.
-        self.spec.joint(name).frictionloss = max(limit, LEAST_FRICTION)
+        self.spec.joint(name).frictionloss = max(limit, MIN_FRICTION)
         self.spec.add_equality(name=name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name)
         actuator = self.spec.add_actuator(name=name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype, actuator.biastype = mujoco.mjtGain.mjGAIN_USER, mujoco.mjtBias.mjBIAS_USER
@@ -164,9 +164,9 @@ class _Corner:
         laws = (car.damper.damping, car.friction.steepness, limit, limit, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0)
         actuator.biasprm = actuator_parameters(np.array(laws, dtype=RECORD))
 
-    def _site(self, name: str, body: str, place: str) -> None:
+    def _site(self, name: str, body: str, height: str) -> None:
         owner = self.spec.body(body)
-        owner.add_site(name=name, pos=[0.0, 0.0, HEIGHTS[place] - self.heights[body]])
+        owner.add_site(name=name, pos=[0.0, 0.0, HEIGHTS[height] - self.heights[body]])
 
     def _numeric(self, name: str, data: npt.ArrayLike) -> None:
         self.spec.add_numeric(name=name, data=np.asarray(data, dtype=float))

@@ -8,9 +8,9 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
-from vehicle.model.laws.semi_active import PRESENT, act, at_rest, demanded, in_steps, pack
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
-from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
+from vehicle.model.parameters.semi_active_damper import LAWS
 
 DAMPER = half_car_rider_parameters().semi_active
 SPEEDS = np.array([-2.0, -0.3, -1e-9, -1e-300, 0.0, 1e-300, 1e-9, 0.3, 2.0])
@@ -81,7 +81,7 @@ def test_hybrid_on_off_switches_by_its_shares():
 def test_unknown_law_is_refused():
     with pytest.raises(ConfigurationError) as caught:
         dataclasses.replace(DAMPER, law="skyhok")
-    assert str(caught.value) == f"SemiActiveDamper.law: found 'skyhok', allowed are passive, {', '.join(LAWS)}"
+    assert str(caught.value) == f"SemiActiveDamper.law: found 'skyhok', must be one of passive, {', '.join(LAWS)}"
 
 
 TIME = 1e-3 * np.arange(2000)

@@ -1,4 +1,4 @@
-"""The elements of a car, each added to a MuJoCo specification with the constants of its law."""
+"""Builder that adds the elements of a car, with the constants of their laws, to a MuJoCo specification."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.model.assembly.law_numbers import (
+from vehicle.model.assembly.element_numbers import (
     TURNING,
     connection_name,
     connection_numbers,
@@ -36,19 +36,19 @@ from vehicle.model.parameters.vehicle import Vehicle
 Vector = npt.NDArray[np.float64]
 
 MODAL_BODY_MASS = 1e-9
-"""Mass [kg] of the bodies that carry the modal coordinates; MuJoCo needs one, the armature of 1 is the modal mass."""
+"""Mass [kg] of the bodies of the modal coordinates, required by MuJoCo; the armature of 1 is the modal mass."""
 
 JOINT_TIME_STEPS = 4.0
 """Time constant of the ideal joints in steps; below 2 MuJoCo's reference would be unstable."""
 
 JOINT_IMPEDANCE = 0.9999
-"""Impedance of the ideal joints; the residue 1e-4 of the constraint acceleration stays unanswered."""
+"""Impedance of the ideal joints; the residue 1e-4 of the constraint acceleration is not corrected."""
 
 VIEWER_IMPEDANCE = 0.99
-"""Impedance of the bushings where no callback gives them their laws."""
+"""Impedance of the bushings without the callbacks of their laws."""
 
-LEAST_FRICTION = 1e-9
-"""Friction [N] written where a damper has none, so that its row exists."""
+MIN_FRICTION = 1e-9
+"""Friction [N] of a damper without friction, so that its row exists."""
 
 KINDS = {
     "ball": mujoco.mjtJoint.mjJNT_BALL,
@@ -58,13 +58,13 @@ KINDS = {
 
 
 class ElementBuilder:
-    """Adds the elements of a car to a specification; knows where each body sits in the design position.
+    """Builder of the elements of a car, with the origin of each body in the design position.
 
     Args:
-        spec: with the options of `vehicle.model.assembly.spec`.
+        spec: specification with the options of `vehicle.model.assembly.spec`.
         vehicle: parameters.
         superelement: the flexible body with the masses that are fixed to it.
-        nodes: points of the body to the names of its nodes.
+        nodes: node name by point of the body.
     """
 
     def __init__(
@@ -93,33 +93,33 @@ class ElementBuilder:
         return body
 
     def _site(self, name: str, body: str, point: Point) -> None:
-        place = np.array(point) - self.origins[body]
-        self.bodies[body].add_site(name=name, pos=place, size=[0.012, 0.012, 0.012], group=4)
+        position = np.array(point) - self.origins[body]
+        self.bodies[body].add_site(name=name, pos=position, size=[0.012, 0.012, 0.012], group=4)
 
     def _numerics(self, numbers: Mapping[str, Vector]) -> None:
         for name, data in numbers.items():
             self.spec.add_numeric(name=name, data=data)
 
     def _node_shape(self, name: str, point: Point) -> None:
-        """Write the modal displacement of the body's node at a point, (3, modes) row by row [kg^-1/2]."""
+        """Write the modal displacement of the body node at a point, (3, modes) row by row [kg^-1/2]."""
         if self.vehicle.body.flexible:
             self._numerics({f"shape/{name}": self.superelement.shape_at(self.nodes[point]).ravel()})
 
     def _node_rotation(self, name: str, point: Point) -> None:
-        """Write the modal rotation of the body's node at a point, where its model knows it [rad m^-1 kg^-1/2]."""
+        """Write the modal rotation of the body node at a point, if its model contains it [rad m^-1 kg^-1/2]."""
         psi = self.superelement.rotations.get(self.nodes[point]) if self.vehicle.body.flexible else None
         if psi is not None:
             self._numerics({f"rotation/{name}": psi.T.ravel()})
 
     def add_body(self) -> None:
-        """Trimmed body, and its mass-normalised modal coordinates q as slides: q'' + 2 zeta w q' + w2 q = force."""
+        """Add the trimmed body and its mass-normalised modal coordinates as slides: q'' + 2 zeta w q' + w2 q = f."""
         body = rigid_body(self.vehicle.body)
         self._add("body", "world", body.cog, body.mass, body.full_inertia).add_freejoint(name="body")
         if not self.vehicle.body.flexible:
             return
         for field, (stiffness, damping) in mode_numbers(self.vehicle.body, self.superelement).items():
             name = field.removeprefix("joint/")
-            # Along x, so that gravity does not act on it.
+            # Along x, so that gravity does not act on the mass.
             self._add(name, "world", np.zeros(3), MODAL_BODY_MASS, np.full(3, MODAL_BODY_MASS)).add_joint(
                 name=name,
                 type=mujoco.mjtJoint.mjJNT_SLIDE,
@@ -130,7 +130,7 @@ class ElementBuilder:
             )
 
     def add_part(self, part: PlacedPart) -> None:
-        """A rigid part with its joints."""
+        """Add a rigid part with its joints."""
         (numbers,) = mass_numbers(part).values()
         moments = numbers[1:] if numbers[4:].any() else numbers[1:4]
         body = self._add(part.name, part.parent, np.array(part.cog), float(numbers[0]), moments)
@@ -143,12 +143,12 @@ class ElementBuilder:
                 )
 
     def add_joint_spring(self, on_joint: JointSpring) -> None:
-        """Spring and damping of a hinge or slide, which MuJoCo has itself."""
+        """Set spring and damping of a hinge or slide, which MuJoCo computes."""
         joint, ((stiffness, damping),) = self.spec.joint(on_joint.joint), joint_numbers(on_joint).values()
         joint.stiffness, joint.damping = [stiffness, 0.0, 0.0], [damping, 0.0, 0.0]
 
     def add_plate(self, wheel: PlacedWheel) -> None:
-        """Plate under a tyre, a mocap body, so that each can be driven."""
+        """Add the plate under a tyre as a mocap body with a prescribed motion."""
         self.origins[wheel.plate] = np.array(wheel.patch)
         self.bodies[wheel.plate] = self.spec.worldbody.add_body(name=wheel.plate, pos=wheel.patch, mocap=True)
 
@@ -168,11 +168,11 @@ class ElementBuilder:
             name2=sites[1],
         )
         if not numbers:
-            # Ideal joint: MuJoCo's own reference, critically damped, as stiff as the step allows.
+            # Ideal joint: the reference acceleration of MuJoCo, critically damped, as stiff as the step allows.
             row.solref = [JOINT_TIME_STEPS * self.vehicle.solver.step, 1.0]
             row.solimp = [JOINT_IMPEDANCE, JOINT_IMPEDANCE, 0.001, 0.5, 2.0]
         else:
-            # Only for a viewer without the callbacks: stiffer than MuJoCo's own, so that the car sags by 4 mm.
+            # Only for a viewer without the callbacks: stiffer than the default, so that the car sags by 4 mm.
             row.solimp = [VIEWER_IMPEDANCE, VIEWER_IMPEDANCE, 0.001, 0.5, 2.0]
             self._numerics(numbers)
         if on_body:
@@ -181,7 +181,7 @@ class ElementBuilder:
                 self._node_rotation(name, connection.at)
 
     def add_spring(self, spring: PlacedSpring) -> None:
-        """Spring as a tendon between its ends, held by an equality row that the callback gives its law."""
+        """Add a spring as a tendon between its ends, with an equality row whose law the callback sets."""
         name = spring.name
         tendon = self.spec.add_tendon(name=name)
         for end, body, point in zip(("lower", "upper"), spring.parts, spring.at, strict=True):
@@ -193,11 +193,11 @@ class ElementBuilder:
         self._numerics(spring_numbers(spring))
 
     def add_damper(self, placed: PlacedDamper) -> None:
-        """Damper as a user actuator on its slide joint; the joint's friction row holds the set-valued part."""
+        """Add a damper as a user actuator on its slide joint; the friction row of the joint has the set-valued part."""
         name, damper = placed.joint, placed.law
         # MuJoCo makes no friction row for a joint without friction; the callback sets the limit anyway.
-        self.spec.joint(name).frictionloss = max(damper.coulomb_friction, LEAST_FRICTION)
-        # The equality row carries the half step of the viscous part; in a plain viewer it holds the damper.
+        self.spec.joint(name).frictionloss = max(damper.coulomb_friction, MIN_FRICTION)
+        # The equality row carries the half step of the viscous part; in a plain viewer it supports the damper.
         self.spec.add_equality(
             name=placed.name, type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT, name1=name
         )
@@ -206,7 +206,7 @@ class ElementBuilder:
         self._numerics(numbers)
         for field, piece in numbers.items():
             if field.startswith("law/valve/"):
-                # Each steeper piece of the curve is a further friction row, which a joint cannot have: a tendon.
+                # Each steeper segment of the curve needs a further friction row: a joint has one, so use a tendon.
                 tendon = self.spec.add_tendon(name=field.removeprefix("law/"))
                 tendon.wrap_joint(name, 1.0)
                 tendon.frictionloss = piece[2]
@@ -223,11 +223,11 @@ class ElementBuilder:
                     self._node_shape(f"sensor/{placed.name}/{end}", at)
 
     def add_hold(self) -> None:
-        """Write the hold of the course of a rolling car, which acts on the trimmed body."""
+        """Write the constants of the hold of the course of a rolling car, which acts on the trimmed body."""
         self._numerics(hold_numbers(self.vehicle))
 
-    def add_place(self, output: PlacedOutput) -> None:
-        """Site and acceleration sensor of a recorded place."""
+    def add_output(self, output: PlacedOutput) -> None:
+        """Add site and acceleration sensor of an output point."""
         name = f"place/{output.name}"
         self._site(name, output.on, output.at)
         self.spec.add_sensor(

@@ -1,4 +1,4 @@
-"""Parameters of the quarter-car family: one set of parts that every model of the family takes from."""
+"""Parameters of the quarter-car family: one set of parts for all models of the family."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Body(Validated):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Wheel(Validated):
-    """Unsprung mass on its tyre."""
+    """Unsprung mass and vertical tyre stiffness."""
 
     mass: float = quantity("kg", "unsprung mass Mt", above=0.0)
     tyre_stiffness: float = quantity("N/m", "vertical tyre stiffness Kt", above=0.0)
@@ -42,7 +42,7 @@ class Mount(Validated):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Damper(Validated):
-    """Shock absorber without its friction."""
+    """Shock absorber without friction."""
 
     mass: float = quantity("kg", "damper mass Md between damper and mount", above=0.0)
     damping: float = quantity("N s/m", "viscous damping constant D", above=0.0)
@@ -50,10 +50,9 @@ class Damper(Validated):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Friction(Validated):
-    """Friction of the shock absorber, smoothed by an arc tangent; numbers of the laws of `vehicle.model.laws` by their
-    names.
+    """Friction of the shock absorber, smoothed by an arc tangent; names as in the laws of `vehicle.model.laws`.
 
-    What the Coulomb law does not need is that of the complete car where a file leaves it out (Bommer 2006, 3.4).
+    Defaults of the parameters that only the Stribeck law needs are those of the complete car (Bommer 2006, 3.4).
     """
 
     limit: float = quantity("N", "Coulomb friction force Fd", at_least=0.0)
@@ -106,7 +105,7 @@ class Strut(Validated):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SmallMass(Validated):
-    """Small mass on the body that stands for the highest flexible mode."""
+    """Small mass on the body that represents the highest flexible mode."""
 
     mass: float = quantity("kg", "small mass", above=0.0)
     frequency: float = quantity("Hz", "natural frequency on the body", above=0.0)
@@ -149,7 +148,7 @@ class QuarterCar:
 
 
 def load_quarter_car(path: Path = PUBLISHED) -> QuarterCar:
-    """Quarter car of a parameter file.
+    """Read the quarter car of a parameter file.
 
     Args:
         path: TOML file; the published quarter car by default.

@@ -1,4 +1,4 @@
-"""A damper whose coefficient a controller sets: what it can do, the gains of the laws, delay and rate."""
+"""Damper with a controlled coefficient: limits, gains of the control laws, delay and rate."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import quantity, validate
 
 PASSIVE = "passive"
-"""Word of a damper that nobody controls."""
+"""Name of the law of an uncontrolled damper."""
 
 LAWS = ("skyhook_on_off", "skyhook", "groundhook_on_off", "groundhook", "hybrid_on_off", "hybrid")
-"""Words of the laws of `vehicle.model.laws.semi_active`."""
+"""Names of the laws of `vehicle.model.laws.control_laws`."""
 
 AT_ONCE = 1e12
-"""Rate of the coefficient [N s/m per s] that stands for no limit."""
+"""Rate of the coefficient [N s/m per s] that means no limit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SemiActiveDamper:
-    """What an adjustable damper can do, and the gains of the control laws; passive, all of it is without effect.
+    """Limits of an adjustable damper and gains of its control law; without effect if the law is "passive".
 
-    The coefficient takes the place of the viscous law of the damper: F = c v, cmin <= c <= cmax. Friction, gas force
-    and stop stay beside it.
+    The coefficient replaces the viscous law of the damper: F = c v, cmin <= c <= cmax. Friction, gas force and stop
+    remain.
     """
 
     law: str = quantity("-", "control law", choices=(PASSIVE, *LAWS), default=PASSIVE)

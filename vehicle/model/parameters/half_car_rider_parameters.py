@@ -7,7 +7,7 @@ from pathlib import Path
 
 from vehicle.model.parameters.axle import Axle
 from vehicle.model.parameters.quantity import Validated, quantity
-from vehicle.model.parameters.semi_active import SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.model.parameters.toml_file import build, read_table
 
 PUBLISHED = Path(__file__).with_name("half_car_rider.toml")
@@ -26,7 +26,7 @@ class RiderBody(Validated):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limb(Validated):
-    """A mass on a spring and a damper: the seat on the body, or one half of the rider on the seat."""
+    """Mass on a spring and a damper: the seat on the body, or one half of the rider on the seat."""
 
     mass: float = quantity("kg", "mass", above=0.0)
     stiffness: float = quantity("N/m", "stiffness of its support", above=0.0)

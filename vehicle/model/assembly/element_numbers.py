@@ -1,4 +1,4 @@
-"""What the parameters of a car become in its model beside places: numbers of laws, springs in joints, masses, by name.
+"""Numbers of the elements of a car in its model, by name: laws, springs on joints, masses.
 
 The model keeps those of laws in custom fields of these names, and `vehicle.engines.simulation.row_layout` reads them.
 A car that differs from another one in such numbers alone needs no model of its own (`vehicle.engines.linear.varied`).
@@ -16,11 +16,11 @@ import numpy.typing as npt
 from vehicle.model.assembly.connections import element_law
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement
-from vehicle.model.laws import semi_active
+from vehicle.model.laws import control_laws
 from vehicle.model.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
-from vehicle.model.parameters.elements import Damper, ForceTable, Tyre
+from vehicle.model.parameters.force_elements import Damper, ForceTable, Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 
@@ -33,61 +33,61 @@ axes. A law may have any number of further values after them."""
 
 
 def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> Numbers:
-    """Numbers of the law of a connection; nothing of an ideal ball joint. Arguments as of `element_law`."""
+    """Return the numbers of the law of a connection; empty for an ideal ball joint. Arguments: see `element_law`."""
     law = element_law(connection, body, superelement)
     if law is None:
         return {}
-    name, found = connection_name(connection), Numbers()
+    name, numbers = connection_name(connection), Numbers()
     for axis, local in zip(AXES, law.local, strict=True):
-        found |= _table(f"{name}/{axis}", getattr(connection.law, f"table_{axis}", None), float(local))
+        numbers |= _table(f"{name}/{axis}", getattr(connection.law, f"table_{axis}", None), float(local))
     if getattr(connection.law, "one_sided", False):
-        found[f"one_sided/{name}"] = np.ones(1)
+        numbers[f"one_sided/{name}"] = np.ones(1)
     # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
     branch_damping = law.branch_stiffness * law.branch_time
     constants = [law.stiffness, law.damping, law.branch_stiffness, branch_damping]
     if connection.rolling is not None and isinstance(connection.law, Tyre):
-        found[f"rolling/{name}"] = np.array([connection.rolling.speed, connection.law.trail, *connection.rolling.arm])
-    found[f"law/{name}"] = np.concatenate([*constants, [law.rotational_stiffness, float(law.averaged)]])
+        numbers[f"rolling/{name}"] = np.array([connection.rolling.speed, connection.law.trail, *connection.rolling.arm])
+    numbers[f"law/{name}"] = np.concatenate([*constants, [law.rotational_stiffness, float(law.averaged)]])
     if law.directions is not None:
-        found[f"directions/{name}"] = law.directions.ravel()
-    return found
+        numbers[f"directions/{name}"] = law.directions.ravel()
+    return numbers
 
 
 def connection_name(connection: PlacedConnection) -> str:
-    """Name of a connection in the model."""
+    """Return the name of a connection in the model."""
     return f"{'ball' if connection.law is None else 'bushing'}/{connection.name}"
 
 
 def spring_numbers(spring: PlacedSpring) -> Numbers:
-    """Numbers of a spring between two points."""
+    """Return the numbers of a spring between two points."""
     return {f"law/{spring.name}": np.array([spring.stiffness]), **_table(spring.name, spring.table)}
 
 
 def damper_numbers(placed: PlacedDamper) -> Numbers:
-    """Numbers of a damper: its stop, the steeper pieces of its curve, its control; of its actuator."""
-    found, (pieces, control, actuator) = _table(placed.name, placed.law.stop), _packed(placed.law)
-    for number, piece in enumerate(pieces):
-        found[f"law/valve/{placed.name}" + (f"/{number}" if number else "")] = piece
+    """Return the numbers of a damper: stop, steeper segments of the curve, control, actuator."""
+    numbers, (segments, control, actuator) = _table(placed.name, placed.law.stop), _packed(placed.law)
+    for number, segment in enumerate(segments):
+        numbers[f"law/valve/{placed.name}" + (f"/{number}" if number else "")] = segment
     if control is not None:
-        found[f"control/{placed.name}"] = control
-    found[f"actuator/{placed.name}"] = actuator
-    return found
+        numbers[f"control/{placed.name}"] = control
+    numbers[f"actuator/{placed.name}"] = actuator
+    return numbers
 
 
 @lru_cache(maxsize=16)
 def _packed(law: Damper) -> tuple[Vector, Vector | None, Vector]:
-    """Steeper pieces, control and record of a damper; those of one axle are alike."""
-    control = None if law.controlled is None else semi_active.pack(law.controlled)
+    """Return steeper segments, control and record of a damper; cached, because dampers of an axle are equal."""
+    control = None if law.controlled is None else control_laws.pack(law.controlled)
     return damper_curve(law).clamped(), control, actuator_parameters(pack(law))
 
 
 def joint_numbers(spring: JointSpring) -> Numbers:
-    """Stiffness and damping of a spring on a joint."""
+    """Return stiffness and damping of a spring on a joint."""
     return {f"joint/{spring.joint}": np.array([spring.stiffness, spring.damping])}
 
 
 def mode_numbers(body: TrimmedBody, superelement: Superelement) -> Numbers:
-    """Stiffness w2 and damping 2 zeta w of the modal coordinates; nothing of a rigid body."""
+    """Return stiffness w2 and damping 2 zeta w of the modal coordinates; empty for a rigid body."""
     if not body.flexible:
         return {}
     omega = 2.0 * np.pi * superelement.frequencies * body.frequency_scale
@@ -96,34 +96,34 @@ def mode_numbers(body: TrimmedBody, superelement: Superelement) -> Numbers:
 
 
 def body_numbers(body: TrimmedBody, superelement: Superelement) -> Numbers:
-    """Mass and inertia of the trimmed body about its CoG, in the order of `mass_numbers`, and its modes."""
-    own = rigid_body(body)
-    return {"mass/body": np.array([own.mass, *own.full_inertia]), **mode_numbers(body, superelement)}
+    """Return mass and inertia of the trimmed body about its CoG, see `mass_numbers`, and the numbers of its modes."""
+    rigid = rigid_body(body)
+    return {"mass/body": np.array([rigid.mass, *rigid.full_inertia]), **mode_numbers(body, superelement)}
 
 
 def mass_numbers(part: PlacedPart) -> Numbers:
-    """Mass, and Ixx, Iyy, Izz, Ixy, Ixz, Iyz of a part as MuJoCo takes them: with negative products."""
+    """Return mass and Ixx, Iyy, Izz, Ixy, Ixz, Iyz of a part in the convention of MuJoCo: negative products."""
     numbers, products = part.numbers, np.array([part.side, 1.0, part.side]) * part.numbers.products
     moments = numbers.inertia or (0.0, 0.0, 0.0)
     return {f"mass/{part.name}": np.array([numbers.mass, *moments, *-products])}
 
 
 def hold_numbers(vehicle: Vehicle) -> Numbers:
-    """Hold of the course, stiffness and damping along x, y [N/m, N s/m] and in yaw; nothing where the tyres stand.
+    """Return the hold of the course: stiffness and damping along x, y [N/m, N s/m] and in yaw; empty at rest.
 
     k = m (2 pi f)^2 with the mass of the car, and in yaw its inertia about the centre of gravity of the trimmed body.
-    The one along y acts at the foremost wheels, the last number behind the body [m]: where a driver steers. At the
-    centre of gravity it would let every car diverge that oversteers ever so little.
+    The hold along y acts at the foremost wheels, where a driver steers; the last number is their x relative to the CoG
+    [m]. At the centre of gravity the hold would let every oversteering car diverge.
     """
     driving, body = vehicle.driving, vehicle.body
     if not driving.rolling:
         return {}
-    mass, turned = body.mass, float(rigid_body(body).inertia[2, 2])
+    mass, yaw_inertia = body.mass, float(rigid_body(body).inertia[2, 2])
     for part in vehicle.composition.parts:
         x, y = part.cog[0] - body.cog[0], part.cog[1] - body.cog[1]
-        own = 0.0 if part.numbers.inertia is None else part.numbers.inertia[2]
-        mass, turned = mass + part.numbers.mass, turned + own + part.numbers.mass * (x**2 + y**2)
-    omega, inertia = 2.0 * np.pi * driving.hold_frequency, np.array([mass, mass, turned])
+        inertia_of_part = 0.0 if part.numbers.inertia is None else part.numbers.inertia[2]
+        mass, yaw_inertia = mass + part.numbers.mass, yaw_inertia + inertia_of_part + part.numbers.mass * (x**2 + y**2)
+    omega, inertia = 2.0 * np.pi * driving.hold_frequency, np.array([mass, mass, yaw_inertia])
     ahead = min(wheel.center[0] for wheel in vehicle.composition.wheels) - body.cog[0]
     return {"hold/body": np.concatenate([inertia * omega**2, 2.0 * driving.hold_damping * omega * inertia, [ahead]])}
 
@@ -131,20 +131,20 @@ def hold_numbers(vehicle: Vehicle) -> Numbers:
 def element_numbers(
     vehicle: Vehicle, body: Superelement, like: tuple[Vehicle, Sequence[Numbers]] | None = None
 ) -> list[Numbers]:
-    """Numbers of every element of a car.
+    """Return the numbers of every element of a car.
 
     Args:
         vehicle: the car.
-        body: its superelement, with the masses that are fixed to it.
-        like: another car with the same elements and body, and its numbers: those of equal elements are taken.
+        body: superelement of the car, with the masses fixed to it.
+        like: another car with the same elements and body, and its numbers, which are reused for equal elements.
 
     Returns:
-        Of each element, in the order: body, parts, springs on joints, connections, springs, dampers, hold.
+        Numbers of each element, in the order: body, parts, springs on joints, connections, springs, dampers, hold.
     """
     makers: list[Callable[[Any], Numbers]] = []
     elements: list[list[Any]] = []
     for one in (vehicle, like[0] if like else vehicle):
-        car, own = one.composition, list[Any]([one.body])
+        car, listed = one.composition, list[Any]([one.body])
         makers = [lambda part: body_numbers(part, body)]
         for chosen, make in (
             (car.parts, mass_numbers),
@@ -154,9 +154,9 @@ def element_numbers(
             (car.dampers, damper_numbers),
             ((one,), hold_numbers),
         ):
-            own += chosen
+            listed += chosen
             makers += [make] * len(chosen)
-        elements.append(own)
+        elements.append(listed)
     if like is None:
         return [make(one) for make, one in zip(makers, elements[0], strict=True)]
     return [
@@ -166,7 +166,7 @@ def element_numbers(
 
 
 def _table(name: str, table: ForceTable | None, local: float = np.inf) -> Numbers:
-    """Points of a law over displacement, behind a local stiffness [N/m]: in series displacements add up."""
+    """Return the points of a law over displacement in series with a local stiffness [N/m]: displacements add up."""
     if table is None:
         return {}
     gives = [x + force / local for x, force in zip(table.displacement, table.force, strict=True)]

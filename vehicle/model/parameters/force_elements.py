@@ -9,7 +9,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.curves import require_curve
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
-from vehicle.model.parameters.semi_active import PASSIVE, SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
 
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
@@ -18,19 +18,19 @@ RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "a seal rubs with 50 to 500 N, 
 TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
 FRICTION_LAWS = ("coulomb", "stribeck")
-"""Words of the friction laws; each is a file of `vehicle.model.laws`."""
+"""Names of the friction laws; each is a module of `vehicle.model.laws`."""
 
 NUMBERS = {
     "linear": {"viscous": "N s/m"},
     "degressive": {"viscous": "N s/m", "degressive_viscous": "N s/m", "degressive_velocity": "m/s"},
     "stribeck": {"stribeck_friction": "N", "stribeck_velocity": "m/s", "stribeck_exponent": "-"},
 }
-"""Numbers of a damper that a law alone needs, with their units."""
+"""Parameters of a damper that only one law requires, with their units."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ForceTable:
-    """Force over displacement through points, both positive in extension; it goes on beyond them."""
+    """Force over displacement through points, positive in extension; outer segments are extrapolated."""
 
     displacement: tuple[float, ...] = quantity("m", "displacements, compression negative", at_least=-2.0, at_most=2.0)
     force: tuple[float, ...] = quantity("N", "forces, compression negative", at_least=-1e7, at_most=1e7)
@@ -44,7 +44,7 @@ class ForceTable:
 class Bushing:
     """Linear bushing: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle.
 
-    A table of an axis takes the place of its K: force over the displacement of the moving part, without load at F = 0.
+    A table of an axis replaces its K: force over the displacement of the moving part, without load at F = 0.
     """
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz", at_least=0.0, length=3, **STIFFEST)
@@ -54,14 +54,14 @@ class Bushing:
     table_y: ForceTable | None = None
     table_z: ForceTable | None = None
     one_sided: bool = False
-    """of a contact with the ground: its vertical force is max(0, load - K r - D r'), so that it never pulls"""
+    """for a contact with the ground: the vertical force is max(0, load - K r - D r'), so that it never pulls"""
 
     def __post_init__(self) -> None:
         validate(self)
         if self.one_sided and self.table_z is not None:
             raise ConfigurationError(
-                f"{type(self).__name__}.one_sided: found true beside table_z; a one-sided contact has a stiffness, so "
-                "leave one out"
+                f"{type(self).__name__}.one_sided: found true together with table_z; a one-sided contact "
+                "needs a stiffness; remove one of both"
             )
 
 
@@ -71,9 +71,9 @@ CARCASS: dict[str, Any] = {"at_least": 1e4, "at_most": 1e7, "why": "a car tyre h
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Tyre(Bushing):
-    """A tyre on its plate: a bushing where it stands. Where it rolls, its horizontal force comes from slip.
+    """Tyre between hub and plate: a bushing at rest; if it rolls, its horizontal force comes from slip.
 
-    Then K and D along x and y and the stiffness against rotation, which are those of a standing tyre, do not act.
+    K and D along x and y and the rotational stiffness describe the tyre at rest and do not act on a rolling tyre.
     """
 
     slip_stiffness: float | None = quantity(
@@ -114,8 +114,9 @@ class Hydromount:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MainSpring:
-    """Spring between the lower spring seat and the strut top, along its own line; a table, over its extension from the
-    length without load, takes the place of its stiffness."""
+    """Spring between the lower spring seat and the strut top, along the line between both.
+
+    A table over the extension from the unloaded length replaces the stiffness."""
 
     stiffness: float = quantity(
         "N/m", "stiffness", above=0.0, at_least=1e3, at_most=1e6, why="1e4 N/m in a micro car, 2e5 N/m in a van"
@@ -153,13 +154,13 @@ class SlideSpring:
 class Damper:
     """F = D v + clamp(c v, limit(v)), plus (Ddeg - D) v up to Vdeg and (Ddeg - D) Vdeg above, if degressive.
 
-    With the table law, D v is the line through points of velocity and force, positive in extension, which goes on
-    beyond them; a gas force pushes the damper apart, and the preload of the springs balances it where the car stands.
-    The stop is a spring beside it, bump and rebound stop in one: force over the displacement from the design position.
+    With the table law, D v is replaced by straight lines through points of velocity and force, positive in extension
+    and extrapolated. The gas force extends the damper; in static equilibrium the preload of the springs balances it.
+    The stop is a parallel spring, bump and rebound stop in one: force over the displacement from the design position.
     Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
     the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
-    Numbers of a law that is not chosen may be left out. A control, but "passive", takes the place of the viscous law.
+    Parameters of a law that is not chosen are optional. A control law other than "passive" replaces the viscous law.
     """
 
     viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
@@ -223,10 +224,10 @@ class Damper:
 
     @property
     def controlled(self) -> SemiActiveDamper | None:
-        """Its control, None where nobody controls it."""
+        """Control of a semi-active damper; None for a passive damper."""
         return None if self.control is None or self.control.law == PASSIVE else self.control
 
     @property
     def static_friction(self) -> float:
-        """Friction limit at rest [N]: Fs, but for the Coulomb law, which has one limit."""
+        """Friction limit at rest [N]: Fs for the Stribeck law, Fd for the Coulomb law."""
         return (self.stribeck_friction or 0.0) if self.friction_law == "stribeck" else self.coulomb_friction

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.parts import Part
 from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.rigid_part import Part
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -26,7 +26,7 @@ class Load:
     def __post_init__(self) -> None:
         validate(self)
         if self.inertia is None and any(self.products):
-            raise ConfigurationError(f"Load.products: found {list(self.products)} kg m2 without inertia; give both")
+            raise ConfigurationError(f"Load.products: found {list(self.products)} kg m2 without inertia; set both")
         try:
             Part(mass=1.0, inertia=self.inertia, products=self.products)
         except ConfigurationError as error:
