@@ -134,9 +134,10 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
 def _about_the_seat(file: Path) -> list[str]:
     """What a run in the same folder says of its seat: that there is none."""
     from vehicle.runs.output.run_comfort import NO_SEAT
-    from vehicle.signals.records.run_summary import run_summary
+    from vehicle.signals.records.run_summary import available_summary
 
-    return [NO_SEAT] if NO_SEAT in run_summary(file.parent).get("notices", ()) else []
+    summary = available_summary(file.parent)
+    return [NO_SEAT] if summary and NO_SEAT in summary["notices"] else []
 
 
 def _overview(results: list[dict[str, Any]]) -> str:

@@ -51,7 +51,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.output.folder import write_text, write_whole
     from vehicle.signals.analysis.load_spectrum import load_spectrum
     from vehicle.signals.records.reader import read_columns
-    from vehicle.signals.records.run_summary import run_summary
+    from vehicle.signals.records.run_summary import available_summary
 
     source = _time_file(options.run)
     if not 1 <= options.classes <= 10000:
@@ -66,7 +66,8 @@ def _job(options: argparse.Namespace) -> None:
         load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
         for name in names
     ]
-    tyres = run_summary(source.parent).get("tyre")
+    summary = available_summary(source.parent)
+    tyres = summary.get("tyre") if summary else None
     about = (
         f"{source.name}, {duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
         f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from vehicle.names import side_of
+
+if TYPE_CHECKING:
+    from vehicle.signals.records.run_summary import ComfortSummary, RunSummary, SolverSummary
 
 
 def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
@@ -15,7 +18,7 @@ def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = "
     return last.join(word for word in (", ".join(words[:-1]), words[-1]) if word)
 
 
-def summary_text(summary: dict[str, Any], output: Path) -> str:
+def summary_text(summary: RunSummary, output: Path) -> str:
     """The summary of a run as a page of text.
 
     Args:
@@ -57,15 +60,13 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
     return "\n".join(lines)
 
 
-def _comfort(summary: dict[str, Any]) -> list[str]:
+def _comfort(summary: RunSummary) -> list[str]:
     """Comfort at the seat rail, and on the seat of a car that has one."""
-    from vehicle.signals.analysis.comfort import COMFORT_BAND
+    from vehicle.signals.records.run_summary import unweighted_rms
 
     lines, places = [], summary["comfort"]
     if "seat_rail" in places:
-        rail = places["seat_rail"]
-        rms = rail.get("rms_of_band", rail["rms_2_50_hz"])
-        low, high = rms.get("band_hz", COMFORT_BAND)
+        rms, (low, high) = unweighted_rms(places["seat_rail"])
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
         lines.append(
             f"comfort     seat rail {rms['overall']:.4f} m/s2 unweighted RMS, {low:g} to {high:g} Hz ({axes}); "
@@ -79,11 +80,11 @@ def _comfort(summary: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _weighted(places: dict[str, Any], place: str) -> float:
+def _weighted(places: dict[str, ComfortSummary], place: str) -> float:
     return float(places[place]["iso2631"]["vector_sum"]["weighted_rms"])
 
 
-def _balance(solver: dict[str, Any]) -> str:
+def _balance(solver: SolverSummary) -> str:
     """Energy residual, where the engine keeps an energy balance."""
     return "" if solver["energy_residual"] is None else f", energy residual {solver['energy_residual']:.1e}"
 

@@ -111,7 +111,7 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     ("words", "message"),
     [
         (["nowhere"], "nowhere: is no folder; give the folder of a run"),
-        (["."], "holds no summary.json; give the folder of a run"),
+        (["."], "has no summary.json; give the folder of a run"),
         (["{run}", "--output", "page.txt"], "--output page.txt: this file is written as .html"),
         (["{run}", "--output", "mine.html", "--force"], "--output mine.html: is not as this program wrote it there"),
     ],
@@ -127,7 +127,15 @@ def test_what_cannot_be_reported_is_refused(words, message, reported, tmp_path, 
 def test_a_damaged_run_is_refused(reported, tmp_path, capsys):
     (tmp_path / "summary.json").write_text('{"files": {}}')
     assert main([str(tmp_path)]) == 3
-    assert "summary.json: is damaged (KeyError" in capsys.readouterr().err
+    assert "summary.json: is damaged (comfort: missing); run the simulation again" in capsys.readouterr().err
+    content = json.loads((reported.folder / "summary.json").read_text())
+    content["comfort"]["seat_rail"]["rms_2_50_hz"]["x"] = "0.5"
+    (tmp_path / "summary.json").write_text(json.dumps(content))
+    assert main([str(tmp_path)]) == 3
+    assert "(comfort.seat_rail.rms_2_50_hz.x: found '0.5', must be float)" in capsys.readouterr().err
+    del content["input"]["wheel"]
+    (tmp_path / "summary.json").write_text(json.dumps(content))
+    assert main([str(tmp_path)]) == 3 and "(input.wheel: missing)" in capsys.readouterr().err
     (tmp_path / "summary.json").write_text((reported.folder / "summary.json").read_text())
     assert main([str(tmp_path)]) == 3
     assert "vehicle.toml: missing, though summary.json lists it as vehicle" in capsys.readouterr().err

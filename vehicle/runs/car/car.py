@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +48,13 @@ Overrides = Iterable[str] | Mapping[str, Any]
 """Other values of parameters: path to value, or texts "path=value"."""
 
 
+class Origin(TypedDict):
+    """Vehicle file of a car, None for the default car, and the changed parameters as "path=value"."""
+
+    file: str | None
+    overrides: list[str]
+
+
 class Car:
     """Car on a shaker or a road: its parameters, model, matrices, modes and runs.
 
@@ -59,7 +66,7 @@ class Car:
     def __init__(self, vehicle: Vehicle | None = None, *, folder: Path | None = None) -> None:
         self.vehicle = load_vehicle() if vehicle is None else vehicle
         self.folder = folder
-        self.origin: dict[str, object] = {"file": None, "overrides": []}
+        self.origin: Origin = {"file": None, "overrides": []}
         self.overrides: tuple[str, ...] = ()
         self._checked: set[str] = set()
         self._stepped: Car | None = None
@@ -104,7 +111,7 @@ class Car:
         more = assignments(overrides)
         car = Car(self._family.vehicle_of(more, self.overrides), folder=self.folder)
         car.overrides = (*self.overrides, *more)
-        car.origin = {**self.origin, "overrides": list(car.overrides)}
+        car.origin = {"file": self.origin["file"], "overrides": list(car.overrides)}
         car._base = self
         return car
 

@@ -11,7 +11,7 @@ from vehicle.runs.car import Run
 from vehicle.signals.records.frf import FrfData, read_frf
 from vehicle.signals.records.measured import estimated_frf
 from vehicle.signals.records.reader import read_columns
-from vehicle.signals.records.run_summary import run_summary
+from vehicle.signals.records.run_summary import available_summary
 from vehicle.signals.records.table import Record
 
 Responses = Callable[[Sequence[str], float | None], FrfData | None]
@@ -70,5 +70,6 @@ def of_folder(folder: Path) -> Simulated:
             return None if found is None else found[0]
         return read_frf(folder / "frf.csv") if (folder / "frf.csv").is_file() else None
 
-    tyres = str(run_summary(folder).get("tyre", ""))
+    summary = available_summary(folder)
+    tyres = summary.get("tyre", "") if summary else ""
     return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres)

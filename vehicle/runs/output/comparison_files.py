@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from vehicle.runs.car import Run
 from vehicle.runs.comparison.comparison import comparison_of
@@ -12,6 +11,7 @@ from vehicle.runs.comparison.simulated import of_run
 from vehicle.runs.comparison.tables import Comparison
 from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.run_summary import MeasuredSummary
 
 
 def save_comparison(
@@ -56,7 +56,7 @@ def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
     return files
 
 
-def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, str]) -> dict[str, Any]:
+def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, str]) -> MeasuredSummary:
     """Put a measurement beside a run, in the folder of the run.
 
     Args:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import Any
-
 import numpy as np
 
 from vehicle.names import AXES
@@ -12,6 +9,7 @@ from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.evaluation import evaluate
 from vehicle.signals.analysis.seat_value import seat_value
+from vehicle.signals.records.run_summary import ComfortSummary, SeatSummary
 
 RAIL, SEAT = "seat_rail", "seat"
 
@@ -21,17 +19,20 @@ NO_SEAT = (
 )
 
 
-def comfort_values(run: Run) -> dict[str, Any]:
+def comfort_values(run: Run) -> dict[str, ComfortSummary]:
     """Comfort values of both places, where the car has them: the unweighted RMS of Bommer 2006, and ISO 2631-1."""
     return {place: _at(run, place) for place in (RAIL, SEAT) if _recorded(run, place)}
 
 
-def seat_values(run: Run) -> dict[str, Any] | None:
+def seat_values(run: Run) -> SeatSummary | None:
     """SEAT value of a run, by RMS and by dose; None of a car without seat, or whose rail is at rest."""
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
     seat, rail = (run[f"{place}_acc_z"] for place in (SEAT, RAIL))
-    return asdict(seat_value(run.recording.timestep, seat, rail, skip=run.skip)) if np.any(rail) else None
+    if not np.any(rail):
+        return None
+    value = seat_value(run.recording.timestep, seat, rail, skip=run.skip)
+    return {"rms": value.rms, "vdv": value.vdv, "weighting": value.weighting}
 
 
 def comfort_notices(run: Run) -> list[str]:
@@ -54,13 +55,15 @@ def _recorded(run: Run, place: str) -> bool:
     return all(f"{place}_acc_{axis}" in run.recording.channels for axis in AXES)
 
 
-def _at(run: Run, place: str) -> dict[str, Any]:
+def _at(run: Run, place: str) -> ComfortSummary:
     value = run.comfort(place)
     xyz = [run[f"{place}_acc_{axis}"] for axis in AXES]
-    rms = {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall}
-    whole = run.signal.highest is None
+    rms: dict[str, float | None] = {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall}
+    iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
+    if run.signal.highest is None:
+        return {"rms_2_50_hz": rms, "iso2631": iso}
     return {
-        "rms_2_50_hz": rms if whole else dict.fromkeys(rms),
-        **({} if whole else {"rms_of_band": {"band_hz": list(value.band), **rms}}),
-        "iso2631": evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest),
+        "rms_2_50_hz": dict.fromkeys(rms),
+        "rms_of_band": {"band_hz": list(value.band), **rms},
+        "iso2631": iso,
     }

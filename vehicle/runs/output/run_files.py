@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -29,6 +29,15 @@ from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
 from vehicle.signals.records.frf import write_frf
 from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.run_summary import (
+    SUMMARY_FILE,
+    FrfSummary,
+    MeasuredSummary,
+    MotionSummary,
+    Peaks,
+    PlacedLoad,
+    RunSummary,
+)
 from vehicle.signals.records.table import Record
 from vehicle.signals.records.text_format import write_table
 
@@ -73,7 +82,7 @@ def write_run(
     measured: Measured | None = None,
     report: tuple[Path, Callable[[Path], None]] | None = None,
     command: str = "",
-) -> dict[str, Any]:
+) -> RunSummary:
     """Write all files of a finished run.
 
     Args:
@@ -96,8 +105,7 @@ def write_run(
     channels = run.car.vehicle.acceleration_channels
     # On a road, FRFs that cannot be had are left out with a notice.
     responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
-    files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
-    summary = summarise(run, responses, files)
+    files = {"summary": SUMMARY_FILE, "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if responses:
         files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
     if run.road is not None:
@@ -130,20 +138,23 @@ def write_run(
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
         files["video"] = str(name)
-    summary["measured"] = None
+    beside = None
     if measured is not None:
         from vehicle.runs.output.comparison_files import write_beside
 
-        summary["measured"] = write_beside(folder, measured, run, files)
-        summary["notices"] += [f"{measured.file.path.name}: {text}" for text in summary["measured"]["notices"]]
-    summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
-    summary["tyre"] = run.car.vehicle.driving.words
-    summary["input"]["road"] = None if run.road is None else dict(run.road)
-    summary["notices"] += missing
-    summary["command"] = command or None
+        beside = write_beside(folder, measured, run, files)
     if report is not None:
         files["report"] = str(report[0])
-    write_json(folder / "summary.json", summary)
+    summary = summarise(
+        run,
+        responses,
+        files,
+        measured=beside,
+        engine_reason=engine_reason or run.engine_reason,
+        notices=missing,
+        command=command,
+    )
+    write_json(folder / SUMMARY_FILE, summary)
     if report is not None:
         name, make = report
         write_whole(folder / name if name.parent == Path() else name, make)
@@ -201,40 +212,38 @@ def save_last_state(error: SimulationError, output: Path) -> SimulationError:
     return SimulationError(f"{error}; last good state (t = {float(state['time']):.3f} s): {path}")
 
 
-def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, str]) -> dict[str, Any]:
-    """Content of `summary.json`.
+def summarise(
+    run: Run,
+    responses: Sequence[MotionResponse],
+    files: dict[str, str],
+    *,
+    measured: MeasuredSummary | None = None,
+    engine_reason: str = "",
+    notices: Sequence[str] = (),
+    command: str = "",
+) -> RunSummary:
+    """Return the content of `summary.json`.
 
     Args:
         run: finished run.
-        responses: its FRFs of all acceleration channels to each motion of its plates; none where there are none.
-        files: kind of file to its name, which may grow.
-
-    Returns:
-        Plain numbers, texts, lists and dictionaries; None where a value does not exist.
+        responses: its FRFs of all acceleration channels to each independent plate motion; may be empty.
+        files: name of each file by its purpose.
+        measured: measurement that the run was compared with.
+        engine_reason: reason for the choice of the engine.
+        notices: notices of the writer of the files, after those of the run.
+        command: command line that makes this run.
     """
-    statistics, static, damper = run.recording.statistics, run.car.static, run.car.vehicle.damper
-    energies, wheels = statistics.energies, run.car.vehicle.wheels
-    response, channels = (responses[0].response if responses else None), run.car.vehicle.acceleration_channels
-    said = what_moves([one.motion for one in responses]) if responses else ""
-    body = rigid_body(run.car.vehicle.body)
-    idle = idle_parameters(run.car.vehicle, run.car.overrides)
-    notices = [
-        *([body.report] if body.repaired else []),
-        *mass_difference(run.car.trimmed_body, run.car.vehicle.body, body_loads(run.car.vehicle)),
-        *idle,
-        *body_notices(run.car.vehicle, run.car.overrides),
-        *run.signal.notices,
-        *([said] if said else []),
-        *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
-        *comfort_notices(run),
-        *statistics.notices,
-    ]
+    statistics, static, vehicle = run.recording.statistics, run.car.static, run.car.vehicle
+    energies, wheels = statistics.energies, vehicle.wheels
+    response, channels = (responses[0].response if responses else None), vehicle.acceleration_channels
+    motion_notice = what_moves([one.motion for one in responses]) if responses else ""
+    body = rigid_body(vehicle.body)
     return {
         "frame": FRAME,
         "vehicle": {
-            "name": run.car.vehicle.name,
+            "name": vehicle.name,
             **run.car.origin,
-            "inertia_about": run.car.vehicle.body.inertia.about,
+            "inertia_about": vehicle.body.inertia.about,
             "inertia": body.report,
             **_loads(run),
             "superelement": run.car.model.superelement.provenance,
@@ -247,10 +256,12 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "duration_s": run.signal.duration,
             "highest_hz": run.signal.highest,
             "wheel": run.wheel,
-            "wheel_text": run.car.vehicle.wheel_text(run.wheel),
+            "wheel_text": vehicle.wheel_text(run.wheel),
+            "road": None if run.road is None else dict(run.road),
         },
         "evaluated_s": [run.skip, run.signal.duration],
-        "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},
+        "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels}
+        | {"slip_velocity": vehicle.damper.slip_velocity},
         "first_slip_s": {wheel: run.first_slip(wheel) for wheel in wheels},
         "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
@@ -277,36 +288,67 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "work_in_j": energies.work_in if energies else None,
             "dissipated_j": energies.dissipated if energies else None,
             "stored_j": energies.stored if energies else None,
+            "engine_reason": engine_reason,
         },
-        "frf": response
-        and {
-            "estimator": response.estimator,
-            "window": response.window,
-            "resolution_hz": response.resolution_hz,
-            **_degrees_of_freedom(response),
-            "to": [
-                {"plates": dict(one.motion), "columns": "<channel>" if not number else f"<channel>_to_{one.first}"}
-                | ({"peaks": _peaks(one.response, channels)} if number else {})
-                for number, one in enumerate(responses)
-            ],
-        },
-        "notices": notices,
+        "frf": None if response is None else _frf_summary(responses, channels),
+        "notices": [
+            *([body.report] if body.repaired else []),
+            *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
+            *idle_parameters(vehicle, run.car.overrides),
+            *body_notices(vehicle, run.car.overrides),
+            *run.signal.notices,
+            *([motion_notice] if motion_notice else []),
+            *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
+            *comfort_notices(run),
+            *statistics.notices,
+            *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
+            *notices,
+        ],
         "files": files,
+        "measured": measured,
+        "tyre": vehicle.driving.words,
+        "command": command or None,
     }
 
 
-def _loads(run: Run) -> dict[str, Any]:
-    """Loads on the parts of the car, where it has any."""
-    loads = run.car.vehicle.composition.loads
-    each = {
-        one.path.partition(".")[2]: {"mass_kg": one.numbers.mass, "at_m": list(one.cog), "on": one.parent}
-        for one in loads
+def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -> FrfSummary:
+    """Return the settings and the accuracy of an FRF estimate, and the plate motions.
+
+    Degrees of freedom: averages that would give the random errors by H1, median and range over lines and channels.
+    """
+    response = responses[0].response
+    known = response.averages[np.isfinite(response.averages)]
+    motions: list[MotionSummary] = []
+    for number, one in enumerate(responses):
+        motion: MotionSummary = {"plates": dict(one.motion), "columns": "<channel>"}
+        if number:
+            motion |= {"columns": f"<channel>_to_{one.first}", "peaks": _peaks(one.response, channels)}
+        motions.append(motion)
+    return {
+        "estimator": response.estimator,
+        "window": response.window,
+        "resolution_hz": response.resolution_hz,
+        "degrees_of_freedom": float(np.median(known)) if known.size else None,
+        "degrees_of_freedom_range": [float(known.min()), float(known.max())] if known.size else None,
+        "to": motions,
     }
-    return {"loads": each} if each else {}
 
 
-def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> dict[str, list[dict[str, float | None]]]:
-    """Resonance peaks of every acceleration channel."""
+class _Loads(TypedDict, total=False):
+    loads: dict[str, PlacedLoad]
+
+
+def _loads(run: Run) -> _Loads:
+    """Return the loads on the parts of the car as an entry of the summary; empty for a car without loads."""
+    loads: dict[str, PlacedLoad] = {
+        load.path.partition(".")[2]: {"mass_kg": load.numbers.mass, "at_m": list(load.cog), "on": load.parent}
+        for load in run.car.vehicle.composition.loads
+    }
+    return {"loads": loads} if loads else {}
+
+
+def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> Peaks:
+    """Return the resonances of every acceleration channel; empty lists without FRFs."""
     return {
         channel: [
             {
@@ -318,17 +360,6 @@ def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> dict[
             for peak in (resonances(response, row) if response else ())
         ]
         for row, channel in enumerate(channels)
-    }
-
-
-def _degrees_of_freedom(response: FrequencyResponse) -> dict[str, Any]:
-    """Averages that would give the random errors by H1: median and range over all lines and channels."""
-    known = response.averages[np.isfinite(response.averages)]
-    if not known.size:
-        return {"degrees_of_freedom": None, "degrees_of_freedom_range": None}
-    return {
-        "degrees_of_freedom": float(np.median(known)),
-        "degrees_of_freedom_range": [float(known.min()), float(known.max())],
     }
 
 

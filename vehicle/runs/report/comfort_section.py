@@ -5,7 +5,7 @@ from __future__ import annotations
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag
-from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.records.run_summary import unweighted_rms
 
 PLACES = {"seat_rail": "seat rail", "seat": "seat"}
 
@@ -21,8 +21,7 @@ def comfort(run: FinishedRun) -> Markup:
     """Weighted and unweighted accelerations, and the table of reactions with this run in it."""
     parts, totals = [], {}
     for place, value in run.summary["comfort"].items():
-        iso, raw = value["iso2631"], value.get("rms_of_band", value["rms_2_50_hz"])
-        low, high = raw.get("band_hz", COMFORT_BAND)
+        iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
         totals[PLACES.get(place, place)] = iso["vector_sum"]["weighted_rms"]
         heads = (
             "axis",

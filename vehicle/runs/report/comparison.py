@@ -11,6 +11,7 @@ from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.names import side_of
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.signals.records.run_summary import slip_shares
 
 LARGEST_SHARE = 0.5
 """Largest share of other or further parameters in a car that was made from a shipped one: a car with more of them is a
@@ -98,7 +99,7 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
         found |= {
             (f"{words}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
         }
-    shares = {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
+    shares = slip_shares(summary)
     for wheel, share in shares.items():
         found[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
         found[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT, reactions
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import number
-from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.records.run_summary import RunSummary, slip_shares, unweighted_rms
 
 STICKS, WORKS = 0.01, 0.25
 """Share of the time in slip up to which a damper sticks, and from which on it works as one."""
@@ -51,13 +50,8 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     return [*found, *(Finding("Computation", text) for text in _computation(summary))]
 
 
-def _shares(summary: Mapping[str, Any]) -> dict[str, float]:
-    """Share of the time in slip by wheel."""
-    return {name: share for name, share in summary["slip_share"].items() if name != "slip_velocity"}
-
-
-def _dampers(summary: Mapping[str, Any]) -> list[str]:
-    shares, limit = _shares(summary), 1e3 * summary["slip_share"]["slip_velocity"]
+def _dampers(summary: RunSummary) -> list[str]:
+    shares, limit = slip_shares(summary), 1e3 * summary["slip_share"]["slip_velocity"]
     found = []
     for wheel, share in shares.items():
         side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]
@@ -124,17 +118,16 @@ def nearest_mode(run: FinishedRun, frequency: float, modes: Mapping[str, Sequenc
 
 def damper_state(run: FinishedRun) -> str:
     """What its dampers do most of the time, "stuck" or "sliding"."""
-    return "sliding" if max(_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
+    return "sliding" if max(slip_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
 
 
-def _comfort(summary: Mapping[str, Any]) -> list[str]:
+def _comfort(summary: RunSummary) -> list[str]:
     found = []
     for place, words in (("seat_rail", "seat rail"), ("seat", "seat")):
         value = summary["comfort"].get(place)
         if value is None:
             continue
-        iso, rms = value["iso2631"], value.get("rms_of_band", value["rms_2_50_hz"])
-        low, high = rms.get("band_hz", COMFORT_BAND)
+        iso, (rms, (low, high)) = value["iso2631"], unweighted_rms(value)
         total = iso["vector_sum"]["weighted_rms"]
         axis = max("xyz", key=lambda one: iso[one]["multiplying_factor"] * iso[one]["weighted_rms"])
         found.append(
@@ -175,7 +168,7 @@ def _linearity(run: FinishedRun) -> list[str]:
     return found
 
 
-def _computation(summary: Mapping[str, Any]) -> list[str]:
+def _computation(summary: RunSummary) -> list[str]:
     solver = summary["solver"]
     residual = solver["energy_residual"]
     balance = "" if residual is None else f"; its energy balance closes within {residual:.1e} of the work put in"

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from vehicle.engines.simulation.recording import Recording, Statistics
-from vehicle.errors import ConfigurationError, DataError
+from vehicle.errors import DataError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.records.frf import read_frf
 from vehicle.signals.records.reader import read_columns
+from vehicle.signals.records.run_summary import SUMMARY_FILE, FrfSummary, RunSummary, read_summary
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -55,7 +54,7 @@ class FinishedRun:
     name: str
     folder: Path
     place: Path
-    summary: dict[str, Any]
+    summary: RunSummary
     car: Car
     recording: Recording
     responses: tuple[MotionResponse, ...]
@@ -68,7 +67,7 @@ class FinishedRun:
     @property
     def wheel(self) -> str:
         """The excited wheel."""
-        return str(self.summary["input"]["wheel"])
+        return self.summary["input"]["wheel"]
 
     @property
     def span(self) -> str:
@@ -107,26 +106,11 @@ def read_run(
         ConfigurationError: no folder of a run.
         DataError: a file of it is missing or damaged.
     """
-    if not (folder / "summary.json").is_file():
-        raise ConfigurationError(f"{folder}: holds no summary.json; give the folder of a run, as runs/low")
-    try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        names, given, solver = summary["files"], summary["input"], summary["solver"]
-        places = {kind: folder / names[kind] for kind in ("vehicle", "time", "frf") if kind in names}
-        excited = tuple(wheel for wheel, rms in given["plate_rms_m"].items() if rms > 0.0)
-        statistics = Statistics(
-            engine=solver["engine"],
-            callback=solver["callback"],
-            timestep=solver["timestep_s"],
-            steps=solver["steps"],
-            wall_time=solver["wall_s"],
-            warnings=tuple(solver["warnings"]),
-            energies=None,
-        )
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise DataError(
-            f"{folder / 'summary.json'}: is damaged ({type(error).__name__}: {error}); run it again"
-        ) from None
+    summary = read_summary(folder)
+    names, solver = summary["files"], summary["solver"]
+    places = {kind: folder / names[kind] for kind in ("vehicle", "time", "frf") if kind in names}
+    if missing := next((kind for kind in ("vehicle", "time") if kind not in places), None):
+        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{missing}: missing); run the simulation again")
     for kind, path in places.items():
         if not path.is_file():
             raise DataError(f"{path}: missing, though summary.json lists it as {kind}; run it again")
@@ -136,13 +120,25 @@ def read_run(
             time=record.time,
             channels=record.channels,
             units=record.units,
-            excited=excited,
+            excited=tuple(wheel for wheel, rms in summary["input"]["plate_rms_m"].items() if rms > 0.0),
             pose_time=np.empty(0),
             poses=np.empty((0, 0)),
-            statistics=statistics,
+            statistics=Statistics(
+                engine=solver["engine"],
+                callback=solver["callback"],
+                timestep=solver["timestep_s"],
+                steps=solver["steps"],
+                wall_time=solver["wall_s"],
+                warnings=tuple(solver["warnings"]),
+                energies=None,
+            ),
         )
     own = car or _car(places["vehicle"], summary)
-    frfs = _responses(places["frf"], own.vehicle.acceleration_channels, summary) if "frf" in places else ()
+    about = summary["frf"]
+    frfs: tuple[MotionResponse, ...] = ()
+    if about is not None and "frf" in places:
+        motions = [motion["plates"] for motion in about.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
+        frfs = _responses(places["frf"], own.vehicle.acceleration_channels, about, motions)
     return FinishedRun(
         name=(place or folder).resolve().name,
         folder=folder,
@@ -154,7 +150,7 @@ def read_run(
     )
 
 
-def _car(path: Path, summary: dict[str, Any]) -> Car:
+def _car(path: Path, summary: RunSummary) -> Car:
     """The car of a run; what its file names beside itself is looked for where that file lay."""
     origin = summary["vehicle"]["file"]
     car = Car(load_vehicle(path), folder=path.parent if origin is None else Path(origin).parent)
@@ -162,10 +158,18 @@ def _car(path: Path, summary: dict[str, Any]) -> Car:
     return car
 
 
-def _responses(path: Path, channels: Sequence[str], summary: dict[str, Any]) -> tuple[MotionResponse, ...]:
-    """FRFs of the table to each motion of the plates, with what the summary says of their estimate."""
-    table, about = read_frf(path), summary["frf"]
-    motions = [one["plates"] for one in about.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
+def _responses(
+    path: Path, channels: Sequence[str], about: FrfSummary, motions: Sequence[dict[str, float]]
+) -> tuple[MotionResponse, ...]:
+    """Read the FRFs to each motion of the plates.
+
+    Args:
+        path: table of FRFs.
+        channels: names of the acceleration channels.
+        about: estimate of the FRFs, from the summary.
+        motions: plates with their factors, for each motion.
+    """
+    table = read_frf(path)
     found = []
     for index, motion in enumerate(motions):
         ending = f"_to_{next(iter(motion))}" if index else ""

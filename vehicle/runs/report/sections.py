@@ -19,6 +19,7 @@ from vehicle.runs.report.drawings import drawing
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
+from vehicle.signals.records.run_summary import slip_shares
 
 ROAD_WORDS = {
     "class": "class of ISO 8608",
@@ -32,7 +33,7 @@ ROAD_WORDS = {
 def tiles(run: FinishedRun) -> Markup:
     """The numbers that are asked for first."""
     summary = run.summary
-    shares = {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
+    shares = slip_shares(summary)
     found = []
     for place, value in list(summary["comfort"].items())[:1]:
         total = value["iso2631"]["vector_sum"]["weighted_rms"]
