@@ -13,32 +13,47 @@ from vehicle.errors import ConfigurationError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """List the commands, or run one.
+    """Run a command; without one, print the list of commands.
 
     Args:
-        arguments: name of a command and its options; those of the process by default.
+        arguments: name of the command and its options; the arguments of the process by default.
 
     Returns:
-        Exit code, as of `run_command`.
+        Exit code, see `run_command`.
     """
-    given = sys.argv[1:] if arguments is None else list(arguments)
+    words = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None:
         begin_process()
-    if given and given[0] in COMMANDS:
-        code: int = import_module(f"vehicle.commands.{given[0]}").main(given[1:])
+    if words and words[0] in COMMANDS:
+        code: int = import_module(f"vehicle.commands.{words[0]}").main(words[1:])
         return code
-    return run_command(lambda: _list(given))
+    return run_command(lambda: _print(words))
 
 
-def _list(given: Sequence[str]) -> None:
-    """Print a line for each command; refuse a name that is none of them."""
-    if given and given[0] not in ("-h", "--help"):
-        close = get_close_matches(given[0], COMMANDS, n=1)
+def _print(words: Sequence[str]) -> None:
+    """Print the list of commands, the version or a completion script.
+
+    Raises:
+        ConfigurationError: the first word is no command and no option.
+    """
+    if words[:1] == ["--version"]:
+        from vehicle.commands.version import package_version
+
+        print(package_version())
+        return
+    if words[:1] == ["--print-completion"]:
+        from vehicle.commands.completion import completion_script
+
+        print(completion_script("".join(words[1:2])), end="")
+        return
+    if words and words[0] not in ("-h", "--help"):
+        close = get_close_matches(words[0], COMMANDS, n=1)
         nearest = f"; did you mean {close[0]}?" if close else ""
-        raise ConfigurationError(f"no command {given[0]!r}; allowed are {', '.join(COMMANDS)}{nearest}")
-    print("usage: python -m vehicle COMMAND [options]; --help behind a command lists its options\n")
+        raise ConfigurationError(f"no command {words[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
+    print("usage: python -m vehicle COMMAND [options]; `COMMAND --help` lists the options of a command\n")
     for name in COMMANDS:
         print(f"  {name:<11} {import_module(f'vehicle.commands.{name}').parser().description}")
+    print("\n--version prints the version; --print-completion bash|zsh a script that completes commands and options")
 
 
 if __name__ == "__main__":

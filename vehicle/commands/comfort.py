@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser(
+    """Return the parser of the options."""
+    parser = command_parser(
         "comfort", "Weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums of a record of acceleration."
     )
-    found.add_argument(
+    parser.add_argument(
         "--input",
         dest="inputs",
         required=True,
@@ -36,7 +36,8 @@ def parser() -> Parser:
         help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone will do; several "
         "files, or a folder, give one table",
     )
-    found.add_argument(
+    channels = parser.add_argument_group("channels of the file")
+    channels.add_argument(
         "--channel",
         dest="picks",
         action="append",
@@ -45,22 +46,23 @@ def parser() -> Parser:
         help="point of a run, as seat_rail in its time.csv or time.npz; columns x, y, z by default; or the channel of "
         'axis in any measurement file, as x="Seat X" (number, exact name, or pattern with *), for x, y and z',
     )
-    found.add_argument(
+    channels.add_argument(
         "--rail",
         metavar="PLACE|z=NAME",
         help="what is below the seat, as seat_rail, or z=NAME in any measurement file: gives the SEAT value too, the "
         "weighted z acceleration of --channel over that of the rail, both by the weighting of the seat [-]",
     )
-    record_options(found, "", channel=False)
-    found.add_argument("--json", action="store_true", help="print the result as JSON")
-    found.add_argument(
+    record_options(channels, "", channel=False)
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    weighting = parser.add_argument_group("evaluation")
+    weighting.add_argument(
         "--place",
         default="seat",
         metavar="NAME",
         help="point of contact, names weightings and factors: seat (default; z Wk, x and y Wd), backrest, feet, "
         "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841",
     )
-    found.add_argument(
+    weighting.add_argument(
         "--offset",
         choices=("refuse", "remove", "keep"),
         default="refuse",
@@ -68,18 +70,18 @@ def parser() -> Parser:
         "the mean is that of gravity (default), remove them (a sensor's offset, gravity), or keep them: the record "
         "starts at rest, so that its first seconds count for MTVV, crest factor and MSDV too",
     )
-    found.add_argument(
+    weighting.add_argument(
         "--skip",
         type=float,
         default=0.0,
         metavar="S",
         help="seconds left out at the beginning of the weighted records; 0 by default",
     )
-    found.add_argument(
+    weighting.add_argument(
         "--mtvv", choices=("linear", "exponential"), default="linear", help="running average of the MTVV"
     )
-    message_options(found)
-    return found
+    message_options(parser)
+    return parser
 
 
 def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | None, Choice | None]:

@@ -31,21 +31,21 @@ CAR, RUN = "the car", "the run"
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("compare", "Compare a measurement with a run: responses, time histories, or mode shapes.")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("compare", "Compare a measurement with a run: responses, time histories, or mode shapes.")
+    parser.add_argument(
         "run",
         nargs="?",
         metavar="RUN_OR_INPUT",
         help="folder of a run; or an input, as low.csv, which is put on the shaker; not needed for mode shapes",
     )
-    measured_options(found, required=True, several=True)
-    records = found.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
+    measured_options(parser, required=True, several=True)
+    records = parser.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
     records.add_argument(
         "--delay", type=float, default=0.0, metavar="S", help="the measurement began this long after the run [s]; 0"
     )
     drift_option(records)
-    responses = found.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
+    responses = parser.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
     responses.add_argument(
         "--window",
         type=float,
@@ -59,7 +59,7 @@ def parser() -> Parser:
         metavar="HZ,HZ,...",
         help="edges of the bands of the table [Hz]; %(default)s",
     )
-    shapes = found.scoped_group(SHAPES, needs="measured mode shapes; the file holds none", active=None)
+    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes; the file holds none", active=None)
     shapes.add_argument(
         "--damper",
         choices=("stuck", "sliding"),
@@ -67,18 +67,20 @@ def parser() -> Parser:
         help="state of the dampers, for modes; stuck by default",
     )
     record_options(
-        found.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None),
+        parser.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None),
         "",
         channel=False,
     )
     vehicle_options(
-        found.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
+        parser.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
     )
-    engine_option(found.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto")
-    output_options(found, OUTPUT)
-    found.add_argument("--json", action="store_true", help="print the content of compare.json")
-    message_options(found, quiet=True)
-    return found
+    engine_option(
+        parser.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto"
+    )
+    output_options(parser, OUTPUT)
+    parser.add_argument("--json", action="store_true", help="print the content of compare.json")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def drift_option(parser: argparse._ActionsContainer) -> None:

@@ -22,18 +22,17 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("drive", "A drive file from a response: the plates that make the car answer as measured.")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("drive", "A drive file from a response: the plates that make the car answer as measured.")
+    parser.add_argument(
         "--target", type=Path, required=True, metavar="FILE", help="measured accelerations, of any format of `inspect`"
     )
     record_options(
-        found,
+        parser.add_argument_group("channels of the target"),
         'an acceleration of the car, as knuckle_fr_acc_z="Dof 12 +Z"; the name alone where the file has it, or has '
         "one channel; at least as many channels as plates",
     )
-    vehicle_options(found)
-    found.add_argument(
+    vehicle_options(parser).add_argument(
         "--wheel",
         dest="wheels",
         action="append",
@@ -41,33 +40,38 @@ def parser() -> Parser:
         help="wheel whose plate is driven; by default those that the names of the channels tell, else that of the "
         "vehicle file; may be repeated",
     )
-    found.add_argument(
+    iteration = parser.add_argument_group("the iteration")
+    iteration.add_argument(
         "--band",
         default="1:50",
         metavar="A:B",
         help="frequencies in which the response is met [Hz]; %(default)s by default; begin it where the target holds "
         "more than the noise of its sensor",
     )
-    found.add_argument("--iterations", type=int, default=15, metavar="N", help="runs at most; %(default)s by default")
-    found.add_argument(
+    iteration.add_argument(
+        "--iterations", type=int, default=15, metavar="N", help="runs at most; %(default)s by default"
+    )
+    iteration.add_argument(
         "--gain",
         type=float,
         default=0.8,
         metavar="G",
         help="share of the correction that a step makes [-], above 0 and up to 1; %(default)s by default",
     )
-    found.add_argument(
+    iteration.add_argument(
         "--target-error",
         type=float,
         default=0.1,
         metavar="PERCENT",
         help="end where the RMS of the error in the band falls below this share of the target's [%%]; %(default)s",
     )
-    found.former("--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT")
-    engine_option(found, "auto")
-    output_options(found, None, default="runs/drive_<name of the target>")
-    message_options(found, quiet=True)
-    return found
+    parser.former(
+        "--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT"
+    )
+    engine_option(iteration, "auto")
+    output_options(parser, None, default="runs/drive_<name of the target>")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

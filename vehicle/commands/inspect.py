@@ -22,18 +22,18 @@ SHOWN = 60
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
+    parser.add_argument(
         "files",
         nargs="+",
         metavar="FILE",
         help="of any format, recognised by its content; a shipped input; or a folder; several give one table",
     )
-    database_option(found)
-    found.add_argument("--json", action="store_true", help="print JSON")
-    message_options(found)
-    return found
+    database_option(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    message_options(parser)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

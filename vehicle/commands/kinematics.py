@@ -25,20 +25,20 @@ MOST_POSITIONS = 2001
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("kinematics", "Camber, toe, track and loads of an axle over wheel travel and load.")
-    vehicle_options(found)
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("kinematics", "Camber, toe, track and loads of an axle over wheel travel and load.")
+    vehicle_options(parser)
+    parser.add_argument(
         "--axle", default="front", metavar="NAME", help="table of the vehicle file; %(default)s by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--travel",
         default="-50:50:5",
         metavar="A:B[:STEP]",
         help="of the wheel centres [mm], upwards; %(default)s by default",
     )
-    found.add_argument("--opposite", action="store_true", help="the left wheel goes down where the right one goes up")
-    loads = found.scoped_group(
+    parser.add_argument("--opposite", action="store_true", help="the left wheel goes down where the right one goes up")
+    loads = parser.scoped_group(
         "loads on the wheels",
         needs="bushings that yield, and --ideal makes ideal joints of them; leave one of the two out",
         active=lambda options: not options.ideal,
@@ -52,23 +52,23 @@ def parser() -> Parser:
             help=f"{what} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
             "right, z up), as x=1000; with --opposite against each other; may be repeated",
         )
-    found.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
-    found.add_argument(
+    parser.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
+    parser.add_argument(
         "--tyre",
         choices=("rolling", "standing"),
         default="rolling",
         help="patches that roll freely, or that stand, with the horizontal force and torque with which the car was set "
         "down; %(default)s by default",
     )
-    extra_output_options(found, "kinematics.csv and kinematics.png")
-    found.former("--replace", "--replace: files are replaced by --force, as in all commands")
-    found.former(
+    extra_output_options(parser, "kinematics.csv and kinematics.png")
+    parser.former("--replace", "--replace: files are replaced by --force, as in all commands")
+    parser.former(
         "--force(=| [^-])",
         "--force: replaces files, as in all commands; a force on the wheels is given by --contact-force AXIS=VALUE",
     )
-    found.add_argument("--json", action="store_true", help="print JSON")
-    message_options(found)
-    return found
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    message_options(parser)
+    return parser
 
 
 def main(arguments: list[str] | None = None) -> int:

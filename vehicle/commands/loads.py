@@ -24,13 +24,13 @@ SHOWN = 15
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("loads", "Rainflow counts, load spectra and equivalent amplitudes of the loads of a run.")
-    found.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or a file of time histories")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("loads", "Rainflow counts, load spectra and equivalent amplitudes of the loads of a run.")
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or a file of time histories")
+    parser.add_argument(
         "--channels", metavar="NAME,...", help="channels to count; all forces, torques and travels by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--slope",
         type=float,
         default=5.0,
@@ -38,12 +38,12 @@ def parser() -> Parser:
         help="slope of the line of Woehler [-]: damage of n cycles of amplitude A is n A^K; %(default)s by default, "
         "usual for steel parts of a chassis",
     )
-    found.add_argument(
+    parser.add_argument(
         "--classes", type=int, default=64, metavar="N", help="classes of the range in the spectra; %(default)s"
     )
-    output_options(found, None, default=f"{', '.join(FILES)} in that of the run")
-    message_options(found, quiet=True)
-    return found
+    output_options(parser, None, default=f"{', '.join(FILES)} in that of the run")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

@@ -17,27 +17,27 @@ from vehicle.errors import ConfigurationError
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
-    vehicle_options(found)
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
+    vehicle_options(parser)
+    parser.add_argument(
         "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--speed", type=float, metavar="KM/H", help="modes of the car that drives at this speed, with tyres that roll"
     )
-    found.add_argument("--json", action="store_true", help="print JSON")
-    found.add_argument(
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument(
         "--uff",
         type=Path,
         metavar="FILE.uff",
         help="write the places of the car, lines between them and the complex mode shapes as a universal file "
         "(datasets 15, 82 and 55), for Testlab, ME'scope or `python -m vehicle compare`",
     )
-    found.add_argument(
+    parser.add_argument(
         "--animate", type=float, metavar="HZ", help="with --video: show the mode nearest to this frequency [Hz]"
     )
-    found.add_argument(
+    parser.add_argument(
         "--video",
         nargs="?",
         const="",
@@ -45,12 +45,12 @@ def parser() -> Parser:
         help="write the mode of --animate as a film of three cycles, 4 s, that can be repeated without a seam; "
         "runs/mode_<frequency>_hz.mp4 by default",
     )
-    files = found.scoped_group(
+    files = parser.scoped_group(
         "files", needs="--uff or --video", active=lambda options: options.uff is not None or options.video is not None
     )
     files.add_argument("--force", action="store_true", help=FORCE_HELP)
-    message_options(found)
-    return found
+    message_options(parser)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

@@ -25,11 +25,11 @@ from vehicle.commands.parser import Parser
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("optimise", "Search for the parameters with the best compromise of comfort, load, travel.")
-    signal_options(found, several=True)
-    vehicle_options(found)
-    search = found.add_argument_group("the search")
+    """Return the parser of the options."""
+    parser = command_parser("optimise", "Search for the parameters with the best compromise of comfort, load, travel.")
+    signal_options(parser, several=True)
+    vehicle_options(parser)
+    search = parser.add_argument_group("the search")
     search.add_argument(
         "--vary",
         action="append",
@@ -69,14 +69,14 @@ def parser() -> Parser:
     search.add_argument(
         "--search-seed", type=int, default=1, metavar="N", help="one seed is one search; %(default)s by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--tolerance",
         action="append",
         default=[],
         metavar="PATH=SIZE",
         help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
     )
-    made = found.scoped_group(
+    made = parser.scoped_group(
         "cars as they are made",
         needs="--tolerance PATH=SIZE, and there is none",
         active=lambda options: bool(options.tolerance),
@@ -95,18 +95,18 @@ def parser() -> Parser:
         "quantile Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its "
         "numbers",
     )
-    engine_option(found, "reduced")
-    skip_option(found, 2.0)
-    jobs_option(found)
-    executor_option(found)
-    found.add_argument("--check", action="store_true", help="run the named cars with MuJoCo and tell the difference")
-    found.add_argument(
+    engine_option(parser, "reduced")
+    skip_option(parser, 2.0)
+    jobs_option(parser)
+    executor_option(parser)
+    parser.add_argument("--check", action="store_true", help="run the named cars with MuJoCo and tell the difference")
+    parser.add_argument(
         "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn, and how far it is"
     )
-    output_options(found, Path("runs/optimise"))
-    found.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")
-    message_options(found, quiet=True)
-    return found
+    output_options(parser, Path("runs/optimise"))
+    parser.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

@@ -24,21 +24,31 @@ def command_parser(name: str, description: str) -> Parser:
         name: of its module in `vehicle.commands`.
         description: one line, which the list of commands shows too.
     """
-    return Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
+    parser = Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
+    parser.add_version()
+    return parser
 
 
 VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of Bommer 2006 by default"
 
 
-def vehicle_options(parser: argparse._ActionsContainer) -> None:
-    """Add --vehicle and --set: which car."""
-    parser.add_argument(
+def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
+    """Add --vehicle and --set, which choose the car, as a group with the title "the car".
+
+    Args:
+        parser: parser of the command; or an existing group, which gets the options instead.
+
+    Returns:
+        The group.
+    """
+    group = parser.add_argument_group("the car") if isinstance(parser, argparse.ArgumentParser) else parser
+    group.add_argument(
         "--vehicle",
         type=vehicle_file,
         metavar="FILE.toml",
         help=VEHICLE_HELP,
     )
-    parser.add_argument(
+    group.add_argument(
         "--set",
         dest="overrides",
         action="append",
@@ -47,6 +57,7 @@ def vehicle_options(parser: argparse._ActionsContainer) -> None:
         help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], one component of it has "
         "its axis behind the path: bushings.tyre.stiffness.z=2e5; may be repeated",
     )
+    return group
 
 
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:

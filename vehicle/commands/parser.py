@@ -40,6 +40,16 @@ class _ScopedGroup(argparse._ArgumentGroup):
         return super()._add_action(action)
 
 
+class _Version(argparse.Action):
+    """Print the version of the package, which is read only here."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> None:
+        from vehicle.commands.version import package_version
+
+        print(package_version())
+        parser.exit()
+
+
 class Parser(argparse.ArgumentParser):
     """Argument parser whose errors are one message and exit code 2.
 
@@ -50,6 +60,10 @@ class Parser(argparse.ArgumentParser):
         super().__init__(*args, **keywords)
         self.scopes: dict[str, Scope] = {}
         self.former_words: list[tuple[re.Pattern[str], str]] = []
+
+    def add_version(self) -> None:
+        """Add --version, which prints the version of the package."""
+        self.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
 
     def scoped_group(self, title: str, *, needs: str, active: Condition | None) -> argparse._ArgumentGroup:
         """Add a group of options that act on something that not every command line contains.

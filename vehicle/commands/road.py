@@ -19,15 +19,17 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("road", "Plate signals of a car on a road: class and speed, or a measured profile.")
-    vehicle_options(found)
-    found.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
-    found.add_argument("--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]")
-    road_options(found, lambda _: True, lambda options: options.profile is None)
-    output_options(found, Path("road.csv"), metavar="FILE.csv")
-    message_options(found, quiet=True)
-    return found
+    """Return the parser of the options."""
+    parser = command_parser("road", "Plate signals of a car on a road: class and speed, or a measured profile.")
+    vehicle_options(parser)
+    parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
+    parser.add_argument(
+        "--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]"
+    )
+    road_options(parser, lambda _: True, lambda options: options.profile is None)
+    output_options(parser, Path("road.csv"), metavar="FILE.csv")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

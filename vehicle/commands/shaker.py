@@ -42,32 +42,32 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
-    file = signal_options(found)
-    record_options(record_group(found), 'a plate, as fr="Shaker FR"', rate=False, unit=False)
+    """Return the parser of the options."""
+    parser = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
+    file = signal_options(parser)
+    record_options(record_group(parser), 'a plate, as fr="Shaker FR"', rate=False, unit=False)
     file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
-    read = found.scoped_group(
+    read = parser.scoped_group(
         "a file of signals or of a measurement",
         needs="--input, --measured, or a road that was recorded over time; any other road has none",
         active=lambda options: bool(options.input or options.measured) or recorded_over_time(options),
     )
     unit_option(read)
-    output_options(found, None, default="runs/<input stem>, or runs/road_C_80,")
-    vehicle_options(found)
-    engine_option(found, "mujoco")
-    skip_option(found, 0.0)
-    found.add_argument(
+    output_options(parser, None, default="runs/<input stem>, or runs/road_C_80,")
+    vehicle_options(parser)
+    engine_option(parser, "mujoco")
+    skip_option(parser, 0.0)
+    parser.add_argument(
         "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--time-format",
         choices=TABLES,
         default="npz",
         help="format of the time histories; %(default)s by default",
     )
-    found.add_argument(
+    parser.add_argument(
         "--channels",
         dest="recorded",
         metavar="loads|all|NAME,...",
@@ -75,7 +75,7 @@ def parser() -> Parser:
         "[m], or some of these by name; all is everything, with the coefficients of semi-active dampers [N s/m]; "
         "python -m vehicle loads counts their cycles",
     )
-    found.add_argument(
+    parser.add_argument(
         "--format",
         dest="formats",
         action="append",
@@ -84,8 +84,8 @@ def parser() -> Parser:
         help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
         "uff with the places of the car; may be repeated",
     )
-    found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
-    film = found.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
+    parser.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
+    film = parser.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
     film.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
     film.add_argument(
         "--video-duration",
@@ -96,8 +96,8 @@ def parser() -> Parser:
     )
     film.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower; 1 by default")
     film.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
-    measured_options(found)
-    found.add_argument(
+    measured_options(parser)
+    parser.add_argument(
         "--report",
         nargs="?",
         const="",
@@ -105,8 +105,8 @@ def parser() -> Parser:
         help="write a report too: one HTML file with findings, figures, moving modes and tables; report.html in the "
         "folder of the run by default",
     )
-    message_options(found, quiet=True)
-    return found
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

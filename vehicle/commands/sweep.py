@@ -27,10 +27,10 @@ from vehicle.commands.parser import Parser
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("sweep", "Run the car with varied parameters on one or several inputs.")
-    signal_options(found, several=True)
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("sweep", "Run the car with varied parameters on one or several inputs.")
+    signal_options(parser, several=True)
+    parser.add_argument(
         "--vary",
         action="append",
         default=[],
@@ -38,22 +38,22 @@ def parser() -> Parser:
         help="values of a parameter, as damper.coulomb_friction=62.5,125, or of a component of a vector, as "
         "bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: every combination",
     )
-    found.add_argument(
+    parser.add_argument(
         "--table",
         type=Path,
         metavar="FILE.csv",
         help="columns are parameter paths, rows are variations; or the table.csv of another sweep",
     )
-    vehicle_options(found)
-    engine_option(found, "auto")
-    skip_option(found, 2.0)
-    jobs_option(found)
-    executor_option(found)
-    output_options(found, Path("runs/sweep"))
-    resume_options(found)
-    found.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
-    message_options(found, quiet=True)
-    return found
+    vehicle_options(parser)
+    engine_option(parser, "auto")
+    skip_option(parser, 2.0)
+    jobs_option(parser)
+    executor_option(parser)
+    output_options(parser, Path("runs/sweep"))
+    resume_options(parser)
+    parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

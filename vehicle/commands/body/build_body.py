@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 def add(tasks: Any) -> None:
     """The options."""
     built = tasks.add_parser("build", help="compute the frame of a body design on the points of a car")
-    built.add_argument("--design", type=Path, metavar="FILE.toml", help="body design; that of the vehicle by default")
-    built.add_argument(
+    design = built.add_argument_group("the design")
+    design.add_argument("--design", type=Path, metavar="FILE.toml", help="body design; that of the vehicle by default")
+    design.add_argument(
         "--fit",
         action="store_true",
         help="fit the section factors of the design again, from its nominal sections, to what is published of the body "

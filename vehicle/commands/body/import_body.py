@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from vehicle.commands.body.model_file import output_options, require_output, write
 from vehicle.commands.body.show_body import report
 from vehicle.commands.options import message_options, vehicle_options
+from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
 
@@ -38,10 +39,14 @@ REFUSED = {
 }
 
 
+MATRICES, FILES, MODES, UNITS = "stiffness and mass matrices", "files beside the matrices", "modes", "units"
+"""Titles of the groups of options that act on one type of source."""
+
+
 def add(tasks: Any) -> None:
-    """The options."""
-    taken = tasks.add_parser("import", help="make a body model of matrices, computed modes or a modal test")
-    taken.add_argument(
+    """Add the parser of the task with its options."""
+    parser = tasks.add_parser("import", help="make a body model of matrices, computed modes or a modal test")
+    parser.add_argument(
         "file",
         type=Path,
         metavar="FILE",
@@ -49,81 +54,106 @@ def add(tasks: Any) -> None:
         " Harwell-Boeing, FILE.mat:K, text with --mass, --dofs, --nodes;"
         " modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
     )
-    taken.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
-    taken.add_argument(
-        "--dofs",
+    parser.add_argument("--name", help="name of the body; that of the file by default")
+    output_options(parser)
+    _add_matrix_options(parser)
+    modes = parser.scoped_group(MODES, needs="modes; the file holds stiffness and mass", active=None)
+    modes.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
+    modes.add_argument(
+        "--residual",
         type=Path,
         metavar="FILE",
-        help="of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
+        help="residual stiffness of the attachments beyond the modes, a table point,x [N/m],y [N/m],z [N/m], or in m/N",
     )
-    taken.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z; deck with *NODE; .bdf with GRID")
-    taken.add_argument(
-        "--length-unit",
-        choices=LENGTHS,
-        help="unit of length of matrices and .frd; m by default. A universal file states its own units (dataset 164)",
+    units = parser.scoped_group(
+        UNITS, needs="matrices or .frd; a universal file states its own units (dataset 164)", active=None
     )
+    units.add_argument("--length-unit", choices=LENGTHS, help="unit of length of matrices and .frd; m by default")
     follows = ", ".join(f"{mass} with {length}" for length, mass in FOLLOWING.items())
-    taken.add_argument(
+    units.add_argument(
         "--mass-unit",
         choices=MASSES,
         help=f"unit of mass of matrices and .frd; by default that of consistent units with N (lbf) and s: {follows}; "
         "a stiffness in N/mm belongs to masses in t",
     )
-    taken.add_argument(
+    _add_model_options(parser)
+    vehicle_options(parser)
+    message_options(parser)
+
+
+def _add_matrix_options(parser: Parser) -> None:
+    """Add the options that act on stiffness and mass matrices."""
+    files = parser.scoped_group(FILES, needs="stiffness and mass in files that are named one by one", active=None)
+    files.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
+    files.add_argument(
+        "--dofs",
+        type=Path,
+        metavar="FILE",
+        help="degrees of freedom of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
+    )
+    files.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z; deck with *NODE; .bdf with GRID")
+    matrices = parser.scoped_group(MATRICES, needs="stiffness and mass; the file holds modes", active=None)
+    matrices.add_argument(
+        "--method",
+        choices=METHODS,
+        default=METHODS[0],
+        help="reduction: free-free, modes of the free body and residual flexibility; rubin, in addition modes of its "
+        "points with the mass that moves with them; craig-bampton, modes of the body held at its points; free-free by "
+        "default",
+    )
+    more = parser.scoped_group(
+        "modes of the points",
+        needs="--method rubin or craig-bampton",
+        active=lambda options: options.method != METHODS[0],
+    )
+    more.add_argument(
+        "--attachment-modes",
+        type=float,
+        metavar="HZ",
+        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 5 times --up-to by default",
+    )
+
+
+def _add_model_options(parser: Parser) -> None:
+    """Add the options of the position, the modes and the points of the body model."""
+    frame = parser.add_argument_group("position in the vehicle")
+    frame.add_argument(
         "--axes",
         default="x,y,z",
         metavar="X,Y,Z",
         help="the source's names of the vehicle's x (to the rear), y (to the driver's right), z (up): -x,-y,z of a "
         "source with x forward and y to the left; x,y,z by default",
     )
-    taken.add_argument(
+    frame.add_argument(
         "--origin", default="0,0,0", metavar="X,Y,Z", help="source's origin in the vehicle frame [m]; 0,0,0 by default"
     )
-    taken.add_argument(
-        "--up-to", type=float, default=100.0, metavar="HZ", help="highest mode kept [Hz]; 100 by default"
+    model = parser.add_argument_group("modes of the model")
+    model.add_argument(
+        "--up-to", type=float, default=100.0, metavar="HZ", help="highest mode of the model [Hz]; 100 by default"
     )
-    taken.add_argument(
-        "--method",
-        choices=METHODS,
-        default=METHODS[0],
-        help="of matrices: free-free, modes of the free body, those above static; rubin adds modes of its points, with "
-        "the mass that moves with them; craig-bampton, modes of the body held at its points; free-free by default",
-    )
-    taken.add_argument(
-        "--attachment-modes",
-        type=float,
-        metavar="HZ",
-        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 5 times --up-to by default",
-    )
-    taken.add_argument(
+    model.add_argument(
         "--damping", type=float, default=0.02, metavar="RATIO", help="modal damping ratio; 0.02 by default"
     )
-    taken.former("--tolerance", "--tolerance: the farthest node of a point is given by --point-distance MM")
-    taken.former("--map", "--map: the table of nodes for points of the car is given by --point-nodes FILE")
-    taken.add_argument(
-        "--point-distance", type=float, default=1.0, metavar="MM", help="farthest node of a point [mm]; 1"
+    points = parser.add_argument_group("points of the car")
+    parser.former("--tolerance", "--tolerance: the farthest node of a point is given by --point-distance MM")
+    parser.former("--map", "--map: the table of nodes for points of the car is given by --point-nodes FILE")
+    points.add_argument(
+        "--point-distance",
+        type=float,
+        default=1.0,
+        metavar="MM",
+        help="maximum distance of a point from its node [mm]; 1 by default",
     )
-    taken.add_argument(
+    points.add_argument(
         "--spread",
         type=float,
         default=0.0,
         metavar="MM",
-        help="nodes within this radius carry a point together [mm]; 0",
+        help="radius of the nodes that carry a point together [mm]; 0 by default",
     )
-    taken.add_argument(
+    points.add_argument(
         "--point-nodes", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car"
     )
-    taken.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
-    taken.add_argument(
-        "--residual",
-        type=Path,
-        metavar="FILE",
-        help="beside modes: what attachments give way beyond them, a table point,x [N/m],y [N/m],z [N/m], or in m/N",
-    )
-    taken.add_argument("--name", help="name of the body; that of the file by default")
-    output_options(taken)
-    vehicle_options(taken)
-    message_options(taken)
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
@@ -143,10 +173,13 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     }
     origin = _origin(options.origin)
     matrices = _matrices(options)
-    if matrices is None and options.method != METHODS[0]:
-        raise ConfigurationError(f"--method {options.method}: needs stiffness and mass; {options.file} holds modes")
-    if matrices is not None and options.residual:
-        raise ConfigurationError(f"--residual {options.residual}: follows from stiffness and mass; leave it out")
+    idle = (MODES,) if matrices is not None else (MATRICES, FILES)
+    if matrices is not None and options.file.suffix == ".sti":
+        idle = (MODES, FILES)
+    elif matrices is None and options.file.suffix != ".frd":
+        idle = (MATRICES, FILES, UNITS)
+    for title in idle:
+        refuse_idle(options, title)
     units, weight = units_of(options.length_unit, options.mass_unit), _vehicle_mass(vehicle)
     notices = []
     if matrices is not None:
@@ -188,6 +221,8 @@ def _matrices(options: argparse.Namespace) -> Any:
 
     if not is_bulk_data(file):
         if options.mass is None:
+            if options.file.suffix in (".mtx", ".mat"):
+                raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs too")
             return None
         if options.nodes is None:
             raise ConfigurationError("--mass: a stiffness and a mass matrix need --nodes too, where their nodes are")
@@ -208,13 +243,7 @@ def _given_modes(options: argparse.Namespace, units: Units, mass: float, places:
         require_size(given.body.positions, places, units)
         require_level(given.vectors, given.modal_mass, mass, units)
         return given
-    if options.file.suffix in (".mtx", ".mat"):
-        raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs beside it")
-    given = modes_of_measurement(read_record(options.file))
-    for name, value in (("--length-unit", options.length_unit), ("--mass-unit", options.mass_unit)):
-        if value is not None:
-            raise ConfigurationError(f"{name} {value}: {options.file} states its own units (dataset 164); leave it out")
-    return given
+    return modes_of_measurement(read_record(options.file))
 
 
 def _vehicle_mass(vehicle: Vehicle) -> MassProperties:
@@ -241,8 +270,6 @@ def _check_numbers(options: argparse.Namespace) -> None:
     from vehicle.model.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
 
     most = 1e3 * LARGEST_TOLERANCE
-    if options.attachment_modes is not None and options.method == METHODS[0]:
-        raise ConfigurationError("--attachment-modes: --method free-free has none; choose rubin or craig-bampton")
     for name, value, allowed, text in (
         ("--up-to", options.up_to, 0.0 < options.up_to < math.inf, "a frequency above 0 Hz"),
         (
