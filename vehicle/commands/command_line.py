@@ -49,7 +49,7 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
     try:
         backend = os.environ.get("MUJOCO_GL", "").strip().lower()
         if backend not in OPENGL:
-            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; must be osmesa, egl or glfw; or unset it")
+            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; must be osmesa, egl, glfw or unset")
         job()
         _flush()
         if lost is not None and lost.getvalue():
