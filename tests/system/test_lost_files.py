@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.runs.output.destination import free_file, free_files, free_folder
 from vehicle.runs.output.folder import check_file, folder_lock, output_folder, prepare_folder, write_text, write_whole
+from vehicle.runs.output.free_names import free_file, free_files, free_folder
 from vehicle.runs.output.model_files import write_mjcf
 from vehicle.runs.output.written_files import MARKER, discard, foreign, note, written
 
@@ -179,7 +179,7 @@ def test_the_next_free_name_and_two_runs_at_once(tmp_path):
 def test_processes_at_once_take_names_of_their_own(tmp_path):
     work = (
         "import sys; from contextlib import ExitStack; from pathlib import Path\n"
-        "from vehicle.runs.output.destination import free_folder; "
+        "from vehicle.runs.output.free_names import free_folder; "
         "from vehicle.runs.output.folder import output_folder\n"
         "with ExitStack() as held:\n"
         "    path = free_folder(held, Path('runs/low'))\n"

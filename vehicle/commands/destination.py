@@ -23,7 +23,7 @@ def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tup
         ConfigurationError: a folder that is named exists without --force, or holds files that no run wrote.
         OutputError: it cannot be written.
     """
-    from vehicle.runs.output.destination import free_folder, named
+    from vehicle.runs.output.free_names import free_folder, named
 
     if is_named(options) or options.force:
         return named(
@@ -46,8 +46,8 @@ def prepared_folder_of(options: argparse.Namespace, default: Path, *, rows: str 
     Raises:
         ConfigurationError, OutputError: as of `prepare_folder`.
     """
-    from vehicle.runs.output.destination import free_folder
     from vehicle.runs.output.folder import claim, prepare_folder
+    from vehicle.runs.output.free_names import free_folder
 
     resume = getattr(options, "resume", False)
     if is_named(options) or options.force or resume:
@@ -74,8 +74,8 @@ def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[s
         ConfigurationError: a file exists in a folder that is named, without --force; or no run wrote it.
         OutputError: the folder cannot be written.
     """
-    from vehicle.runs.output.destination import free_files
     from vehicle.runs.output.folder import check_files, claim
+    from vehicle.runs.output.free_names import free_files
 
     if is_named(options) or options.force:
         folder = options.output if is_named(options) else folder
@@ -98,7 +98,7 @@ def output_file_of(
         ending: that the name must have.
         protect: input files, which are never replaced.
     """
-    from vehicle.runs.output.destination import free_file, named_file
+    from vehicle.runs.output.free_names import free_file, named_file
 
     if is_named(options) or options.force:
         path = options.output if is_named(options) else default

@@ -91,7 +91,7 @@ def _check_film_options(options: argparse.Namespace) -> None:
     if options.video is None:
         raise ConfigurationError(f"--animate {options.animate:g}: shows a mode as a film; give --video [FILE.mp4] too")
     from vehicle.drawing.rendering.backend import require_film
-    from vehicle.runs.output.destination import named_file
+    from vehicle.runs.output.free_names import named_file
 
     if options.video:
         named_file(options.held, film_name(options.video, ""), "--video", force=options.force)

@@ -7,10 +7,10 @@ import shlex
 import sys
 from pathlib import Path
 
+from vehicle.commands.chosen_inputs import chosen_inputs
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
     command_parser,
     engine_option,

@@ -275,7 +275,7 @@ def _report_path(options: argparse.Namespace, output: Path) -> Path:
 
 def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) -> Path:
     """A plain name in the folder of the run, or a path outside it where nothing is in the way."""
-    from vehicle.runs.output.destination import named_file
+    from vehicle.runs.output.free_names import named_file
 
     if name.parent == Path():
         return name

@@ -17,7 +17,7 @@ from vehicle.commands.shaker import parser as shaker_options
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.runs.car import Car
-from vehicle.runs.comparison.comparison import comparison_of
+from vehicle.runs.comparison.compared_run import comparison_of
 from vehicle.runs.comparison.simulated import of_folder
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal

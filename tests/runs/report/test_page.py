@@ -17,7 +17,7 @@ from vehicle.commands.report import main
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.runs.car import Car
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.comparison import changed_parameters, difference, shipped_origin
+from vehicle.runs.report.differences import changed_parameters, difference, shipped_origin
 from vehicle.runs.report.moving_modes import FULL
 
 EMPTY = {"meta", "link", "input", "img", "br"}

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from vehicle.runs.car import Run
-from vehicle.runs.comparison.comparison import comparison_of
-from vehicle.runs.comparison.drawings import drawings_of
+from vehicle.runs.comparison.compared_run import comparison_of
+from vehicle.runs.comparison.comparison import Comparison
+from vehicle.runs.comparison.named_pictures import drawings_of
 from vehicle.runs.comparison.simulated import of_run
-from vehicle.runs.comparison.tables import Comparison
 from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.signals.records.measured import Measured
 from vehicle.signals.records.run_summary import MeasuredSummary

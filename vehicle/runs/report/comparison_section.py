@@ -7,10 +7,10 @@ from pathlib import Path
 
 from vehicle.drawing.rendering.several_runs import plot_densities, plot_responses, shared_channels
 from vehicle.names import wheel_words
-from vehicle.runs.report.comparison import changed_parameters, difference, key_figures
-from vehicle.runs.report.drawings import drawing
+from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
+from vehicle.runs.report.svg_figure import drawing
 
 
 def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.several_runs import plot_densities, shared_channels
 from vehicle.engines.linear.modes import Mode
-from vehicle.runs.report.drawings import drawing
 from vehicle.runs.report.findings import main_places, nearest_mode, of_plate
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag
+from vehicle.runs.report.svg_figure import drawing
 
 
 def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:

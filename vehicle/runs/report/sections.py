@@ -14,11 +14,11 @@ from vehicle.engines.linear.modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.names import side_of
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.comparison import changed_parameters, shipped_origin
-from vehicle.runs.report.drawings import drawing
+from vehicle.runs.report.differences import changed_parameters, shipped_origin
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
+from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.run_summary import slip_shares
 
 ROAD_WORDS = {

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from vehicle.runs.comparison.comparison import Comparison
 from vehicle.runs.comparison.pictures import plot_histories, plot_responses, plot_signatures
-from vehicle.runs.comparison.tables import Comparison
 
 
 def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
