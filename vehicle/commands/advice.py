@@ -1,4 +1,4 @@
-"""The whole command to type for a measurement file, by what its channels measure and what they are called."""
+"""Complete command for a measurement file, from the units and the names of its channels."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def words_of(name: str) -> list[str]:
 
 
 def wheel_of(name: str) -> str:
-    """Return the wheel that a channel name speaks of; empty for none.
+    """Return the wheel in the name of a channel; empty if there is none.
 
     Args:
         name: as "FR", "VL", "rear left", "hinten rechts", "LeftFront".
@@ -74,12 +74,12 @@ def wheel_of(name: str) -> str:
 
 
 def _any(words: Sequence[str], names: Sequence[str]) -> bool:
-    """True if a whole word, of more than one letter, is among the names."""
+    """Return True if a word of more than one letter is among the names."""
     return any(word in names for word in words if len(word) > 1)
 
 
 def axis_of(channel: Channel) -> str:
-    """Return the axis of a channel, by its direction or its name; empty for none.
+    """Return the axis of a channel, from its direction or its name; empty if it has none.
 
     Args:
         channel: of a measurement.
@@ -91,11 +91,11 @@ def axis_of(channel: Channel) -> str:
 
 
 def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
-    """Return the command for a file, and what it does or why there is none.
+    """Return the command for a file with its purpose, or the reason for the lack of a command.
 
     Args:
         measurement: the file.
-        file: its name as typed.
+        file: name of the file as typed.
     """
     if measurement.shapes and not measurement.channels:
         return _line("compare", "--measured", file), "compares the mode shapes with those of a car"
@@ -132,14 +132,14 @@ def _line(*words: str) -> str:
 
 
 def _pick(measurement: Measurement, number: int) -> str:
-    """Return the name of a channel where it is its own alone, else its number."""
+    """Return the name of a channel if it is unique, else the number of the channel."""
     name = measurement.channels[number - 1].name
     once = sum(one.name == name for one in measurement.channels) == 1
     return name if name and once and not name.isdecimal() and not set(name) & set("*?[=") else str(number)
 
 
 def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
-    """Return the command for a profile over the distance; None for any other file."""
+    """Return the command for a road profile over the distance; None for any other file."""
     from vehicle.signals.excitation.measured_road import read_road
 
     profile = measurement.format in ("crg", "erd")
@@ -163,7 +163,7 @@ def _clock(channel: Channel) -> tuple[str, ...]:
 def _plates(
     measurement: Measurement, file: str, moves: list[tuple[int, Channel]], speeds: list[tuple[int, Channel]]
 ) -> tuple[str, str]:
-    """Return the command for displacements: plates of a shaker, or a road with a speed."""
+    """Return the command for displacements: shaker plates, or a road with a recorded speed."""
     from vehicle.signals.excitation.recorded_road import NAMES
 
     plain = {one.name.strip().rstrip(".").lower() for _, one in moves}
@@ -194,7 +194,7 @@ def _plates(
 
 
 def _tried(path: Path, words: list[str], more: Sequence[list[str]]) -> tuple[str, str]:
-    """Return the first form of a shaker command whose signal can be read, or why none can."""
+    """Return the first shaker command whose signal is readable, or the reason why the signals are not."""
     from vehicle.commands.input_options import record_choice
     from vehicle.commands.shaker import parser
     from vehicle.signals.excitation.signal_file import read_signal
@@ -214,7 +214,7 @@ def _tried(path: Path, words: list[str], more: Sequence[list[str]]) -> tuple[str
 
 
 def _accelerations(measurement: Measurement, file: str, those: list[tuple[int, Channel]]) -> tuple[str, str]:
-    """Return the command for accelerations: the comfort of the point whose axes they are."""
+    """Return the comfort command for the accelerations of one point."""
     import numpy as np
 
     seats = [pair for pair in those if {"seat", "sitz"} & set(words_of(pair[1].name + " " + pair[1].place))]

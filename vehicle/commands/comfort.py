@@ -33,8 +33,8 @@ def parser() -> Parser:
         nargs="+",
         action="extend",
         metavar="FILE",
-        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone will do; several "
-        "files, or a folder, give one table",
+        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone is "
+        "sufficient; several files, or a folder, give one table",
     )
     channels = parser.add_argument_group("channels of the file")
     channels.add_argument(
@@ -49,8 +49,8 @@ def parser() -> Parser:
     channels.add_argument(
         "--rail",
         metavar="PLACE|z=NAME",
-        help="what is below the seat, as seat_rail, or z=NAME in any measurement file: gives the SEAT value too, the "
-        "weighted z acceleration of --channel over that of the rail, both by the weighting of the seat [-]",
+        help="acceleration below the seat, as seat_rail, or z=NAME in any measurement file; adds the SEAT value [-], "
+        "the weighted z acceleration of --channel divided by that of the rail, both with the weighting of the seat",
     )
     record_options(channels, "", channel=False)
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
@@ -92,7 +92,7 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
     """
     places = [text for text in picks if "=" not in text]
     if len(places) > 1 or (places and len(picks) > 1):
-        raise ConfigurationError("--channel: give one PLACE, or x=NAME, y=NAME and z=NAME")
+        raise ConfigurationError("--channel: set one PLACE, or x=NAME, y=NAME and z=NAME")
     own = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
     return (places[0] if places else None), record_choice(own, "")
 
@@ -113,7 +113,7 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
         axis, equals, name = options.rail.partition("=")
         if equals and axis != "z":
             raise ConfigurationError(
-                f"--rail {options.rail}: the value of a seat is that of z; give z=NAME, or a place"
+                f"--rail {options.rail}: the SEAT value needs axis z; set z=NAME, or an output point"
             )
         rail = _picked(options, [f"z={name}"] if equals else [options.rail])
     found = evaluate_comfort(
@@ -134,7 +134,7 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
 
 
 def _about_the_seat(file: Path) -> list[str]:
-    """What a run in the same folder says of its seat: that there is none."""
+    """Return the notice of a missing seat, if the summary of the run in the same folder contains it."""
     from vehicle.runs.output.run_comfort import NO_SEAT
     from vehicle.signals.records.run_summary import available_summary
 
@@ -143,7 +143,7 @@ def _about_the_seat(file: Path) -> list[str]:
 
 
 def _overview(results: list[dict[str, Any]]) -> str:
-    """Return one line for each file: weighted RMS of each axis, their sum, and the measures of z."""
+    """Return the table of several files: weighted RMS of each axis, vector sum, further values of axis z."""
     rows: list[tuple[str, ...]] = []
     for result in results:
         if "error" in result:
@@ -163,7 +163,7 @@ def _overview(results: list[dict[str, Any]]) -> str:
 
 
 def _job(options: argparse.Namespace) -> None:
-    """Evaluate and print."""
+    """Evaluate the records of --input and print the results."""
 
     def one(name: str) -> dict[str, Any]:
         return dict(_evaluate(argparse.Namespace(**{**vars(options), "input": name})).summary)

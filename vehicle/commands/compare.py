@@ -1,4 +1,4 @@
-"""`python -m vehicle compare RUN_OR_INPUT --measured FILE`: a measurement beside a run, worst first."""
+"""`python -m vehicle compare RUN_OR_INPUT --measured FILE`: compare a measurement with a run."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def parser() -> Parser:
 
 
 def drift_option(parser: argparse._ActionsContainer) -> None:
-    """Add --drift: the clock of a measurement against that of the run."""
+    """Add --drift, the drift of the clock of a measurement against that of the run."""
     parser.add_argument(
         "--drift",
         type=float,
@@ -96,13 +96,13 @@ def drift_option(parser: argparse._ActionsContainer) -> None:
 
 
 def clock_of(options: argparse.Namespace) -> tuple[float, float]:
-    """Return --delay [s] and --drift as a share [-].
+    """Return --delay [s] and --drift [-].
 
     Args:
-        options: of a command with both.
+        options: parsed options of a command with both.
 
     Raises:
-        ConfigurationError: a number that is not finite, or a drift of more than a tenth.
+        ConfigurationError: a value is not finite, or the drift exceeds 0.1.
     """
     from vehicle.runs.comparison.compared_run import require_clock
     from vehicle.signals.records.counterpart import PARTS
@@ -113,12 +113,12 @@ def clock_of(options: argparse.Namespace) -> tuple[float, float]:
 
 
 def measured_options(parser: Parser, *, required: bool = False, several: bool = False) -> None:
-    """Add --measured, --map and --turn: which measurement, and which of its channels is which.
+    """Add --measured, --map and --turn, which choose a measurement and its channels.
 
     Args:
-        parser: of the command.
-        required: whether it is nothing without a measurement.
-        several: --measured takes several files or a folder; then its value is a list.
+        parser: parser of the command.
+        required: True if the command needs a measurement.
+        several: True if --measured accepts several files or a folder; its value is then a list.
     """
     many: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
     parser.add_argument(
@@ -145,14 +145,14 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
 
 
 def mapping_options(parser: argparse._ActionsContainer) -> None:
-    """Add --map and --turn: which channels of a measurement are which."""
+    """Add --map and --turn, the channels of a measurement and their directions."""
     parser.add_argument(
         "--map",
         dest="mapping",
         action="append",
         default=[],
         metavar="CHANNEL=NAME",
-        help='channel of the model and the one that measured it, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
+        help='channel of the model and its measured channel, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
         "pattern with *, or place and direction; for mode shapes PLACE=NODE; by default equal names, and for modes "
         "nodes at the places of the car; may be repeated",
     )
@@ -162,16 +162,16 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="CHANNEL",
-        help="this channel was measured in the other direction; may be repeated",
+        help="channel measured in the opposite direction; may be repeated",
     )
 
 
 def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> Choice:
-    """What the options ask of the measurement.
+    """Return the choice of channels and units of the measurement.
 
     Args:
-        options: of the command.
-        taken: names whose units are of another file.
+        options: parsed options of the command.
+        taken: names of --unit that belong to the input.
 
     Raises:
         ConfigurationError: a channel twice, an unknown unit, a number out of range.
@@ -216,7 +216,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _overview(results: list[dict[str, Any]]) -> str:
-    """Return one line for each channel of each file: FRAC of responses; RMS ratio and correlation of time histories."""
+    """Return the table of several files, a line for each channel: FRAC; RMS ratio and correlation."""
     rows: list[tuple[str, ...]] = []
     for result in results:
         if "error" in result:
@@ -233,10 +233,10 @@ def _overview(results: list[dict[str, Any]]) -> str:
 
 
 def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any], str]:
-    """Compare one measurement, write its folder, and return the summary with its text.
+    """Compare one measurement, write the results, and return the summary and its text.
 
     Args:
-        options: of the command, with `measured` the file.
+        options: parsed options of the command; `measured` is the file.
         output: folder of the results.
     """
     from vehicle.runs.comparison.compared_run import compare_run
@@ -278,12 +278,12 @@ def _measured(
 
 
 def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: Container[str] = ()) -> Measured | None:
-    """The measurement that a run shall stand beside, read before the run; None where none is asked for.
+    """Read the measurement of --measured before the run; return None without --measured.
 
     Args:
-        options: with those of `measured_options`.
+        options: parsed options, with those of `measured_options`.
         known: names of the channels of the run.
-        taken: names whose units are of the input.
+        taken: names of --unit that belong to the input.
     """
     if options.measured is None:
         return None
@@ -293,7 +293,7 @@ def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: 
 def _run(
     options: argparse.Namespace, measurement: Measurement, choice: Choice
 ) -> tuple[Run | Simulated, tuple[str, ...]]:
-    """Return the run, simulated where an input is given, and the names of its channels."""
+    """Return the run and the names of its channels; an input is simulated first."""
     from vehicle.runs.comparison.simulated import of_folder
 
     folder = Path(options.run)
@@ -323,7 +323,7 @@ def _run(
 def _modes(
     options: argparse.Namespace, output: Path, measurement: Measurement, choice: Choice
 ) -> tuple[dict[str, Any], str]:
-    """Mode shapes beside those of the car."""
+    """Compare measured mode shapes with those of the car, write the results, and return summary and text."""
     from vehicle.runs.comparison.mode_comparison import compare_modes
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_json, write_whole
@@ -349,7 +349,7 @@ def _modes(
 
 
 def _car(options: argparse.Namespace) -> Car:
-    """The car of a run, or of the options."""
+    """Return the car of a run, or that of the options."""
     from vehicle.runs.car import Car
 
     file = options.vehicle

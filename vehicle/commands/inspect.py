@@ -1,4 +1,4 @@
-"""`python -m vehicle inspect FILE...`: what measurement files hold, and the whole command to type for a file."""
+"""`python -m vehicle inspect FILE...`: channels of measurement files, and a complete command for each file."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def overview(results: list[dict[str, Any]]) -> str:
-    """Return one line for each file, and the command of each.
+    """Return the table of several files and the command for each.
 
     Args:
         results: contents of each file, or its error.
@@ -87,7 +87,7 @@ def overview(results: list[dict[str, Any]]) -> str:
 
 
 def contents(measurement: Measurement) -> dict[str, Any]:
-    """A file in plain numbers and texts; levels in SI, or as found where the unit is open."""
+    """Return the content of a file as plain numbers and texts; levels in SI units, or in the file's if unknown."""
     from vehicle.signals.records.clock import time_remarks
 
     axes = {id(one.axis): one.axis for one in measurement.channels if one.kind == "time" and one.axis is not None}
@@ -147,7 +147,7 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
 
 
 def report(found: dict[str, Any]) -> str:
-    """Return the table as text; levels in the unit of the file.
+    """Return the table of channels as text; levels in the units of the file.
 
     Args:
         found: of `contents`, with the command.

@@ -1,4 +1,4 @@
-"""`python -m vehicle kinematics`: kinematics and compliance of an axle, as on a rig that lifts the wheels."""
+"""`python -m vehicle kinematics`: kinematics and compliance (K&C) of an axle."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def parser() -> Parser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
+    """Run the command and return its exit code."""
     return parse_and_run(parser(), _job, arguments)
 
 
@@ -100,16 +100,16 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
-    """An axle of a car, ready to be lifted.
+    """Return the kinematics model of an axle.
 
     Args:
         car: the car.
-        name: table of the axle in its vehicle file.
-        ideal: every connection an ideal ball joint.
-        standing: as of `AxleStatics`.
+        name: table of the axle in the vehicle file.
+        ideal: True replaces all bushings by ideal ball joints.
+        standing: True for tyres that stand, see `AxleStatics`.
 
     Raises:
-        ConfigurationError: no wheel belongs to such a table.
+        ConfigurationError: the table has no wheel.
     """
     from vehicle.engines.simulation.axle_statics import AxleStatics
 
@@ -121,7 +121,7 @@ def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) ->
 
 
 def _travels(text: str) -> list[float]:
-    """Wheel travels [m] of A:B[:STEP] in mm."""
+    """Return the wheel travels [m] of the text A:B[:STEP] in mm."""
     parts = text.split(":")
     try:
         first, last, step = (float(part) for part in (*parts, "5")[:3])
@@ -136,7 +136,7 @@ def _travels(text: str) -> list[float]:
 
 
 def _vector(option: str, entries: list[str]) -> list[float]:
-    """Components of repeated AXIS=VALUE."""
+    """Return the vector of repeated AXIS=VALUE options."""
     found = dict.fromkeys("xyz", 0.0)
     for entry in entries:
         axis, _, text = entry.partition("=")
@@ -165,7 +165,7 @@ HEADS = {
 
 
 def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str, float | None]) -> str:
-    """The table as text."""
+    """Return the table as text."""
     kind = "ideal joints" if options.ideal else "bushings as they are"
     lines = [
         f"{options.axle} axle, wheel on the right, against its design position; {kind}"

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FILES = ("loads.csv", "load_spectra.csv", "loads.png")
 SHOWN = 15
-"""Most channels that are printed."""
+"""Maximum number of printed channels."""
 
 
 def parser() -> Parser:
@@ -35,8 +35,8 @@ def parser() -> Parser:
         type=float,
         default=5.0,
         metavar="K",
-        help="slope of the line of Woehler [-]: damage of n cycles of amplitude A is n A^K; %(default)s by default, "
-        "usual for steel parts of a chassis",
+        help="slope of the S-N (Woehler) curve [-]: damage of n cycles of amplitude A is n A^K; "
+        "%(default)s by default, usual for steel parts of a chassis",
     )
     parser.add_argument(
         "--classes", type=int, default=64, metavar="N", help="classes of the range in the spectra; %(default)s"
@@ -81,7 +81,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _time_file(run: Path) -> Path:
-    """The time histories of a run."""
+    """Return the file of the time histories of a run."""
     if not run.is_dir():
         return run
     for name in ("time.npz", "time.csv"):
@@ -91,7 +91,7 @@ def _time_file(run: Path) -> Path:
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:
-    """Channels to count: those that are named, or all forces, torques and travels."""
+    """Return the channels to count: those of --channels, by default all forces, torques and travels."""
     if text is None:
         loads = [name for name, unit in units.items() if unit in ("N", "N m") or name.startswith("suspension_travel_")]
         if not loads:
@@ -116,7 +116,7 @@ def _table(found: list[LoadSpectrum], about: str) -> str:
 
 
 def _spectra(found: list[LoadSpectrum], about: str, classes: int) -> str:
-    """Range pairs: cycles in classes of equal width from zero to the largest range of each channel."""
+    """Return the range-pair table: cycles in equal classes from zero to the largest range of each channel."""
     lines = [f"# {about}", "channel,unit,range_above,range_up_to,cycles,cycles_of_this_range_or_more"]
     for one in found:
         edges, counts = one.classes(classes)
@@ -140,14 +140,14 @@ def _report(found: list[LoadSpectrum], about: str) -> str:
 
 
 def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
-    """Channels that --channels asks a run to record: the default ones, and more behind them.
+    """Return the channels that a run records: the default channels, then those of --channels.
 
     Args:
-        text: "loads", "all", or names with commas between.
+        text: "loads", "all", or names separated by commas.
         vehicle: the car.
 
     Raises:
-        ConfigurationError: the car has no such channel.
+        ConfigurationError: the car has no channel of this name.
     """
     more = vehicle.requested_channels
     if text in ("loads", "all"):

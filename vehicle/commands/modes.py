@@ -60,7 +60,7 @@ def _job(options: argparse.Namespace) -> None:
     if options.uff is not None and options.uff.exists():
         own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
         if not (options.force and own):
-            mend = "is of somebody else; give another name" if options.force else "exists; give --force"
+            mend = "was not written by this program; set another name" if options.force else "exists; give --force"
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
@@ -76,11 +76,11 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _check_film_options(options: argparse.Namespace) -> None:
-    """Refuse what cannot be filmed, before anything is computed; chooses the OpenGL library before MuJoCo is imported.
+    """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported.
 
     Raises:
-        ConfigurationError: half of the pair, no frequency, or a film that is there.
-        MissingPartError: what films need is missing.
+        ConfigurationError: only one of --animate and --video, no frequency, or an existing film.
+        MissingPartError: OpenGL or ffmpeg is missing.
     """
     if options.animate is None:
         if options.video is not None:
@@ -99,7 +99,7 @@ def _check_film_options(options: argparse.Namespace) -> None:
 
 
 def nearest(modes: Sequence[Any], frequency: float) -> Any:
-    """The mode whose natural frequency [Hz] is nearest; motions that grow are none.
+    """Return the mode whose natural frequency [Hz] is nearest; unstable motions are left out.
 
     Raises:
         ConfigurationError: the car has no mode.
@@ -111,7 +111,7 @@ def nearest(modes: Sequence[Any], frequency: float) -> Any:
 
 
 def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
-    """Write the film; what it shows, and where it is."""
+    """Write the film of a mode, and return its description and path."""
     from vehicle.drawing.rendering.mode_film import mode_film
     from vehicle.runs.output.folder import write_whole
 
@@ -124,7 +124,7 @@ def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
 
 
 def modes_table(car: Any, damper: str) -> dict[str, Any]:
-    """Modes of the car and of its free body, in plain numbers and texts."""
+    """Return the modes of the car and of its free body as plain numbers and texts."""
     from vehicle.model.parameters.whole_body import body_notices
 
     body = car.model.superelement
@@ -155,7 +155,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
 
 
 def report(found: dict[str, Any]) -> str:
-    """The table as text."""
+    """Return the table as text."""
     width = max((len(mode["description"]) for mode in found["modes"]), default=0)
     lines = [
         f"assembled car, dampers {found['damper']}, tyres {found['tyre']}",

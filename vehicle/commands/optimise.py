@@ -1,4 +1,4 @@
-"""`python -m vehicle optimise`: the parameters with the best compromise, within bounds and limits."""
+"""`python -m vehicle optimise`: search for Pareto-optimal parameters within bounds and limits."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="NUMBER[@INPUT]<=VALUE",
-        help="what a car must keep, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; without an "
+        help="constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; without an "
         "input on every one; may be repeated",
     )
     search.add_argument("--cars", type=int, default=2000, metavar="N", help="cars to try; %(default)s by default")
@@ -99,9 +99,11 @@ def parser() -> Parser:
     skip_option(parser, 2.0)
     jobs_option(parser)
     executor_option(parser)
-    parser.add_argument("--check", action="store_true", help="run the named cars with MuJoCo and tell the difference")
     parser.add_argument(
-        "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn, and how far it is"
+        "--check", action="store_true", help="run the named cars with MuJoCo too and report the difference"
+    )
+    parser.add_argument(
+        "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn with its distance"
     )
     output_options(parser, Path("runs/optimise"))
     parser.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")

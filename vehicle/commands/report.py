@@ -1,4 +1,4 @@
-"""`python -m vehicle report`: one HTML file of one run, or of several beside each other."""
+"""`python -m vehicle report`: write the report of one run, or of several runs compared, as an HTML file."""
 
 from __future__ import annotations
 

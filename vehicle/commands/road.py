@@ -1,4 +1,4 @@
-"""`python -m vehicle road`: the plate signals of a car that drives over a road, as a file."""
+"""`python -m vehicle road`: write the plate signals of a car on a road."""
 
 from __future__ import annotations
 
@@ -51,10 +51,10 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def class_or_profile(text: str) -> str | Path:
-    """What --road of other commands names: a class, or the file of a profile.
+    """Return the class of ISO 8608, or the file of a profile, of the value of --road.
 
     Raises:
-        ConfigurationError: it is neither.
+        ConfigurationError: the value is neither.
     """
     if len(text) > 1 and not Path(text).is_file():
         raise ConfigurationError(f"--road {text}: no class of ISO 8608 (A to H), and no file of a measured profile")
@@ -66,7 +66,7 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
 
     Args:
         road: class of ISO 8608, or the file of a profile.
-        options: as of `road_options`, or of `signal_options`.
+        options: parsed options of `road_options` or `signal_options`.
         vehicle: the car.
 
     Raises:
@@ -76,7 +76,7 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
 
 
 def road_of(road: str | Path, options: argparse.Namespace) -> Road:
-    """Return the road of the options; arguments as of `road_drive`.
+    """Return the `Road` of the options; the arguments are those of `road_drive`.
 
     Raises:
         ConfigurationError: no speed.

@@ -1,4 +1,4 @@
-"""Several files in a command: names and folders, and what became of each."""
+"""Commands with several input files: names, folders, results and errors of each file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Row = tuple[str, ...]
 
 
 def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
-    """Return the files that names mean, and True if they are several: the files of a folder in alphabetical order.
+    """Return the files of names and folders, and True for several; files of a folder in alphabetical order.
 
     Args:
         names: paths of files or folders, or names of shipped inputs.
@@ -38,11 +38,11 @@ def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
 def each_file(
     names: Sequence[str], work: Callable[[str], dict[str, Any]]
 ) -> tuple[list[dict[str, Any]], list[VehicleError]]:
-    """Return the result of every file; a file that fails has its message in place of a result, the others go on.
+    """Return the result of every file; a failed file has its error message as a result, and the others continue.
 
     Args:
         names: files.
-        work: makes a result of plain data of a file.
+        work: function that returns the result of a file as plain data.
     """
     results, errors = [], []
     for name in names:
@@ -55,7 +55,7 @@ def each_file(
 
 
 def table_of(heads: Row, rows: Sequence[Row]) -> str:
-    """Return rows as text: the first column to the left, the others to the right.
+    """Return rows as text; the first column is aligned left, the others right.
 
     Args:
         heads: names of the columns.
@@ -75,14 +75,14 @@ def table_of(heads: Row, rows: Sequence[Row]) -> str:
 
 
 def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
-    """Raise one error for files that failed, after everything else was printed.
+    """Raise one error for all failed files; call it after printing the results.
 
     Args:
-        errors: of the files that failed.
+        errors: errors of the failed files.
         files: number of all files.
 
     Raises:
-        VehicleError: of the kind of the first error.
+        VehicleError: with the class of the first error.
     """
     if errors:
         count = len(errors)

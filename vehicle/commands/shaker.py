@@ -1,4 +1,4 @@
-"""`python -m vehicle.shaker`: a measured signal on the shaker, and what the test bench would give."""
+"""`python -m vehicle.shaker`: simulate the car on the shaker or a road, and write the results."""
 
 from __future__ import annotations
 
@@ -221,7 +221,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
-    """Refuse a wheel that the file names itself, and an excerpt outside the record."""
+    """Check --wheel against the wheels of the file, and the excerpt of the film against the record."""
     if options.wheel is not None and len(signal.wheels) > 1:
         raise ConfigurationError(
             f"--wheel {options.wheel}: {options.input} names the wheels of its columns; leave --wheel out"
@@ -235,7 +235,7 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
 
 
 def _check_numbers(options: argparse.Namespace) -> None:
-    """Refuse numbers of the film and the step that nobody can mean, before anything is simulated."""
+    """Check the numeric options of the film and the time step before the simulation."""
     wanted = (
         ("--slow-motion", options.slow_motion, 1.0, "at least 1"),
         ("--video-duration", options.video_duration, 0.1, "at least 0.1 s"),
@@ -248,7 +248,7 @@ def _check_numbers(options: argparse.Namespace) -> None:
 
 
 def _engine(options: argparse.Namespace) -> tuple[str, str]:
-    """The engine that is asked for, and why it is not the one that was named."""
+    """Return the engine, and the reason if it differs from the option."""
     needs = "--video" if options.video is not None else "--timestep" if options.timestep is not None else None
     if needs is None or options.engine == "mujoco":
         return options.engine, ""
@@ -259,12 +259,12 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
 
 
 def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
-    """Where the film goes: a plain name lies in the folder of the run."""
+    """Return the path of the film; a plain name is in the folder of the run."""
     return _beside(film_name(options.video, f"{stem}.mp4"), "--video", output, options)
 
 
 def _report_path(options: argparse.Namespace, output: Path) -> Path:
-    """Where the report goes, in the same way."""
+    """Return the path of the report; a plain name is in the folder of the run."""
     from vehicle.commands.report import NAME
 
     name = Path(options.report or NAME)
@@ -274,7 +274,7 @@ def _report_path(options: argparse.Namespace, output: Path) -> Path:
 
 
 def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) -> Path:
-    """A plain name in the folder of the run, or a path outside it where nothing is in the way."""
+    """Check a path: a plain name in the folder of the run, or a free path outside this folder."""
     from vehicle.runs.output.free_names import named_file
 
     if name.parent == Path():
@@ -283,7 +283,7 @@ def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) 
     if name.resolve().parent == folder:
         return Path(name.name)
     if folder in name.resolve().parents:
-        raise ConfigurationError(f"{option} {name}: lies below the folder of the run; give a plain name: {name.name}")
+        raise ConfigurationError(f"{option} {name}: is below the folder of the run; set a plain name: {name.name}")
     return named_file(options.held, name, option, force=options.force)
 
 

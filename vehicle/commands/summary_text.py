@@ -1,4 +1,4 @@
-"""The summary of a run as the text that a command prints."""
+"""Printed text of the summary of a run."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 
 
 def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
-    """What is said of each wheel by its name and its word, as a list."""
+    """Return a list in words, with a text for each wheel from its name and its side."""
     words = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
     return last.join(word for word in (", ".join(words[:-1]), words[-1]) if word)
 
 
 def summary_text(summary: RunSummary, output: Path) -> str:
-    """The summary of a run as a page of text.
+    """Return the printed summary of a run.
 
     Args:
-        summary: the content of `summary.json`.
-        output: the folder of the run.
+        summary: content of `summary.json`.
+        output: folder of the run.
     """
     share, first = summary["slip_share"], summary["first_slip_s"]
     load = summary["static"]["tyre_load_n"]
@@ -35,7 +35,7 @@ def summary_text(summary: RunSummary, output: Path) -> str:
     lines = [
         f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, plate RMS "
         f"{', '.join(moved)}; tyres {summary['tyre']}",
-        f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
+        f"damper      slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
         f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
         f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
         f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
@@ -61,7 +61,7 @@ def summary_text(summary: RunSummary, output: Path) -> str:
 
 
 def _comfort(summary: RunSummary) -> list[str]:
-    """Comfort at the seat rail, and on the seat of a car that has one."""
+    """Return the lines of comfort at the seat rail and, for a car with seats, on the seat."""
     from vehicle.signals.records.run_summary import unweighted_rms
 
     lines, places = [], summary["comfort"]
@@ -85,7 +85,7 @@ def _weighted(places: dict[str, ComfortSummary], place: str) -> float:
 
 
 def _balance(solver: SolverSummary) -> str:
-    """Energy residual, where the engine keeps an energy balance."""
+    """Return the energy residual; empty for an engine without an energy balance."""
     return "" if solver["energy_residual"] is None else f", energy residual {solver['energy_residual']:.1e}"
 
 

@@ -1,4 +1,4 @@
-"""`python -m vehicle.sweep`: a table of parameter variations and inputs, and a table of comfort and slip back."""
+"""`python -m vehicle.sweep`: table of comfort and slip for variations of parameters and inputs."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, ...]]]:
-    """Paths and rows of `--vary` options, the last one varying fastest.
+    """Return the parameter paths and the rows of all combinations of `--vary`; the last path varies fastest.
 
     Raises:
         ConfigurationError: an option is not PATH=V1,V2,...
@@ -119,7 +119,7 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
         items = [item.strip() for item in re.split(r",(?![^\[]*\])", listed)]
         if not separator or not path.strip() or not all(items):
             raise ConfigurationError(
-                f"--vary {text}: needed is PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; one component of a "
+                f"--vary {text}: must be PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; one component of a "
                 "vector has its axis behind the path: bushings.tyre.stiffness.z=2e5,2.5e5"
             )
         if path.strip() in paths:

@@ -62,8 +62,8 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     assert outline.links and all(link.startswith(("#", "data:")) for link in outline.links)
     assert not re.search(r"url\((?!#)|@import|<iframe|<object|<base", reported.text)
     assert "default-src 'none'" in unescape(reported.text)
-    wanted = ["Findings", "What was run", "Frequency responses", "Time histories", "Dampers", "Comfort", "Modes"]
-    assert outline.titles == [*wanted, "All numbers", "How to repeat it"]
+    wanted = ["Findings", "Car, signal, engine", "Frequency responses", "Time histories", "Dampers", "Comfort", "Modes"]
+    assert outline.titles == [*wanted, "All values", "How to repeat the run"]
     assert reported.text.count("<svg ") == 2
 
 
@@ -74,7 +74,7 @@ def test_the_page_says_the_numbers_of_the_summary(reported, outline):
     assert f"{total:.3g} m/s²" in words and reactions(total)[0] in words
     assert f"{100 * summary['slip_share']['fl']:.2f} %" in words
     top = max(summary["peaks"]["knuckle_fl_acc_z"], key=lambda peak: peak["magnitude"])
-    assert f"The highest vertical resonance at the knuckle lies at {top['frequency_hz']:.1f} Hz" in words
+    assert f"The highest vertical resonance at the knuckle is at {top['frequency_hz']:.1f} Hz" in words
     assert "front.damper.coulomb_friction" in words and "a<b>&c.csv" in words
     assert all(notice in words for notice in summary["notices"])
     assert summary["command"].startswith("python -m vehicle.shaker --input ") and summary["command"] in words
@@ -102,8 +102,8 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     assert main([str(reported.folder), str(reported.folder), "--output", str(page), "--quiet"]) == 0
     found = Outline()
     found.feed(page.read_text(encoding="utf-8"))
-    assert found.titles[0] == "Beside each other" and found.titles[-1] == "Modes"
-    assert "None: the cars are the same." in found.words
+    assert found.titles[0] == "Comparison of the runs" and found.titles[-1] == "Modes"
+    assert "None: the cars have equal parameters." in found.words
     assert page.stat().st_size < 6e6
 
 
@@ -221,7 +221,8 @@ def test_a_mode_of_the_page_is_that_of_the_car(reported):
 
 def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(reported, capsys):
     text = unescape(re.sub(r"<[^>]+>", "", reported.text))
-    told = re.findall(r"At ([\d.]+) Hz the vertical acceleration at the seat rail is made by (.+?) [+-]\d+ %", text)
+    words = "the contributions to the vertical acceleration at the seat rail are"
+    told = re.findall(rf"At ([\d.]+) Hz {words} (.+?) [+-]\d+ %", text)
     assert 1 <= len(told) <= 3
     peaks = json.loads((reported.folder / "summary.json").read_text())["peaks"]["seat_rail_acc_z"]
     highest = max(peaks, key=lambda peak: peak["magnitude"])["frequency_hz"]
@@ -231,7 +232,7 @@ def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(re
     assert body_command([*words, "--vehicle", str(reported.folder / "vehicle.toml")]) == 0
     parts = {one["name"]: one["share"] for one in json.loads(capsys.readouterr().out)["contributions"]}
     assert first in parts and abs(parts[first]) == max(map(abs, parts.values()))
-    assert f"made by {first} {100 * parts[first]:+.0f} %" in text
+    assert f"are {first} {100 * parts[first]:+.0f} %" in text
 
 
 def test_a_car_is_compared_with_the_shipped_one_that_it_was_made_from():

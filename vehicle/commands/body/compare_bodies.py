@@ -1,4 +1,4 @@
-"""`python -m vehicle body compare`: two models of a body."""
+"""`python -m vehicle body compare`: compare the modes of two body models."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 FILES = ("mac.csv", "mac.png")
 
 MOST = 40
-"""Modes of each body in the picture; of more, their frequencies could not be read."""
+"""Maximum number of modes of each body in the picture; more labels would not be readable."""
 
 
 def add(tasks: Any) -> None:
-    """The options."""
+    """Add the parser of the task with its options."""
     compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
     compared.add_argument("file", type=Path, metavar="FILE", help="body model, .toml or .npz")
-    compared.add_argument("other", type=Path, metavar="OTHER", help="the one that it is compared with")
+    compared.add_argument("other", type=Path, metavar="OTHER", help="other body model, .toml or .npz")
     extra_output_options(compared, ", ".join(FILES))
     vehicle_options(compared)
     message_options(compared)
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Print frequencies and MAC at the points of the car, and write files where asked for."""
+    """Print frequencies and MAC at the points of the car; with --output write them as files."""
     import numpy as np
 
     from vehicle.model.flexbody.superelement import attached_nodes
@@ -64,7 +64,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 def _write_files(
     options: argparse.Namespace, models: list[Superelement], likeness: npt.NDArray[np.float64], about: str
 ) -> None:
-    """All MAC as a table, and as a picture of the first modes."""
+    """Write the MAC matrix as a table, and a picture of its first modes."""
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_text, write_whole
 

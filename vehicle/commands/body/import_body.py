@@ -157,7 +157,7 @@ def _add_model_options(parser: Parser) -> None:
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Read the source, write the model and print what it is."""
+    """Read the source, write the body model, and print its properties."""
     from vehicle.model.flexbody.sources.interfaces import interfaces, read_map
     from vehicle.model.flexbody.sources.residual_table import read_residuals
     from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
@@ -209,7 +209,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
 
 def _matrices(options: argparse.Namespace) -> Any:
-    """K and M in the units of the source; None where the file holds modes."""
+    """Read the stiffness and mass matrices in the units of the source; None for a file of modes."""
     file: Path = options.file
     if file.suffix.lower() in REFUSED:
         raise DataError(f"{file}: {REFUSED[file.suffix.lower()]}.")
@@ -225,14 +225,14 @@ def _matrices(options: argparse.Namespace) -> Any:
                 raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs too")
             return None
         if options.nodes is None:
-            raise ConfigurationError("--mass: a stiffness and a mass matrix need --nodes too, where their nodes are")
+            raise ConfigurationError("--mass: the positions of the nodes are missing; set --nodes too")
     from vehicle.model.flexbody.sources.matrix_files import read_matrices
 
     return read_matrices(file, options.mass, options.dofs, options.nodes)
 
 
 def _given_modes(options: argparse.Namespace, units: Units, mass: float, places: Mapping[str, Point]) -> GivenModes:
-    """The modes of a file: of CalculiX in the stated units, of a universal file in its own."""
+    """Read modes: from CalculiX (.frd) in the units of the options, or from a universal file."""
     from vehicle.model.flexbody.sources.frd import read_frd
     from vehicle.model.flexbody.sources.mode_shapes import modes_of_measurement
     from vehicle.model.flexbody.sources.units import require_level, require_size
@@ -247,7 +247,7 @@ def _given_modes(options: argparse.Namespace, units: Units, mass: float, places:
 
 
 def _vehicle_mass(vehicle: Vehicle) -> MassProperties:
-    """Mass properties of the trimmed body in the vehicle file."""
+    """Return the mass properties of the trimmed body in the vehicle file."""
     from vehicle.model.flexbody.mass_properties import MassProperties
     from vehicle.model.flexbody.rigid_body import rigid_body
 
@@ -261,12 +261,12 @@ def _origin(text: str) -> tuple[float, float, float]:
         if not all(map(math.isfinite, (x, y, z))):
             raise ValueError
     except ValueError:
-        raise ConfigurationError(f"--origin {text}: needed are three numbers in metres, as 1.2,0,0.35") from None
+        raise ConfigurationError(f"--origin {text}: must be three numbers in metres, as 1.2,0,0.35") from None
     return x, y, z
 
 
 def _check_numbers(options: argparse.Namespace) -> None:
-    """The numbers of an import; NaN is in none of the ranges."""
+    """Check the numeric options of an import; NaN is outside every range."""
     from vehicle.model.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
 
     most = 1e3 * LARGEST_TOLERANCE
@@ -294,4 +294,4 @@ def _check_numbers(options: argparse.Namespace) -> None:
         ),
     ):
         if not allowed:
-            raise ConfigurationError(f"{name} {value:g}: allowed is {text}")
+            raise ConfigurationError(f"{name} {value:g}: must be {text}")

@@ -1,4 +1,4 @@
-"""`python -m vehicle body participation`: which body modes make a place loud at a frequency, and what drives them."""
+"""`python -m vehicle body participation`: contributions of the body modes to a response at a frequency."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ UNIT = "m/s2/m"
 
 
 def add(tasks: Any) -> None:
-    """The options."""
+    """Add the parser of the task with its options."""
     asked = tasks.add_parser(
         "participation", help="which body modes make a place loud at a frequency, and which attachments drive them"
     )
@@ -60,7 +60,7 @@ def add(tasks: Any) -> None:
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Compute, write and print it."""
+    """Compute, write and print the contributions."""
     import numpy as np
 
     from vehicle.engines.linear.participation import participation
@@ -97,13 +97,13 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
 
 def _named(found: Participation) -> list[str]:
-    """Names of the contributions, those of modes with their frequencies."""
+    """Return the names of the contributions; names of modes include the frequency."""
     modes = [f"{f:.2f} Hz" for f in found.mode_frequency]
     return [*found.names[:6], *(f"{name}, {f}" for name, f in zip(found.names[6:], modes, strict=True))]
 
 
 def _report(found: Participation, mode: int, about: str) -> list[str]:
-    """The two tables as text, the largest first."""
+    """Return both tables as text, largest contributions first."""
     import numpy as np
 
     total, own = found.total[0], found.contributions[:, 0]
@@ -136,7 +136,7 @@ def _percent(share: float) -> str:
 
 
 def _numbers(options: argparse.Namespace, found: Participation, wheel: str) -> dict[str, Any]:
-    """Both tables in plain numbers."""
+    """Return both tables as plain numbers."""
     import numpy as np
 
     total, phase = found.total[0], np.degrees(np.angle(found.contributions[:, 0] / found.total[0]))
@@ -167,7 +167,7 @@ def _numbers(options: argparse.Namespace, found: Participation, wheel: str) -> d
 
 
 def _write(options: argparse.Namespace, over: Participation, found: Participation, mode: int, about: str) -> None:
-    """Both tables and the picture."""
+    """Write both tables and the picture."""
     import numpy as np
 
     from vehicle.drawing.rendering.participation_plot import plot_participation

@@ -1,4 +1,4 @@
-"""`python -m vehicle body show`: what a body model is."""
+"""`python -m vehicle body show`: properties of a body model."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 FILES = ("modes.csv", "attachments.csv", "residuals.csv", "shapes.png")
 COLUMNS = 12
-"""Most modes side by side in the printed table of attachments."""
+"""Maximum number of modes in the printed table of attachments."""
 
 
 def add(tasks: Any) -> None:
-    """The options."""
+    """Add the parser of the task with its options."""
     shown = tasks.add_parser("show", help="frequencies, participation of attachments, mass properties, residuals")
     shown.add_argument("file", type=Path, nargs="?", metavar="FILE", help="body model; that of the vehicle by default")
     extra_output_options(shown, ", ".join(FILES))
@@ -32,7 +32,7 @@ def add(tasks: Any) -> None:
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Print it, and write files where asked for."""
+    """Print the properties of the body model; with --output write them as files."""
     if options.output is not None:
         output_folder_of(options, options.output)
     model = model_of(options.file, options, vehicle)
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """What a model is: mass properties against the vehicle, modes, participation of attachments, residuals."""
+    """Return the printed lines: mass properties against the vehicle, modes, participation, residual flexibility."""
     from vehicle.model.flexbody.loads import body_loads
     from vehicle.model.flexbody.mass_difference import mass_difference, vehicle_lines
 
@@ -70,13 +70,13 @@ def report(model: Superelement, vehicle: Vehicle) -> list[str]:
             *residual_lines(model, vehicle),
             *rotation_lines(model, vehicle),
         ]
-    except DataError as error:  # of another car: shown all the same, but for its points
-        return [*lines, f"not on this car: {error}"]
+    except DataError as error:  # a model of another car: only the properties at its points are missing
+        return [*lines, f"does not fit this car: {error}"]
     return [*lines, *at_points]
 
 
 def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """Mass, CoG and inertia about it of the model against those of the vehicle."""
+    """Return lines with mass, CoG and inertia about the CoG, of the model and of the vehicle."""
     from vehicle.model.flexbody.rigid_body import rigid_body
 
     own, lines = rigid_body(vehicle.body), [f"{'':<18} {'model':>10} {'vehicle':>10} {'difference':>11}"]
@@ -97,7 +97,7 @@ def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
 
 
 def mode_lines(model: Superelement) -> list[str]:
-    """Frequency, damping and name of each mode."""
+    """Return a line for each mode: frequency, damping ratio, name."""
     lines = [f"{'mode':>4} {'Hz':>8} {'damping':>8}  name"]
     for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True)):
         lines.append(f"{i + 1:>4} {frequency:>8.3f} {100 * ratio:>6.2f} %  {model.mode_names[i]}")
@@ -105,7 +105,7 @@ def mode_lines(model: Superelement) -> list[str]:
 
 
 def levels(model: Superelement, vehicle: Vehicle) -> dict[str, Any]:
-    """Shapes at the attachments and places of a car over the mean of the body, sqrt(m) Phi [-]: name to (modes, 3)."""
+    """Return normalised mode shapes sqrt(m) Phi [-] at attachments and output points: name to (modes, 3)."""
     import numpy as np
 
     from vehicle.model.flexbody.superelement import attached_nodes
@@ -117,21 +117,21 @@ def levels(model: Superelement, vehicle: Vehicle) -> dict[str, Any]:
 
 
 def attachment_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """How strongly each attachment and place takes part in each mode."""
+    """Return the table of participation of attachments and output points in each mode."""
     import numpy as np
 
     count = min(len(model.frequencies), COLUMNS)
     cut = "" if count == len(model.frequencies) else f"; the first {count} modes, all with --output"
     found = {name: np.linalg.norm(one, axis=1) for name, one in levels(model, vehicle).items()}
     lines = [
-        f"participation of attachments and places: |shape| over its mean in the body, sqrt(m) |Phi| [-]{cut}",
+        f"participation of attachments and output points: |shape| over its mean in the body, sqrt(m) |Phi| [-]{cut}",
         f"  {'mode':<28}" + "".join(f"{number:>6}" for number in range(1, count + 1)),
     ]
     return lines + [f"  {name:<28}" + "".join(f"{one:>6.2f}" for one in own[:count]) for name, own in found.items()]
 
 
 def residual_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """Residual flexibility of each attachment, and where there is none."""
+    """Return lines with the residual flexibility of each attachment, and the attachments without it."""
     import numpy as np
 
     if model.residual:
@@ -144,14 +144,14 @@ def residual_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     bare = _bare(model, vehicle)
     if bare:
         lines.append(
-            f"  none of {', '.join(bare)}: beyond the modes of the model the body is rigid there, as after a modal "
-            "test; `body import --residual` takes measured values"
+            f"  none at {', '.join(bare)}: apart from the modes of the model the body is rigid there, as after a modal "
+            "test; `body import --residual` reads measured values"
         )
     return lines
 
 
 def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """Points at which something acts on the body and whose node has no residual flexibility."""
+    """Return the points of connections to the body whose node has no residual flexibility."""
     from vehicle.model.flexbody.superelement import attached_nodes
 
     own = vehicle.composition
@@ -161,7 +161,7 @@ def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
 
 
 def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
-    """Whether the model knows how the nodes turn on which elements with a rotational stiffness act."""
+    """Return lines with the points of rotational stiffness at which the model has, or lacks, nodal rotations."""
     from vehicle.model.flexbody.superelement import attached_nodes
 
     turning = {
@@ -172,10 +172,10 @@ def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     nodes = attached_nodes(model, turning)
     unknown = [name for name, at in turning.items() if nodes[at] not in model.rotations]
     known = [name for name in turning if name not in unknown]
-    lines = [f"rotations of nodes under rotational stiffness: known of {', '.join(known)}"] if known else []
+    lines = [f"rotations of nodes under rotational stiffness: known at {', '.join(known)}"] if known else []
     if unknown:
         lines.append(
-            f"rotations of nodes under rotational stiffness: not known of {', '.join(unknown)}; to a torque there the "
-            "body is rigid"
+            f"rotations of nodes under rotational stiffness: unknown at {', '.join(unknown)}; the body is rigid "
+            "against torques there"
         )
     return lines

@@ -1,4 +1,4 @@
-"""What `body show --output` writes: tables of modes, attachments and residuals, and a picture of the shapes."""
+"""Files of `body show --output`: tables of modes, attachments and residuals, and a picture of the shapes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
     """Write the files.
 
     Args:
-        folder: where to; it is made.
-        force: replace what was written there before.
+        folder: folder of the files; it is made.
+        force: replace files of an earlier run.
         model: the body model.
-        levels: shapes at attachments and places over their mean in the body [-]: name to (modes, 3).
+        levels: normalised mode shapes at attachments and output points [-]: name to (modes, 3).
     """
     import numpy as np
 

@@ -20,7 +20,7 @@ from vehicle.signals.records.counterpart import PARTS, clock_advice, response_fa
 from vehicle.signals.records.measured import Measured, read_measured
 
 LARGEST_DRIFT = 0.1
-"""Maximum drift of a clock [-]; more is another sampling rate."""
+"""Maximum drift of a clock [-]; a larger value means a wrong sampling rate."""
 
 
 def compare_run(
@@ -38,12 +38,12 @@ def compare_run(
     """Compare measured responses and time histories with those of a run.
 
     Args:
-        run: a run, or the folder of a run, or what `of_folder` read of it.
-        measured: measurement file of any format, or what `read_measured` read of it.
+        run: a run, the folder of a run, or the result of `of_folder`.
+        measured: measurement file of any format, or the result of `read_measured`.
         channels: channel of the model to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}: number, exact name,
             pattern with *, or place and direction; by default equal names.
         choice: units, rate and excerpt of the file.
-        turned: channels that were measured in the other direction.
+        turned: channels that were measured in the opposite direction.
         delay: the measurement began this long after the run [s].
         drift: the clock of the measurement is slow by this share [-].
         window: length of the Hann windows that the measured responses were averaged over [s]; by default the local
@@ -54,8 +54,8 @@ def compare_run(
         FRAC, errors per band, RMS ratio, correlation, time shift and ISO 18571 rating, worst first; `print` shows them.
 
     Raises:
-        ConfigurationError: no such file or channel of the model, or a delay, drift or band out of range.
-        DataError: bad data, or nothing in common.
+        ConfigurationError: the file or channel does not exist, or a delay, drift or band is out of range.
+        DataError: bad data, or no common channel.
     """
     require_clock(delay, drift)
     edges = None if bands is None else checked_edges(bands, f"bands {bands}")
@@ -81,19 +81,19 @@ def comparison_of(
     window: float | None = None,
     command: str = "",
 ) -> Comparison:
-    """Put a measurement beside a run.
+    """Compare a measurement with a run.
 
     Args:
-        measured: under the names of the run.
+        measured: measurement with the channel names of the run.
         simulated: the run.
-        edges: of the bands [Hz]; octaves by default.
+        edges: edges of the bands [Hz]; octaves by default.
         delay: the measurement began this long after the run [s].
         drift: the clock of the measurement is slow by this share [-].
-        window: as of `read_measured`, for both.
-        command: what has the options --delay and --drift, where the one that was typed has not.
+        window: length of the Hann windows [s] for both, see `read_measured`.
+        command: command with the options --delay and --drift for the advice, if the current one lacks them.
 
     Raises:
-        DataError: nothing in common.
+        DataError: no common channel.
     """
     responses: tuple[FrfComparison, ...] = ()
     signatures, notices = None, list(measured.notices)
@@ -118,7 +118,7 @@ def comparison_of(
             weight = np.nan_to_num(one.measured_coherence, nan=1.0) * np.nan_to_num(one.simulated_coherence, nan=1.0)
             notices += response_faults(one.channel, one.measured, one.simulated, weight)
     if not responses and not records:
-        raise DataError(f"{measured.file.path}: nothing of it has a counterpart in the run {simulated.name}")
+        raise DataError(f"{measured.file.path}: no channel is also in the run {simulated.name}")
     return Comparison(
         measured=measured.file.path.name,
         simulated=simulated.name,

@@ -1,4 +1,4 @@
-"""The tables of a comparison, worst first: for the console, as CSV and as JSON."""
+"""Result of a comparison, with its tables for the console, CSV and JSON, largest errors first."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from vehicle.drawing.notebook.picture import Picture
 
 SHOWN = 12
-"""Most rows of a table on the console."""
+"""Maximum number of rows of a table on the console."""
 
 BAND_HEADS = ("error", "magnitude_db", "magnitude_rms_db", "phase_deg", "weight", "lines")
-"""What is said of a response in a band."""
+"""Columns of the error of a response in a band."""
 
 HEADS = (
     *("kind", "channel", "low_hz", "high_hz", *BAND_HEADS, "frac", "scaled_frac", "frequency_scale", "rms_ratio"),
@@ -32,15 +32,15 @@ HEADS = (
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Comparison:
-    """Measurement compared with a run: responses and time histories, worst first.
+    """Comparison of a measurement with a run: responses and time histories, largest errors first.
 
     Attributes:
-        measured, simulated: names of both.
+        measured, simulated: names of the measurement and the run.
         responses: comparisons of frequency responses.
-        signatures: of all of them together.
+        signatures: agreement of all responses together.
         records: comparisons of time histories.
-        notices: of the measurement.
-        tyres: what the tyres of the run do; empty where that is unknown.
+        notices: notices on the measurement.
+        tyres: state of the tyres in the run, "standing" or "rolling at ..."; empty if unknown.
     """
 
     measured: str
@@ -53,7 +53,7 @@ class Comparison:
 
     @property
     def run(self) -> str:
-        """The run in words: name and tyres."""
+        """Name of the run and state of its tyres."""
         return self.simulated + (f" (tyres {self.tyres})" if self.tyres else "")
 
     def __repr__(self) -> str:
@@ -79,7 +79,7 @@ class Comparison:
         return picture(drawings[wanted])
 
     def rows(self) -> list[dict[str, Any]]:
-        """Rows of the table: bands of responses by falling error, then time histories by rising rating."""
+        """Return the rows of the table: bands of responses by falling error, then time histories by rising rating."""
         bands = [
             {
                 "kind": "frf",
@@ -114,7 +114,7 @@ class Comparison:
         ]
 
     def summary(self) -> dict[str, Any]:
-        """Content of `compare.json`."""
+        """Return the content of `compare.json`."""
         together = None
         if self.signatures is not None:
             together = {
@@ -164,7 +164,7 @@ class Comparison:
         }
 
     def csv(self) -> str:
-        """Content of `compare.csv`; empty cells where a column belongs to the other kind."""
+        """Return the content of `compare.csv`; columns of the other kind of row are empty."""
         about = (
             f"# measured {self.measured}, simulated {self.run}; worst first; error: root of the mean of "
             "|ln(simulated / measured)|^2 weighted by both coherences; magnitude positive where simulated is larger; "
@@ -175,14 +175,14 @@ class Comparison:
         return "\n".join([about, ",".join(HEADS), *rows, ""])
 
     def text(self) -> str:
-        """The tables for the console."""
+        """Return the tables for the console."""
         rows = self.rows()
         bands, times = ([row for row in rows if row["kind"] == kind] for kind in ("frf", "time"))
-        lines = [f"measured {self.measured} beside simulated {self.run}"]
+        lines = [f"measured {self.measured}, simulated {self.run}"]
         if bands:
             worst = bands[0]
             lines.append(
-                f"worst response: {worst['channel']}, {worst['low_hz']:g} to {worst['high_hz']:g} Hz: "
+                f"largest error of a response: {worst['channel']}, {worst['low_hz']:g} to {worst['high_hz']:g} Hz: "
                 f"{worst['magnitude_db']:+.1f} dB, {worst['phase_deg']:.0f} deg"
             )
             lines.append(
@@ -223,7 +223,7 @@ class Comparison:
 
 
 def _told(value: float, digits: int = 3) -> str:
-    """A number, or a dash where there is none: a channel at rest has no RMS ratio and no correlation."""
+    """Return a number as text; a dash for NaN, as the RMS ratio of a channel at rest."""
     return f"{value:.{digits}f}" if math.isfinite(value) else "-"
 
 
@@ -241,7 +241,7 @@ def _mean(values: Any) -> float:
 
 
 def _plain(value: Any) -> Any:
-    """A number for JSON; None where it is none."""
+    """Return a value for JSON; None for NaN and infinity."""
     if isinstance(value, (float, np.floating)):
         return float(value) if math.isfinite(value) else None
     return value

@@ -1,4 +1,4 @@
-"""Measured mode shapes beside those of the car: MAC, AutoMAC, pairs."""
+"""Comparison of measured mode shapes with those of the car: MAC, AutoMAC, pairs."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ Complex = npt.NDArray[np.complex128]
 Matrix = npt.NDArray[np.float64]
 
 NEAR = 0.01
-"""Distance within which a node of the file is taken for a place of the car [m]."""
+"""Maximum distance of a node of the file from its output point of the car [m]."""
 
 LEAST_MAC = 0.5
-"""MAC from which on two modes are a pair; from 0.9 on they are usually taken for the same."""
+"""Minimum MAC of a pair of modes; from 0.9 two modes usually count as equal."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Pair:
-    """A measured mode and the simulated one that is most like it.
+    """Measured mode and the simulated mode with the highest MAC.
 
     Attributes:
         measured, simulated: numbers of the modes, from 1.
@@ -63,7 +63,7 @@ class ModeComparison:
         points: place of the car to node of the file.
         measured, simulated: the modes.
         mac: (measured, simulated).
-        measured_auto, simulated_auto: AutoMAC: off its diagonal it tells which modes these points cannot tell apart.
+        measured_auto, simulated_auto: AutoMAC; values near 1 off the diagonal: indistinguishable modes.
         pairs: by measured frequency.
     """
 
@@ -76,7 +76,7 @@ class ModeComparison:
     pairs: tuple[Pair, ...]
 
     def summary(self, file: str) -> dict[str, Any]:
-        """Plain numbers, for JSON."""
+        """Return plain numbers for JSON."""
         return {
             "measured": file,
             "points": dict(self.points),
@@ -102,7 +102,7 @@ class ModeComparison:
         }
 
     def text(self, file: str) -> str:
-        """The table for the console, worst first."""
+        """Return the table for the console, lowest MAC first."""
         lines = [
             f"modes of {file} at {len(self.points)} points: {', '.join(self.points)}",
             f"{'measured':>10}{'[Hz]':>9}{'simulated':>11}{'[Hz]':>9}{'deviation':>11}{'MAC':>7}{'damping':>9}{'':>9}",
@@ -140,12 +140,12 @@ def _near(car: Geometry, nodes: Mapping[str, Sequence[float]]) -> dict[str, str]
 
 
 def points_of(car: Car) -> Geometry:
-    """Places of a car in its design position."""
+    """Return the output points of a car in the design position."""
     return Geometry(points={one.name: tuple(one.at) for one in car.vehicle.composition.outputs})
 
 
 def shapes_at(car: Car, modes: Sequence[Mode], places: Sequence[str]) -> Complex:
-    """Complex translations of places in modes, (modes, places, 3)."""
+    """Return complex translations of output points in modes, (modes, points, 3)."""
     system = car.matrices.system
     rows = np.array([[system.output(f"{place}_acc_{axis}")[0] for axis in AXES] for place in places])
     return np.asarray(np.einsum("pan,mn->mpa", rows, np.array([one.shape for one in modes])), dtype=np.complex128)
@@ -157,7 +157,7 @@ def compare_modes(
     mapping: Mapping[str, str] | None = None,
     damper: str = "stuck",
 ) -> ModeComparison:
-    """Compare the mode shapes of a file with those of a car at the points that both have.
+    """Compare the mode shapes of a file with those of a car at common points.
 
     Args:
         car: the car.
@@ -170,8 +170,8 @@ def compare_modes(
         MAC and AutoMAC, and pairs of measured and simulated modes with both frequencies and damping ratios.
 
     Raises:
-        ConfigurationError: a place that the car does not have.
-        DataError: a node that the file does not have, or less than three points.
+        ConfigurationError: the car lacks an output point.
+        DataError: the file lacks a node, or there are fewer than three points.
     """
     if not isinstance(measurement, Measurement):
         measurement = read_record(Path(measurement))
@@ -179,7 +179,9 @@ def compare_modes(
     geometry, known = points_of(car), measurement.geometry.points
     unknown = next((place for place in mapping if place not in geometry.points), None)
     if unknown is not None:
-        raise ConfigurationError(f"--map {unknown}=...: the car has no such place; it has {', '.join(geometry.points)}")
+        raise ConfigurationError(
+            f"--map {unknown}=...: the car has no output point of this name; it has {', '.join(geometry.points)}"
+        )
     moved = {point for one in measurement.shapes for point in one.points}
     found = {place: wanted.lower().removeprefix("dof").strip() for place, wanted in mapping.items()}
     if not found:

@@ -1,4 +1,4 @@
-"""Pictures of measured beside simulated: responses and time histories of a place, signatures, MAC."""
+"""Pictures of a comparison: responses and time histories of a place, signatures, MAC."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
 
 MEASURED, SIMULATED = "#222222", COLOURS[1]
-"""Black and full, red and dashed: told apart without colours."""
+"""Black and full, red and dashed: distinguishable without colours."""
 LOOKS = {
     "measured": {"color": MEASURED, "linewidth": 1.3},
     "simulated": {"color": SIMULATED, "linestyle": "--", "linewidth": 1.3},
@@ -130,7 +130,7 @@ def plot_mac(
     tables: Sequence[tuple[str, npt.NDArray[np.float64], Sequence[float], Sequence[float]]],
     caption: str,
 ) -> None:
-    """Write matrices of MAC beside each other.
+    """Write a picture of several MAC matrices.
 
     Args:
         path: PNG file.

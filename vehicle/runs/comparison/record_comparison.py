@@ -35,7 +35,7 @@ class RecordComparison:
         rms_ratio: simulated over measured [-].
         correlation: coefficient at equal times [-].
         rating: after ISO/TS 18571, of windows at the full rate.
-        clock: time shift and drift of the simulated record; None where both do not show one motion.
+        clock: time shift and drift of the simulated record; None if the records do not correlate.
     """
 
     channel: str
@@ -64,13 +64,13 @@ class RecordComparison:
 def compare_records(
     measured: Record, simulated: Record, times: Vector | None = None
 ) -> tuple[tuple[RecordComparison, ...], list[Counterpart]]:
-    """Compare all time histories that both have, over the time that both have.
+    """Compare all common time histories over the common time.
 
-    The one of the higher rate is low-passed without phase shift and brought to the lower rate.
+    The record with the higher rate is low-passed without phase shift and resampled to the lower rate.
 
     Args:
         measured, simulated: with the same units.
-        times: of the measured samples on the clock of the run [s], (n,); their own by default.
+        times: times of the measured samples on the clock of the run [s], (n,); by default those of the record.
 
     Returns:
         The comparisons, and how each measured channel fits its counterpart when both are shifted.
@@ -118,7 +118,7 @@ def _compared(
 
 
 def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
-    """Return a sentence for measured channels that are one record, while the simulated ones differ.
+    """Return a sentence for each pair of equal measured channels whose simulated channels differ.
 
     Args:
         records: see `compare_records`.
@@ -131,7 +131,7 @@ def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
             same = np.array_equal(one.measured, other.measured)
             if same and not np.allclose(one.simulated, other.simulated, atol=1e-3 * float(np.std(one.simulated))):
                 said.append(
-                    f"{other.channel} and {one.channel} were measured with the same samples, the run has different "
-                    f"ones: was a channel copied? Choose another: --map {one.channel}=NAME"
+                    f"{other.channel} and {one.channel} have equal samples in the measurement, but not in the run: was "
+                    f"a channel copied? Choose another channel: --map {one.channel}=NAME"
                 )
     return said

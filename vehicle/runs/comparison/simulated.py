@@ -1,4 +1,4 @@
-"""What a run gives to be compared: its time histories and frequency responses, by itself or by its files."""
+"""Time histories and frequency responses of a run for a comparison, from a `Run` or the folder of a run."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ Responses = Callable[[Sequence[str], float | None], FrfData | None]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Simulated:
-    """A run.
+    """Simulated data of a comparison.
 
     Attributes:
-        name: of its input.
-        record: all its time histories; the first sample is at time 0.
-        responses: names of accelerations, and the length of Hann windows [s] or None, to the responses to the plate;
-            None where there are none.
-        tyres: what the tyres of its car do; empty where no summary says it.
+        name: name of the input.
+        record: all time histories; the first sample is at time 0.
+        responses: function of names of accelerations and of the length of Hann windows [s] or None; returns the
+            responses to the plate, or None.
+        tyres: state of the tyres, "standing" or "rolling at ..."; empty if unknown.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Simulated:
 
 
 def of_run(run: Run) -> Simulated:
-    """A finished run."""
+    """Return the simulated data of a run."""
 
     def responses(names: Sequence[str], window: float | None) -> FrfData:
         found = run.frf(names, window=window)
@@ -53,10 +53,10 @@ def of_run(run: Run) -> Simulated:
 
 
 def of_folder(folder: Path) -> Simulated:
-    """The files of a run.
+    """Read the simulated data of the folder of a run.
 
     Raises:
-        ConfigurationError: the folder holds no time histories.
+        ConfigurationError: the folder has no time histories.
         DataError: a file of it is damaged.
     """
     file = next((folder / name for name in ("time.npz", "time.csv") if (folder / name).is_file()), None)

@@ -1,4 +1,4 @@
-"""Files of a measurement beside a run: tables, and a picture for each place."""
+"""Files of a comparison: tables, and a picture for each output point."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def save_comparison(
     Args:
         comparison: result of `compare_run`.
         folder: name of the folder.
-        force: replace what was written there before.
+        force: replace files of an earlier run.
         protect: input files; a folder that holds one of them is never replaced.
 
     Returns:
@@ -38,14 +38,14 @@ def save_comparison(
 
 
 def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
-    """Write the tables and a picture for each place.
+    """Write the tables and a picture for each output point.
 
     Args:
-        folder: where to.
-        comparison: what to write.
+        folder: folder of the files.
+        comparison: the comparison.
 
     Returns:
-        Kind of file to its name.
+        Name of each file by its purpose.
     """
     write_text(folder / "compare.csv", comparison.csv())
     write_json(folder / "compare.json", comparison.summary())
@@ -57,16 +57,16 @@ def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
 
 
 def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, str]) -> MeasuredSummary:
-    """Put a measurement beside a run, in the folder of the run.
+    """Compare a measurement with a run, and write the files into the folder of the run.
 
     Args:
         folder: of the run.
         measured: the measurement.
         run: the run.
-        files: kind of file to its name; what is written is added.
+        files: name of each file by its purpose; the new files are added.
 
     Returns:
-        What the summary says of it.
+        Entry of the summary.
     """
     comparison = comparison_of(measured, of_run(run), command="python -m vehicle compare, after the run")
     files |= write_comparison(folder, comparison)

@@ -14,7 +14,7 @@ from vehicle.signals.records.geometry import ModeShape
 
 
 def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
-    """Complex modes of a car at its places, the largest translation of each equal to 1.
+    """Return the complex modes of a car at its output points; the maximum translation of each mode is 1.
 
     Args:
         car: the car.
@@ -44,6 +44,6 @@ def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
 
 
 def write_modes(path: Path, car: Car, damper: str = "stuck") -> None:
-    """Write datasets 151, 164, 15, 82 and 55 of a car; arguments as of `mode_shapes`."""
+    """Write datasets 151, 164, 15, 82 and 55 of a car; arguments like `mode_shapes`."""
     about = f"{car.vehicle.name}; modes, dampers {damper}; x to the rear, y to the driver's right, z up"
     uff_writer.write(path, (), about, geometry(car), mode_shapes(car, damper))

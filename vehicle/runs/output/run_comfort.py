@@ -1,4 +1,4 @@
-"""Comfort of a run: at the seat rail and on the seat, what the seat does, and what must be said about it."""
+"""Comfort of a run at the seat rail and on the seat: values, SEAT value and notices."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from vehicle.signals.records.run_summary import ComfortSummary, SeatSummary
 RAIL, SEAT = "seat_rail", "seat"
 
 NO_SEAT = (
-    "comfort of the seat: the car has no seat, so the place 'seat' is a point of its body and there is no SEAT value; "
-    'a table [seat.driver] with template = "seat_occupant" gives it one'
+    "comfort of the seat: the car has no seat, so 'seat' is a point of its body, and there is no SEAT value; "
+    'for a seat add a table [seat.driver] with template = "seat_occupant" to the vehicle file'
 )
 
 
 def comfort_values(run: Run) -> dict[str, ComfortSummary]:
-    """Comfort values of both places, where the car has them: the unweighted RMS of Bommer 2006, and ISO 2631-1."""
+    """Return the comfort values at seat rail and seat, if recorded: unweighted RMS (Bommer 2006), and ISO 2631-1."""
     return {place: _at(run, place) for place in (RAIL, SEAT) if _recorded(run, place)}
 
 
 def seat_values(run: Run) -> SeatSummary | None:
-    """SEAT value of a run, by RMS and by dose; None of a car without seat, or whose rail is at rest."""
+    """Return the SEAT value of a run, by RMS and by dose; None for a car without seat, or a rail at rest."""
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
     seat, rail = (run[f"{place}_acc_z"] for place in (SEAT, RAIL))
@@ -36,7 +36,7 @@ def seat_values(run: Run) -> SeatSummary | None:
 
 
 def comfort_notices(run: Run) -> list[str]:
-    """A sentence for each axis of the seat rail whose level changes along the record, and one on a missing seat."""
+    """Return a sentence for each axis of the seat rail with a nonstationary level, and one for a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if not _recorded(run, RAIL):
         return bare

@@ -49,17 +49,17 @@ LOADS = (
     "; forces of elements: on the moving part, in the axes of the carrier; springs: compression positive; "
     "suspension travel: wheel centre against body, upwards from the design position"
 )
-"""What the time histories say beside where loads are among them."""
+"""Addition to the header of time histories with loads."""
 
 
 def require_plates(signal: Signal) -> None:
-    """Refuse plates that move alike but for a delay: no FRF tells them apart.
+    """Check that no plate repeats the motion of another with a delay; FRFs cannot separate such plates.
 
     Args:
         signal: plate displacement.
 
     Raises:
-        DataError: naming the plates and the delay.
+        DataError: the message contains the plates and the delay.
     """
     moving = [wheel for wheel in signal.wheels if signal.rms(wheel) > 0.0]
     if len(moving) < 2:
@@ -86,15 +86,15 @@ def write_run(
     """Write all files of a finished run.
 
     Args:
-        folder: as of `output_folder`.
+        folder: temporary folder of `output_folder`.
         run: the run.
         time_format: "npz" or "csv".
-        formats: further ones of `vehicle.signals.records.formats.WRITTEN`.
-        engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
-        video: name of the film, or a path of its own, and what writes it.
-        measured: a measurement that is put beside the run.
-        report: the same of the report, which is made of the other files.
-        command: line that makes this run, for the summary.
+        formats: further formats of `vehicle.signals.records.formats.WRITTEN`.
+        engine_reason: reason for the choice of the engine; by default that of the run.
+        video: name of the film, or a path outside the folder, and the function that writes it.
+        measured: measurement to compare with the run.
+        report: path of the report and the function that writes it from the other files.
+        command: command line that makes this run, for the summary.
 
     Returns:
         The content of `summary.json`.
@@ -103,7 +103,7 @@ def write_run(
         VehicleError: a file cannot be made or written.
     """
     channels = run.car.vehicle.acceleration_channels
-    # On a road, FRFs that cannot be had are left out with a notice.
+    # On a road, FRFs that cannot be estimated are left out with a notice.
     responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
     files = {"summary": SUMMARY_FILE, "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if responses:
@@ -162,7 +162,7 @@ def write_run(
 
 
 def _write_psd(path: Path, run: Run) -> None:
-    """One-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
+    """Write one-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
     window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
     each = [
         power_spectral_density(recording.timestep, one[run.evaluated], window_s=window)
@@ -179,7 +179,7 @@ def _write_psd(path: Path, run: Run) -> None:
 
 
 def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse], list[str]]:
-    """FRFs of a run; none, and a notice, where they fail in a way that is accepted."""
+    """Return the FRFs of a run; after an accepted error, no FRFs and a notice."""
     try:
         return run.frfs(), []
     except accepted as error:
@@ -187,14 +187,14 @@ def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse]
 
 
 def save_last_state(error: SimulationError, output: Path) -> SimulationError:
-    """Save the last good state of a failed run beside its folder, which will not exist.
+    """Save the last good state of a failed run next to its folder, which is not made.
 
     Args:
-        error: with the state, or without one.
+        error: error of the simulation, with or without the state.
         output: folder of the run.
 
     Returns:
-        The same error, which names the file too.
+        The same error; its message contains the file.
 
     Raises:
         OutputError: the file cannot be written.
@@ -364,7 +364,7 @@ def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> Peaks
 
 
 def _caption(run: Run, response: FrequencyResponse) -> str:
-    """One line under the FRF plot: input, levels, estimator."""
+    """Return the caption of the FRF plot: input, levels, estimator."""
     moving = [wheel for wheel in run.signal.wheels if run.signal.rms(wheel) > 0.0] or [run.wheel]
     levels = ", ".join(f"{1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}" for wheel in moving)
     return (

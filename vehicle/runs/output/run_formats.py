@@ -21,7 +21,7 @@ _FORCE = re.compile(r"tyre_(?P<wheel>\w+)_force_z")
 
 
 def time_channels(run: Run) -> tuple[Channel, ...]:
-    """All channels of a run over its recorded times."""
+    """Return all channels of a run over the recorded times."""
     step = run.recording.timestep
     axis = uniform_axis(run.time.size, step, float(run.time[0]))
     return tuple(
@@ -31,11 +31,11 @@ def time_channels(run: Run) -> tuple[Channel, ...]:
 
 
 def response_channels(responses: Sequence[MotionResponse], channels: Sequence[str]) -> tuple[Channel, ...]:
-    """Each frequency response and beside it its coherence.
+    """Return each frequency response, followed by its coherence.
 
     Args:
-        responses: to each plate that moves by itself.
-        channels: names of their rows.
+        responses: FRFs to each independent plate motion.
+        channels: names of the rows.
     """
     found = []
     for one, (row, name) in product(responses, enumerate(channels)):
@@ -66,7 +66,7 @@ def response_channels(responses: Sequence[MotionResponse], channels: Sequence[st
 
 
 def _point(name: str) -> dict[str, Any]:
-    """Place and direction that the name of a channel tells."""
+    """Return output point and direction of a channel from its name; empty for a damper."""
     match = _ACCELERATION.fullmatch(name)
     if match:
         return {"place": match["place"], "direction": f"+{match['axis'].upper()}"}
@@ -78,7 +78,7 @@ def _point(name: str) -> dict[str, Any]:
 
 
 def geometry(of: Car) -> Geometry:
-    """Places of a car in its design position, and lines from each plate over the places of its wheel."""
+    """Return the output points of a car in the design position, and lines from each plate over its wheel."""
     car = of.vehicle.composition
     points = {one.name: tuple(one.at) for one in car.outputs}
     lines = []
@@ -93,13 +93,13 @@ def geometry(of: Car) -> Geometry:
 def writer(
     form: str, run: Run, responses: Sequence[MotionResponse], channels: Sequence[str], frame: str
 ) -> Callable[[Path], None]:
-    """What writes a run in a format.
+    """Return the function that writes a run in a format.
 
     Args:
-        form: of `vehicle.signals.records.formats.WRITTEN`.
+        form: name in `vehicle.signals.records.formats.WRITTEN`.
         run: the run.
-        responses: its FRFs; none where there are none.
-        channels: names of their rows.
+        responses: FRFs of the run; may be empty.
+        channels: names of the rows.
         frame: axes of the vectors, in words.
     """
     if BY_NAME[form].table:

@@ -1,4 +1,4 @@
-"""Which modes of the body make the seat rail loud in a run, in sentences: from the matrices of its car."""
+"""Sentences on the contributions of the body modes to the acceleration of the seat rail, from the car matrices."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from vehicle.runs.report.finished_run import FinishedRun
 PLACE, WORDS = "seat_rail_acc_z", "seat rail"
 MOST_PEAKS, MOST_PARTS = 3, 3
 LEAST = 0.1
-"""Share from which a contribution is named."""
+"""Minimum share of a contribution in a sentence."""
 
 
 def body_modes(run: FinishedRun, state: str) -> list[str]:
-    """A sentence for each of the highest resonances at the seat rail; none of a car whose body is rigid.
+    """Return a sentence for each of the highest resonances at the seat rail; empty for a rigid body.
 
     Args:
         run: the run, with FRFs to one plate.
-        state: of its dampers, "stuck" or "sliding".
+        state: state of the dampers, "stuck" or "sliding".
     """
     car, peaks = run.car, run.summary["peaks"].get(PLACE)
     on_body = any(one.name == "seat_rail" and one.on == "body" for one in car.vehicle.composition.outputs)
@@ -34,16 +34,14 @@ def body_modes(run: FinishedRun, state: str) -> list[str]:
         shares = found.shares[:, at]
         order = [int(i) for i in np.argsort(-np.abs(shares)) if abs(shares[i]) >= LEAST][:MOST_PARTS]
         parts = ", ".join(f"{found.names[i]} {_percent(shares[i])}" for i in order)
-        text = f"At {frequency:.1f} Hz the vertical acceleration at the {WORDS} is made by {parts}"
+        text = f"At {frequency:.1f} Hz the contributions to the vertical acceleration at the {WORDS} are {parts}"
         if modes := [i - 6 for i in order if i >= 6]:
             drivers = found.attachment_shares[modes[0], :, at]
             most = [int(i) for i in np.argsort(-np.abs(drivers))[:2]]
             names = ", ".join(f"{found.attachments[i]} {_percent(drivers[i])}" for i in most)
-            text += f"; what drives mode {modes[0] + 1} most: {names}"
+            text += f"; the largest excitation of mode {modes[0] + 1} is at {names}"
         sentences.append(f"{text}.")
-    about = (
-        f"Shares in phase with the sum, of the linear car with dampers {state}: `python -m vehicle body participation`."
-    )
+    about = f"In phase with the sum, linear car with dampers {state}; see `python -m vehicle body participation`."
     return [*sentences, about]
 
 

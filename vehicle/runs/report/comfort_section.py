@@ -1,4 +1,4 @@
-"""Comfort of a run: weighted and unweighted accelerations, and what people say of them."""
+"""Comfort section of the report: weighted and unweighted accelerations, and likely reactions."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ PLACES = {"seat_rail": "seat rail", "seat": "seat"}
 
 
 NO_ERROR = (
-    "No statistical error is given for MTVV, VDV, crest factor and SEAT value: they are those of this record, and "
-    "another road of the same class gives others. Repeat the run with other seeds to see their spread."
+    "MTVV, VDV, crest factor and SEAT value have no error estimate: they belong to this record, and another road of "
+    "the same class gives other values. Repeat the run with other seeds for their scatter."
 )
 """Sentence below the tables."""
 
 
 def comfort(run: FinishedRun) -> Markup:
-    """Weighted and unweighted accelerations, and the table of reactions with this run in it."""
+    """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run."""
     parts, totals = [], {}
     for place, value in run.summary["comfort"].items():
         iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
@@ -88,10 +88,10 @@ def comfort(run: FinishedRun) -> Markup:
     )
     seat = run.summary.get("seat_value")
     if seat is not None:
-        words = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: below 1 the seat isolates."
+        words = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: the seat isolates below 1."
         parts.append(tag("p", words))
     parts.append(tag("p", NO_ERROR))
-    parts.append(tag("p", "The standard weights the vibration on the seat surface; the seat rail lies below it."))
+    parts.append(tag("p", "The standard applies to the vibration on the seat surface; the seat rail is below it."))
     return joined(parts)
 
 

@@ -1,4 +1,4 @@
-"""Several runs beside each other: what went in, what came out, and their FRFs over each other."""
+"""Comparison section of the report: inputs, key figures, parameters and FRFs of several runs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vehicle.runs.report.svg_figure import drawing
 
 
 def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
-    """Key figures, parameters and FRFs of several runs."""
+    """Return tables of inputs, key figures and parameters, and the FRFs of several runs."""
     figures = [key_figures(run) for run in runs]
     heads = ["", "unit", runs[0].name]
     for run in runs[1:]:
@@ -39,7 +39,7 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
     ]
     parts = [
         table(("run", "car", "signal", "RMS [mm]", "length [s]", "engine"), inputs, words=3),
-        tag("h3", f"Differences against {runs[0].name}"),
+        tag("h3", f"Differences from {runs[0].name}"),
         table(heads, rows, words=2),
     ]
     changed = changed_parameters([run.car.vehicle for run in runs])
@@ -49,14 +49,14 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
         heads = ["parameter", "unit", *(run.name for run in runs)]
         parts.append(shortened(f"{len(changed)} parameters", heads, content, words=2))
     else:
-        parts.append(tag("p", "None: the cars are the same."))
+        parts.append(tag("p", "None: the cars have equal parameters."))
     if len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1:
-        parts.append(tag("p", "The signals differ, so levels are compared that were not asked for alike."))
+        parts.append(tag("p", "The signals differ: differences of level are also due to the input."))
     return joined([*parts, _overlay(runs)])
 
 
 def _overlay(runs: Sequence[FinishedRun]) -> Markup:
-    """FRFs of the runs that have some, densities of the others."""
+    """Return the plot of all FRFs, or of the densities if fewer than two runs have FRFs."""
     parts = []
     with_response = {run.name: (run, run.response) for run in runs if run.response is not None}
     wheel = runs[0].wheel
@@ -67,11 +67,11 @@ def _overlay(runs: Sequence[FinishedRun]) -> Markup:
     }
     if len(with_response) > 1:
         channels = shared_channels([run for run, _ in with_response.values()], wanted)
-        words = "Frequency responses over each other, vertical"
+        words = "Vertical frequency responses of all runs"
         parts.append(drawing(lambda path: plot_responses(path, with_response, channels, words), words))
     elif len(runs) > len(with_response):
         channels = shared_channels(runs, wanted)
-        words = "Densities of the vertical acceleration"
+        words = "Power spectral densities of the vertical acceleration"
         parts.append(
             drawing(lambda path: plot_densities(path, {run.name: run for run in runs}, channels, words), words)
         )

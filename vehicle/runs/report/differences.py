@@ -1,4 +1,4 @@
-"""What differs: the car of a run from the shipped one, and several runs among each other."""
+"""Differences of a car from the shipped car, and between several runs."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.signals.records.run_summary import slip_shares
 
 LARGEST_SHARE = 0.5
-"""Largest share of other or further parameters in a car that was made from a shipped one: a car with more of them is a
-car of its own. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
+"""Largest share of other or further parameters in a car that was made from a shipped one: above it a car counts
+as a new car. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
 
 
 def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, object]]:
-    """Values of a vehicle file by their whole paths."""
+    """Yield the full path and the value of every parameter of a vehicle file."""
     for key, value in table.items():
         if isinstance(value, Mapping):
             yield from flattened(value, f"{path}{key}.")
@@ -28,13 +28,13 @@ def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, o
 
 
 def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
-    """Return the shipped car that a car was made from: its namesake, else the one with the fewest other parameters.
+    """Return the shipped car of the same name, else the shipped car with the fewest different parameters.
 
     Args:
         vehicle: the car.
 
     Returns:
-        The shipped car; None where every shipped car differs in more than `LARGEST_SHARE` of the parameters.
+        The shipped car; None if every shipped car differs in more than `LARGEST_SHARE` of the parameters.
     """
     if vehicle.name in CARS:
         return load_vehicle(vehicle_file(vehicle.name))
@@ -48,14 +48,13 @@ def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
 
 
 def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list[str]]]:
-    """Parameters in which cars differ.
+    """Return the parameters in which cars differ.
 
     Args:
         vehicles: cars.
 
     Returns:
-        Path, unit, and the value of each car as text ("–" where it has none), in the order of the first
-        car that has it.
+        Path, unit, and the value of each car as text ("–" for a missing parameter), in the order of the first car.
     """
     tables = [dict(flattened(vehicle.table)) for vehicle in vehicles]
     paths = dict.fromkeys(path for table in tables for path in table)
@@ -86,7 +85,7 @@ def _text(value: object) -> str:
 
 
 def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
-    """Numbers in which runs are compared, by name and unit.
+    """Return the key figures for the comparison of runs, by name and unit.
 
     Args:
         run: the run.
@@ -113,16 +112,16 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
 
 
 DIFFERENCES = {"s": "s", "%": "percentage points"}
-"""Units of which a ratio says nothing, with the unit of their difference: a time at which something happens is counted
-from the start of the record, and a share may begin at next to none."""
+"""Units compared by a difference instead of a ratio, with the unit of the difference: a time counts from the start of
+the record, and a share may be near zero."""
 
 
 def difference(first: float | None, other: float | None, unit: str = "") -> str:
-    """Change from one number to another: a difference for the units of `DIFFERENCES`, else in percent; or a dash.
+    """Return the change between two values: a difference for the units of `DIFFERENCES`, else in percent; or a dash.
 
     Args:
-        first, other: the numbers; None where there is none.
-        unit: of both.
+        first, other: values; None if missing.
+        unit: unit of both.
     """
     if first is None or other is None:
         return "–"

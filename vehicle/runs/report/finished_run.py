@@ -1,4 +1,4 @@
-"""A finished run, read back from its folder: what a report needs of it."""
+"""Finished run, read from its folder for the report."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from vehicle.signals.records.run_summary import SUMMARY_FILE, FrfSummary, RunSum
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlateSignal:
-    """Excitation of a finished run, as its summary tells it.
+    """Excitation of a finished run, from its summary.
 
     Attributes:
         source: name of the file or of the road.
@@ -39,16 +39,16 @@ class PlateSignal:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FinishedRun:
-    """A folder of a run as objects.
+    """Content of the folder of a run.
 
     Attributes:
         name: short name in headings and legends.
         folder: where its files are read.
-        place: the folder as commands name it.
+        place: final path of the folder, as in commands.
         summary: content of `summary.json`.
         car: the car with the parameters as used.
         recording: time histories; no poses.
-        responses: FRFs of all acceleration channels to each motion of the plates; none where there are none.
+        responses: FRFs of all acceleration channels to each independent motion of the plates; may be empty.
     """
 
     name: str
@@ -61,7 +61,7 @@ class FinishedRun:
 
     @property
     def response(self) -> FrequencyResponse | None:
-        """FRFs to the first motion of the plates; None where there are none."""
+        """FRFs to the first motion of the plates, or None."""
         return self.responses[0].response if self.responses else None
 
     @property
@@ -71,18 +71,18 @@ class FinishedRun:
 
     @property
     def span(self) -> str:
-        """Evaluated span in words, empty for the whole record."""
+        """Evaluated span in words; empty for the whole record."""
         begin, end = self.summary.get("evaluated_s") or (0.0, 0.0)
         return f"{begin:g} to {end:g} s" if begin > 0.0 else ""
 
     @cached_property
     def signal(self) -> PlateSignal:
-        """What drove it."""
+        """Excitation of the run."""
         return PlateSignal(source=self.summary["input"]["file"], plate_rms=self.summary["input"]["plate_rms_m"])
 
     @property
     def caption(self) -> str:
-        """Input, level and engine in a line."""
+        """Caption of a plot: input, level, tyres and engine."""
         given, solver = self.summary["input"], self.summary["solver"]
         estimator = f"; estimator: {self.response.estimator}" if self.response is not None else ""
         return (
@@ -97,13 +97,13 @@ def read_run(
     """Read the folder of a run.
 
     Args:
-        folder: with `summary.json`, `vehicle.toml`, `time.npz` or `time.csv`, and `frf.csv` where there are FRFs.
-        place: what the folder will be called, where it is still written under another name.
-        car: its car where it is at hand; else built from `vehicle.toml`.
-        recording: its time histories where they are at hand; else read.
+        folder: folder with `summary.json`, `vehicle.toml`, `time.npz` or `time.csv`, and `frf.csv` if there are FRFs.
+        place: final path of a folder that is still written under a temporary name.
+        car: car of the run; by default built from `vehicle.toml`.
+        recording: time histories; by default read from the folder.
 
     Raises:
-        ConfigurationError: no folder of a run.
+        ConfigurationError: the folder is not of a run.
         DataError: a file of it is missing or damaged.
     """
     summary = read_summary(folder)
@@ -151,7 +151,7 @@ def read_run(
 
 
 def _car(path: Path, summary: RunSummary) -> Car:
-    """The car of a run; what its file names beside itself is looked for where that file lay."""
+    """Return the car of a run; files that `vehicle.toml` names are searched in the folder of the original file."""
     origin = summary["vehicle"]["file"]
     car = Car(load_vehicle(path), folder=path.parent if origin is None else Path(origin).parent)
     car.origin = {"file": origin, "overrides": summary["vehicle"]["overrides"]}

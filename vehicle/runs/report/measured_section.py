@@ -1,4 +1,4 @@
-"""A measurement beside the run, where the run was compared with one."""
+"""Section of the report with the comparison of the run and a measurement."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import MANY, Markup, joined, number, shortened, table, tag
 
 WORST = 10
-"""Rows shown above a table that is folded."""
+"""Number of rows shown above a folded table."""
 
 UNITS = {
     "low_hz": "from [Hz]",
@@ -24,13 +24,13 @@ UNITS = {
 """Heads of columns with units."""
 
 ERROR = (
-    "the error of a band is the root of the mean of |ln(simulated / measured)|², weighted by both coherences; "
-    "magnitude is positive where the simulation is larger, lag where it is late; drift is the change of the lag."
+    "error of a band: RMS of |ln(simulated / measured)|, weighted by both coherences; magnitude is positive if the "
+    "simulation is larger, lag if it is late; drift is the change of the lag."
 )
 
 
 def measured(run: FinishedRun) -> Markup | None:
-    """The table of differences, worst first, and the pictures; None where nothing was measured."""
+    """Return the table of differences, largest first, and the pictures; None without a measurement."""
     about = run.summary.get("measured")
     if not about:
         return None
@@ -38,7 +38,7 @@ def measured(run: FinishedRun) -> Markup | None:
     rows = [[_cell(row.get(key)) for key in heads] for row in about["table"]]
     words = [UNITS.get(head, head.replace("_", " ")) for head in heads]
     parts = [
-        tag("p", f"Measured: {about['file']}. The table is ordered by kind, each worst first; {ERROR}"),
+        tag("p", f"Measured: {about['file']}. The table is sorted by type of data, largest error first; {ERROR}"),
         *([table(words, rows[:WORST], words=2)] if len(rows) > MANY else []),
         shortened(f"All {len(rows)} rows", words, rows, words=2),
     ]

@@ -1,4 +1,4 @@
-"""Modes that move: canvas, controls and gallery, which the script of the page fills, and tables of all of them."""
+"""Animated modes: canvas, controls and gallery, which the script of the page fills, and tables of all modes."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from vehicle.runs.report.moving_modes import mode_set
 Modes = Mapping[str, Sequence[Mode]]
 STATES = ("stuck", "sliding")
 HIGHEST_MODE = 60.0
-"""Frequency [Hz] up to which modes are shown."""
+"""Maximum frequency of the modes [Hz]."""
 
 VIEWS = {"corner": "Corner", "side": "Side", "front": "Front", "top": "Top"}
 
 
 def car_modes_of(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> list[dict[str, object]]:
-    """Modes of each car; of equal cars once."""
+    """Return the modes of each car; equal cars appear once."""
     found: list[dict[str, object]] = []
     seen: list[tuple[FinishedRun, dict[str, object]]] = []
     for run, own in zip(runs, modes, strict=True):
@@ -34,7 +34,7 @@ def car_modes_of(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> list[di
 
 
 def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
-    """Canvas, controls, gallery and tables of the modes."""
+    """Return canvas, controls, gallery and tables of the modes."""
 
     def select(words: str, name: str) -> Markup:
         return tag("div", tag("label", words, for_=f"mode-{name}"), tag("select", id=f"mode-{name}"))
@@ -51,28 +51,28 @@ def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         select("Car", "car"),
         select("Dampers", "state"),
         select("Mode", "pick"),
-        slider("Largest displacement drawn [mm]", "amplitude", 0, 500, 5, 160),
-        slider("Periods a second on the screen", "speed", 0.1, 2.0, 0.1, 0.7),
+        slider("Maximum displacement on the screen [mm]", "amplitude", 0, 500, 5, 160),
+        slider("Periods per second on the screen", "speed", 0.1, 2.0, 0.1, 0.7),
         tag("button", "Pause", type="button", id="mode-play"),
         *views,
         tag("div", id="mode-words"),
         tag("div", class_="scale", id="mode-scale"),
-        tag("div", tag("span", "at rest"), tag("span", "moves most"), class_="ends"),
+        tag("div", tag("span", "at rest"), tag("span", "maximum"), class_="ends"),
         class_="controls",
     )
-    label = "The chosen mode, moving. Drag or arrow keys turn it, the mouse wheel, plus and minus zoom."
+    label = "Animation of the selected mode. Rotate by mouse or arrow keys, zoom by mouse wheel, plus and minus."
     canvas = tag("canvas", id="mode-canvas", tabindex="0", role="img", aria_label=label)
     parts = [
         tag(
             "p",
-            "Linear modes of the car in its design position, from the matrices of the simulated model. Drag to turn, "
-            "wheel to zoom. Grey: at rest. Colour: how far a point moves. The decay is not shown.",
+            "Linear modes of the car in its design position, from the matrices of the simulated model. Drag to rotate, "
+            "mouse wheel to zoom. Grey: at rest. Colour: displacement. The decay is not shown.",
         ),
-        tag("noscript", tag("p", "The moving picture needs scripts; the tables below do not.")),
+        tag("noscript", tag("p", "The animation needs JavaScript; the tables below do not.")),
         tag("div", canvas, controls, class_="modes"),
         tag("div", id="mode-gallery", class_="gallery"),
     ]
-    heads = ("what moves", "frequency [Hz]", "damping ratio [%]")
+    heads = ("mode shape", "frequency [Hz]", "damping ratio [%]")
     for run, own in zip(runs, modes, strict=True):
         for state, found in own.items():
             rows = [(one.description, f"{one.frequency:.3f}", f"{100 * one.damping_ratio:.2f}") for one in found]

@@ -1,4 +1,4 @@
-"""The page: one HTML file with its style, script, figures and numbers, which asks no network for anything."""
+"""Page of the report: one HTML file with style, script, figures and values; it needs no network."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from vehicle.runs.report.response_section import responses
 
 
 def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] | None = None) -> str:
-    """The report of one run, or of several beside each other.
+    """Return the report of one run, or the comparison of several runs.
 
     Args:
-        runs: what was run.
+        runs: finished runs.
         progress: called with the finished fraction.
 
     Returns:
@@ -40,7 +40,7 @@ def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] |
     modes = [{state: run.car.modes(state, HIGHEST_MODE) for state in STATES} for run in runs]
     parts: list[tuple[str, str, Markup]] = []
     if len(runs) > 1:
-        parts += [("Beside each other", "comparison", beside_each_other(runs))]
+        parts += [("Comparison of the runs", "comparison", beside_each_other(runs))]
     done(0.1)
     for index, (run, own) in enumerate(zip(runs, modes, strict=True)):
         found = _of_run(run, own)
@@ -58,7 +58,7 @@ def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] |
 
 
 def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
-    """Runs of the same name with the folder above it before their names, and numbers where that is the same too."""
+    """Return the runs with unique names: the parent folder is added to equal names, then a number."""
     names = [run.name for run in runs]
     longer = [
         f"{run.place.resolve().parent.name}/{run.name}" if names.count(run.name) > 1 else run.name for run in runs
@@ -68,10 +68,10 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
 
 
 def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
-    """Title, anchor and content of each part of a run."""
+    """Return title, anchor and content of each section of a run."""
     found = [
         ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
-        ("What was run", "run", sections.what_was_run(run)),
+        ("Car, signal, engine", "run", sections.what_was_run(run)),
         (
             "Frequency responses" if run.response is not None else "Densities",
             "responses",
@@ -86,13 +86,13 @@ def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
             found.append((title, anchor, content))
     return [
         *found,
-        ("All numbers", "tables", sections.tables(run)),
-        ("How to repeat it", "repeat", sections.repeating(run)),
+        ("All values", "tables", sections.tables(run)),
+        ("How to repeat the run", "repeat", sections.repeating(run)),
     ]
 
 
 def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Markup]], data: str) -> str:
-    """The parts in a document whose policy lets nothing in from outside, and runs no script but its own."""
+    """Return the HTML document; its security policy blocks external content and scripts."""
     names = " and ".join(run.name for run in runs) if len(runs) < 4 else f"{len(runs)} runs"
     title = f"Car on the shaker: {names}"
     script = _file("modes.js") + _file("print.js")
@@ -119,5 +119,5 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
 
 
 def _file(name: str) -> str:
-    """A file of this package."""
+    """Return the text of a file of this package."""
     return resources.files("vehicle.runs.report").joinpath(name).read_text(encoding="utf-8")

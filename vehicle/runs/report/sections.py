@@ -1,4 +1,4 @@
-"""The parts of a report: tables and figures of one run."""
+"""Sections of a report: tables and figures of one run."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ROAD_WORDS = {
 
 
 def tiles(run: FinishedRun) -> Markup:
-    """The numbers that are asked for first."""
+    """Return the key figures of a run as tiles."""
     summary = run.summary
     shares = slip_shares(summary)
     found = []
@@ -40,7 +40,7 @@ def tiles(run: FinishedRun) -> Markup:
         words = f"weighted acceleration at the {place.replace('_', ' ')}, {' to '.join(reactions(total))}"
         found.append((f"{number(total)} m/s²", words))
     found += [
-        (f"{100 * share:.2g} %", f"of the time in slip: {side_of(wheel, shares)} damper")
+        (f"{100 * share:.2g} %", f"of the time in slip, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()
     ]
     peaks = summary["peaks"].get(f"knuckle_{run.wheel}_acc_z")
@@ -53,7 +53,7 @@ def tiles(run: FinishedRun) -> Markup:
 
 
 def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
-    """Findings, and all notices."""
+    """Return findings by topic, and all notices."""
     topics: dict[str, list[str]] = {}
     for one in findings(run, modes):
         topics.setdefault(one.topic, []).append(one.text)
@@ -70,7 +70,7 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
 
 
 def what_was_run(run: FinishedRun) -> Markup:
-    """Car, signal and engine, and the parameters that are not those of the shipped car."""
+    """Return tables of car, signal and engine, and of parameters that differ from the shipped car."""
     given, solver, vehicle = run.summary["input"], run.summary["solver"], run.car.vehicle
     signal = [("file", given["file"]), ("SHA-256", given["sha256"] or "–"), ("length", f"{given['duration_s']:g} s")]
     signal += [
@@ -97,20 +97,20 @@ def what_was_run(run: FinishedRun) -> Markup:
     parts = [tag("div", *(table((title, ""), rows, words=2) for title, rows in about), class_="columns")]
     default = shipped_origin(vehicle)
     if default is None:
-        parts.append(tag("p", "The car is made from no shipped car."))
+        parts.append(tag("p", "The car is not derived from a shipped car."))
         return joined(parts)
     rows = [(path, unit, *values) for path, unit, values in changed_parameters([default, vehicle])]
     if rows:
         heads = ("parameter", "unit", f"shipped car {default.name}", "this run")
-        parts.append(tag("h3", f"Changed against the shipped car {default.name}"))
+        parts.append(tag("h3", f"Differences from the shipped car {default.name}"))
         parts.append(shortened(f"{len(rows)} parameters", heads, rows, words=2))
     else:
-        parts.append(tag("p", f"All parameters are those of the shipped car {default.name}."))
+        parts.append(tag("p", f"All parameters are equal to those of the shipped car {default.name}."))
     return joined(parts)
 
 
 def _origin(run: FinishedRun) -> str:
-    """File of the car; of a shipped one no path, which is another on every machine."""
+    """Return the vehicle file; no path for a shipped car, since it depends on the machine."""
     file = run.summary["vehicle"]["file"]
     if file is None or Path(file).resolve().parent.parent == VEHICLES.resolve():
         return "shipped with the program"
@@ -118,17 +118,17 @@ def _origin(run: FinishedRun) -> str:
 
 
 def time_figure(run: FinishedRun) -> Markup:
-    """The main time histories."""
+    """Return the plot of the main time histories."""
     return drawing(lambda path: plot_time(path, run), f"Time histories of {run.name}")
 
 
 def dampers(run: FinishedRun) -> Markup:
-    """Slip of each damper, its largest velocity and force."""
+    """Return the table of slip, maximum velocity and maximum force of each damper."""
     summary = run.summary
     share, first = summary["slip_share"], summary["first_slip_s"]
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
     slip, limit = 1e3 * share["slip_velocity"], 1e3 * summary["saturated_velocity"]
-    heads = ("damper", f"time faster than {slip:g} mm/s", "first", f"time faster than {limit:g} mm/s", "first")
+    heads = ("damper", f"time above {slip:g} mm/s", "first", f"time above {limit:g} mm/s", "first")
     rows = []
     for wheel in first:
         velocity, force = (np.abs(run.recording[f"damper_{wheel}_{kind}"]).max() for kind in ("velocity", "force"))
@@ -144,7 +144,7 @@ def dampers(run: FinishedRun) -> Markup:
             )
         )
     words = (
-        f"Faster than {slip:g} mm/s counts as slip in all tables; from {limit:g} mm/s on the friction is at its limit."
+        f"Slip in all tables: a damper velocity above {slip:g} mm/s. Above {limit:g} mm/s the friction is at its limit."
     )
     return joined([table((*heads, "largest velocity", "largest force"), rows), tag("p", words)])
 
@@ -154,19 +154,19 @@ def _when(value: float | None) -> str:
 
 
 def film(run: FinishedRun) -> Markup | None:
-    """The film of the run, if there is one that can be read."""
+    """Return the film of the run; None if there is no readable film."""
     name = run.summary["files"].get("video")
     path = None if name is None else next((one for one in (run.folder / name, Path(name)) if one.is_file()), None)
     if path is None:
         return None
     source = "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-    words = f"{path.name}: the motion is exaggerated; the factor stands in the picture."
+    words = f"{path.name}: the motion is exaggerated by the factor in the picture."
     video = tag("video", src=source, controls="", preload="metadata", class_="only-screen")
     return joined([video, tag("p", words)])
 
 
 def tables(run: FinishedRun) -> Markup:
-    """Everything else in numbers."""
+    """Return folded tables of levels, resonances and static loads."""
     summary, recording = run.summary, run.recording
     levels = []
     for name, values in recording.channels.items():
@@ -180,7 +180,7 @@ def tables(run: FinishedRun) -> Markup:
     static = summary["static"]
     loads = [(f"tyre {wheel}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]
     loads += [(f"rear support {name}", f"{load:.0f}") for name, load in static["rear_support_load_n"].items()]
-    heads = ("channel", "unit", "RMS", "least", "largest")
+    heads = ("channel", "unit", "RMS", "minimum", "maximum")
     parts = [folded(f"Levels of all {len(levels)} channels", table(heads, levels, words=2))]
     if peaks:
         columns = ("channel", "frequency [Hz] (magnitude [m/s² per m])")
@@ -190,11 +190,11 @@ def tables(run: FinishedRun) -> Markup:
 
 
 def repeating(run: FinishedRun) -> Markup:
-    """The command that made the run, and one that repeats it from its own files."""
+    """Return the command of the run, and a command that repeats the run from its folder."""
     summary = run.summary
     parts = []
     if summary.get("command"):
-        parts += [tag("p", "This run was made by:"), tag("pre", summary["command"])]
+        parts += [tag("p", "Command of this run:"), tag("pre", summary["command"])]
     again = [
         "python",
         "-m",
@@ -208,8 +208,8 @@ def repeating(run: FinishedRun) -> Markup:
     parts += [
         tag(
             "p",
-            "Its folder keeps every parameter as used, so that it can be repeated without the file of the car (options "
-            "that choose channels, units or a stretch of the input are to be given again; the notices name them):",
+            "The folder of the run contains all parameters, so it can be repeated without the vehicle file. Repeat "
+            "options for channels, units or an excerpt of the input; the notices list them:",
         ),
         tag("pre", shlex.join(again)),
         tag("p", "Files of the run: ", ", ".join(summary["files"].values()), "."),
@@ -218,7 +218,7 @@ def repeating(run: FinishedRun) -> Markup:
 
 
 def _signal_again(run: FinishedRun) -> list[str]:
-    """What puts the same displacements under the wheels: of a road, those that the run recorded."""
+    """Return options for the same plate displacements; for a road the recorded displacements."""
     if run.summary["input"].get("road"):
         again = ["--input", f"{run.place}/{run.summary['files']['time']}", "--any-level"]
     else:

@@ -1,4 +1,4 @@
-"""The figures of a run as SVG for a page: the plots of `rendering`, made small."""
+"""Plots of `rendering` as compact SVG elements of a page."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from tempfile import TemporaryDirectory
 from vehicle.runs.report.markup import Markup, tag
 
 FONTS = "'DejaVu Sans', Verdana, sans-serif"
-"""The figures are laid out with the first, which has the widths of the second; no font travels with the page."""
+"""Fonts of the figures: the layout uses the first, and the second has equal widths; the page contains no fonts."""
 
 
 def drawing(plot: Callable[[Path], object], words: str) -> Markup:
-    """Draw a figure for a page.
+    """Return a figure as an HTML element.
 
     Args:
-        plot: writes the figure at the path it is given.
-        words: what it shows, for those who cannot see it.
+        plot: function that writes the figure to a path.
+        words: alternative text of the figure.
 
     Returns:
         A `figure` element with the SVG in it.
@@ -31,11 +31,11 @@ def drawing(plot: Callable[[Path], object], words: str) -> Markup:
 
 
 def small(svg: str, words: str) -> str:
-    """An SVG file as an element: coordinates to a hundredth of a point, no names that nothing refers to.
+    """Return an SVG file as a compact element: coordinates rounded to 0.01 points, no unused names.
 
     Args:
-        svg: as matplotlib writes it.
-        words: its label.
+        svg: SVG text of matplotlib.
+        words: label of the figure.
     """
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
