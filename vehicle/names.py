@@ -36,10 +36,10 @@ def side_of(wheel: str, wheels: Iterable[str]) -> str:
         wheel: its name, as "fr".
         wheels: names of all wheels of the car.
     """
-    words = {name: words.replace("_", " ") for words, name in CORNERS.items()}
-    if len({name[0] for name in wheels}) == 1 and wheel in words:
-        return words[wheel].split()[1]
-    return words.get(wheel, wheel)
+    sides = {name: sides.replace("_", " ") for sides, name in CORNERS.items()}
+    if len({name[0] for name in wheels}) == 1 and wheel in sides:
+        return sides[wheel].split()[1]
+    return sides.get(wheel, wheel)
 
 
 def wheel_words(wheel: str, wheels: Iterable[str]) -> str:
@@ -70,13 +70,13 @@ def is_wheel(name: str) -> bool:
 
 def in_order(wheels: Iterable[str]) -> tuple[str, ...]:
     """Wheels in the order of files: the corners, then those of further axles."""
-    known = list(CORNERS.values())
-    return tuple(sorted(wheels, key=lambda wheel: (known.index(wheel) if wheel in known else len(known), wheel)))
+    corners = list(CORNERS.values())
+    return tuple(sorted(wheels, key=lambda wheel: (corners.index(wheel) if wheel in corners else len(corners), wheel)))
 
 
-def acceleration_channels(places: Iterable[str]) -> tuple[str, ...]:
+def acceleration_channels(points: Iterable[str]) -> tuple[str, ...]:
     """Channels `<place>_acc_<axis>` of places."""
-    return tuple(f"{place}_acc_{axis}" for place in places for axis in AXES)
+    return tuple(f"{point}_acc_{axis}" for point in points for axis in AXES)
 
 
 def wheel_channels(wheels: Iterable[str], dampers: Sequence[str]) -> tuple[str, ...]:
@@ -86,12 +86,20 @@ def wheel_channels(wheels: Iterable[str], dampers: Sequence[str]) -> tuple[str, 
         wheels: names of the wheels.
         dampers: names of the dampers; that of a corner is "damper_" and its wheel.
     """
-    found: list[str] = []
-    own = {wheel: f"damper_{wheel}" for wheel in wheels}
-    for wheel, damper in own.items():
-        found += [f"{damper}_velocity", f"{damper}_force"] if damper in dampers else []
-        found += [f"tyre_{wheel}_force_z", f"plate_{wheel}_displacement"]
-    return (*found, *(f"{one}_{kind}" for one in dampers if one not in own.values() for kind in ("velocity", "force")))
+    channels: list[str] = []
+    corner_dampers = {wheel: f"damper_{wheel}" for wheel in wheels}
+    for wheel, damper in corner_dampers.items():
+        channels += [f"{damper}_velocity", f"{damper}_force"] if damper in dampers else []
+        channels += [f"tyre_{wheel}_force_z", f"plate_{wheel}_displacement"]
+    return (
+        *channels,
+        *(
+            f"{damper}_{quantity}"
+            for damper in dampers
+            if damper not in corner_dampers.values()
+            for quantity in ("velocity", "force")
+        ),
+    )
 
 
 def channel_units(channels: Iterable[str]) -> dict[str, str]:
@@ -103,7 +111,7 @@ def channel_units(channels: Iterable[str]) -> dict[str, str]:
     Raises:
         ConfigurationError: there can be no such channel.
     """
-    found = {}
+    units = {}
     for channel in channels:
         unit = next((unit for form, unit in _UNITS.items() if re.fullmatch(form, channel)), None)
         if unit is None:
@@ -111,5 +119,5 @@ def channel_units(channels: Iterable[str]) -> dict[str, str]:
                 f"no channel {channel!r}; channels are called as seat_rail_acc_z, damper_fr_velocity, damper_fr_force, "
                 "tyre_fr_force_z, plate_fr_displacement"
             )
-        found[channel] = unit
-    return found
+        units[channel] = unit
+    return units

@@ -90,11 +90,11 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
     Raises:
         ConfigurationError: both a point and channels of axes.
     """
-    places = [text for text in picks if "=" not in text]
-    if len(places) > 1 or (places and len(picks) > 1):
+    points = [text for text in picks if "=" not in text]
+    if len(points) > 1 or (points and len(picks) > 1):
         raise ConfigurationError("--channel: set one PLACE, or x=NAME, y=NAME and z=NAME")
-    own = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
-    return (places[0] if places else None), record_choice(own, "")
+    channels = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
+    return (points[0] if points else None), record_choice(channels, "")
 
 
 def _evaluate(options: argparse.Namespace) -> RecordComfort:
@@ -116,7 +116,7 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
                 f"--rail {options.rail}: the SEAT value needs axis z; set z=NAME, or an output point"
             )
         rail = _picked(options, [f"z={name}"] if equals else [options.rail])
-    found = evaluate_comfort(
+    result = evaluate_comfort(
         options.input,
         point,
         choice=choice,
@@ -128,9 +128,9 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
         skip=options.skip,
     )
     if options.rail is None and "seat" not in options.picks:
-        return found
+        return result
     more = _about_the_seat(Path(options.input))
-    return RecordComfort({**found.summary, "notices": [*found.summary["notices"], *more]})
+    return RecordComfort({**result.summary, "notices": [*result.summary["notices"], *more]})
 
 
 def _about_the_seat(file: Path) -> list[str]:
@@ -174,9 +174,9 @@ def _job(options: argparse.Namespace) -> None:
         print(json.dumps(results, indent=2, allow_nan=False) if options.json else _overview(results), flush=True)
         raise_worst(errors, len(results))
         return
-    found = _evaluate(argparse.Namespace(**{**vars(options), "input": names[0]}))
-    print(json.dumps(found.summary, indent=2, allow_nan=False) if options.json else found.text(), flush=True)
-    for remark in found.notices:
+    result = _evaluate(argparse.Namespace(**{**vars(options), "input": names[0]}))
+    print(json.dumps(result.summary, indent=2, allow_nan=False) if options.json else result.text(), flush=True)
+    for remark in result.notices:
         print(f"notice: {remark}", file=sys.stderr)
 
 

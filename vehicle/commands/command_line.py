@@ -131,19 +131,19 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
     Returns:
         Exit code, see `run_command`.
     """
-    given = sys.argv[1:] if arguments is None else list(arguments)
+    typed = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None:
         begin_process()
 
     def work() -> None:
-        for word in given:
+        for word in typed:
             if "\0" in word:
                 raise ConfigurationError(f"argument {word!r}: contains a NUL byte, which is not allowed")
         with ExitStack() as held:
-            job(parser.parse_args(given, argparse.Namespace(words=given, held=held)))
+            job(parser.parse_args(typed, argparse.Namespace(words=typed, held=held)))
 
     # Not from the parsed options: --debug also applies to an error of the parser.
-    return run_command(work, debug="--debug" in given)
+    return run_command(work, debug="--debug" in typed)
 
 
 def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:

@@ -120,12 +120,12 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
         required: True if the command needs a measurement.
         several: True if --measured accepts several files or a folder; its value is then a list.
     """
-    many: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
+    several_files: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
     parser.add_argument(
         "--measured",
         type=Path,
         required=required,
-        **many,
+        **several_files,
         metavar="FILE",
         help="measurement file of any format of `inspect`, with responses, time histories, or mode shapes (UFF 55)"
         + (
@@ -182,9 +182,9 @@ def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> 
     if "" in channels:
         raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
     units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in taken}
-    own = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
-    own["databases"] = tuple(options.databases)
-    return Choice(channels=channels, units=units, **(own if hasattr(options, "delay") else {}))
+    settings = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
+    settings["databases"] = tuple(options.databases)
+    return Choice(channels=channels, units=units, **(settings if hasattr(options, "delay") else {}))
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -194,17 +194,17 @@ def _job(options: argparse.Namespace) -> None:
 
     def one(name: str) -> dict[str, Any]:
         file = Path(name)
-        alone = sum(Path(other).stem == file.stem for other in names) == 1
-        output = whole / (file.stem if alone else file.name) if several else whole
+        unique = sum(Path(other).stem == file.stem for other in names) == 1
+        output = whole / (file.stem if unique else file.name) if several else whole
         summary, said = _compared(argparse.Namespace(**{**vars(options), "measured": file}), output)
         return {"summary": summary, "text": f"{said}\nfiles: {output}"}
 
     if not several:
-        found = one(names[0])
+        result = one(names[0])
         if options.json:
-            print(json.dumps(found["summary"], indent=2, allow_nan=False))
+            print(json.dumps(result["summary"], indent=2, allow_nan=False))
         elif not options.quiet:
-            print(found["text"])
+            print(result["text"])
         return
     results, errors = each_file(names, one)
     if options.json:
@@ -224,11 +224,11 @@ def _overview(results: list[dict[str, Any]]) -> str:
             continue
         summary = result["summary"]
         keys = (("responses", "frac", ""), ("records", "rms_ratio", "correlation"))
-        for kind, first, second in keys:
-            for channel in summary.get(kind, ()):
+        for section, first, second in keys:
+            for channel in summary.get(section, ()):
                 values = [channel.get(key) if key else None for key in (first, second)]
                 cells = ["-" if value is None else f"{value:.4g}" for value in values]
-                rows.append((result["input"], channel["channel"], kind[:-1], *cells))
+                rows.append((result["input"], channel["channel"], section[:-1], *cells))
     return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), rows)
 
 
@@ -256,8 +256,8 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         if options.run is None:
             raise ConfigurationError("needed is RUN_OR_INPUT: the folder of a run, or an input as low.csv")
         refuse_idle(options, SHAPES)
-        run, known = _run(options, measurement, choice)
-        measured = _measured(options, known, choice, measurement)
+        run, channels = _run(options, measurement, choice)
+        measured = _measured(options, channels, choice, measurement)
         if measured.frf is None:
             refuse_idle(options, RESPONSES)
         if measured.record is None:
@@ -307,9 +307,9 @@ def _run(
     from vehicle.signals.excitation.signal_file import read_signal
 
     car = Car.load(options.vehicle, options.overrides)
-    known = (*car.vehicle.channels, *car.vehicle.load_channels)
+    channels = (*car.vehicle.channels, *car.vehicle.load_channels)
     signal = read_signal(find_input(options.run), wheel=car.vehicle.shaker_wheel)
-    asked = _measured(options, known, choice, measurement)  # refused before anything is simulated
+    asked = _measured(options, channels, choice, measurement)  # refused before anything is simulated
     loads = {*(asked.record.channels if asked.record else ())} - set(car.vehicle.channels)
     run = car.run(
         signal,
@@ -317,7 +317,7 @@ def _run(
         engine=options.engine,
         channels=(*car.vehicle.channels, *sorted(loads)) if loads else None,
     )
-    return run, known
+    return run, channels
 
 
 def _modes(
@@ -329,23 +329,26 @@ def _modes(
     from vehicle.runs.output.folder import output_folder, write_json, write_whole
 
     car = _car(options)
-    found, tyres = compare_modes(car, measurement, dict(choice.channels), options.damper), car.vehicle.driving.words
-    name = measurement.path.name
-    summary = found.summary(name)
-    caption = (
-        f"{name} at {len(found.points)} points of the car, dampers {options.damper}, tyres {tyres}; rows and columns "
-        "by frequency"
+    comparison, tyres = (
+        compare_modes(car, measurement, dict(choice.channels), options.damper),
+        car.vehicle.driving.words,
     )
-    rows, columns = ([one.frequency for one in those] for those in (found.measured, found.simulated))
+    name = measurement.path.name
+    summary = comparison.summary(name)
+    caption = (
+        f"{name} at {len(comparison.points)} points of the car, dampers {options.damper}, tyres {tyres}; rows and "
+        "columns by frequency"
+    )
+    rows, columns = ([mode.frequency for mode in those] for those in (comparison.measured, comparison.simulated))
     tables = (
-        ("measured (rows), simulated (columns)", found.mac, rows, columns),
-        ("AutoMAC of the measured modes", found.measured_auto, rows, rows),
-        ("AutoMAC of the simulated modes", found.simulated_auto, columns, columns),
+        ("measured (rows), simulated (columns)", comparison.mac, rows, columns),
+        ("AutoMAC of the measured modes", comparison.measured_auto, rows, rows),
+        ("AutoMAC of the simulated modes", comparison.simulated_auto, columns, columns),
     )
     with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
         write_json(folder / "compare.json", summary)
         write_whole(folder / "mac.png", lambda path: plot_mac(path, tables, caption))
-    return summary, found.text(name)
+    return summary, comparison.text(name)
 
 
 def _car(options: argparse.Namespace) -> Car:

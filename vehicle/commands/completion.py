@@ -70,7 +70,7 @@ def completion_script(shell: str) -> str:
     rows = [("", f"{' '.join(COMMANDS)} --help --version --print-completion"), ("--print-completion", " ".join(SHELLS))]
     for name in COMMANDS:
         rows += _rows(name, import_module(f"vehicle.commands.{name}").parser())
-    return SCRIPT % "\n".join(f'    "{key}") echo "{words}" ;;' for key, words in rows) + SHELLS[shell]
+    return SCRIPT % "\n".join(f'    "{key}") echo "{choices}" ;;' for key, choices in rows) + SHELLS[shell]
 
 
 def _rows(name: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, str]]:

@@ -84,7 +84,7 @@ def _job(options: argparse.Namespace) -> None:
     require_iteration(band, options.iterations, options.gain, target_error)
     output = output_folder_of(options, Path("runs") / f"drive_{options.target.stem}", protect=inputs)
     names, choice = _channels(options)
-    found = replicate_drive(
+    drive = replicate_drive(
         Car.load(options.vehicle, options.overrides),
         options.target,
         names,
@@ -97,7 +97,7 @@ def _job(options: argparse.Namespace) -> None:
         engine=options.engine,
         progress=lambda step: None if options.quiet else _say(step, options.iterations),
     )
-    summary = save_drive(found, output, force=options.force, protect=inputs)
+    summary = save_drive(drive, output, force=options.force, protect=inputs)
     if not options.quiet:
         print(report(summary, output))
 
@@ -118,9 +118,9 @@ def _band(text: str) -> tuple[float, float]:
     Raises:
         ConfigurationError: the text is not A:B.
     """
-    found = re.fullmatch(r"([\d.]+):([\d.]+)", text)
+    match = re.fullmatch(r"([\d.]+):([\d.]+)", text)
     try:
-        low, high = (float(part) for part in found.groups()) if found else (0.0, 0.0)
+        low, high = (float(part) for part in match.groups()) if match else (0.0, 0.0)
     except ValueError:
         low = high = 0.0
     if not 0.0 < low < high:
@@ -137,13 +137,13 @@ def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
     from vehicle.signals.records.choice import Choice
     from vehicle.studies.replication.found_drive import named_channels
 
-    alone = [text.strip() for text in options.picks if "=" not in text]
+    unnamed = [text.strip() for text in options.picks if "=" not in text]
     options.picks = [f"{text}={text}" if "=" not in text else text for text in options.picks]
     choice = record_choice(options, "") or Choice()
     names = {role: name for role, name in choice.channels.items() if role != "time"}
     if not names:
         raise ConfigurationError("--channel is missing: set the measured acceleration of the car")
-    return (named_channels(options.target, alone, choice) if alone == list(names) else names), choice
+    return (named_channels(options.target, unnamed, choice) if unnamed == list(names) else names), choice
 
 
 def report(summary: dict[str, Any], output: Path) -> str:

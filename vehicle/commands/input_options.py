@@ -285,7 +285,7 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
     unknown = next((name for name in asked if name not in units), None)
     if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
         raise ConfigurationError(f"--unit {unknown}=...: no --channel {unknown}=NAME is given")
-    found = Choice(
+    choice = Choice(
         channels=channels,
         units=units,
         rate=options.rate,
@@ -296,4 +296,4 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
         databases=tuple(options.databases),
         resample=options.resample,
     )
-    return None if found.empty else found
+    return None if choice.empty else choice

@@ -43,13 +43,13 @@ def parser() -> Parser:
         needs="bushings that yield, and --ideal makes ideal joints of them; leave one of the two out",
         active=lambda options: not options.ideal,
     )
-    for name, what in (("contact-force", "force [N]"), ("moment", "moment [N m]")):
+    for name, quantity in (("contact-force", "force [N]"), ("moment", "moment [N m]")):
         loads.add_argument(
             f"--{name}",
             action="append",
             default=[],
             metavar="AXIS=VALUE",
-            help=f"{what} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
+            help=f"{quantity} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
             "right, z up), as x=1000; with --opposite against each other; may be repeated",
         )
     parser.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
@@ -137,17 +137,17 @@ def _travels(text: str) -> list[float]:
 
 def _vector(option: str, entries: list[str]) -> list[float]:
     """Return the vector of repeated AXIS=VALUE options."""
-    found = dict.fromkeys("xyz", 0.0)
+    vector = dict.fromkeys("xyz", 0.0)
     for entry in entries:
         axis, _, text = entry.partition("=")
         try:
             value = float(text)
         except ValueError:
             value = math.nan
-        if axis not in found or not math.isfinite(value):
+        if axis not in vector or not math.isfinite(value):
             raise ConfigurationError(f"{option} {entry!r}: needed is AXIS=VALUE with x, y or z and a number, as x=1000")
-        found[axis] = value
-    return list(found.values())
+        vector[axis] = value
+    return list(vector.values())
 
 
 HEADS = {
@@ -166,9 +166,9 @@ HEADS = {
 
 def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str, float | None]) -> str:
     """Return the table as text."""
-    kind = "ideal joints" if options.ideal else "bushings as they are"
+    joints = "ideal joints" if options.ideal else "bushings as they are"
     lines = [
-        f"{options.axle} axle, wheel on the right, against its design position; {kind}"
+        f"{options.axle} axle, wheel on the right, against its design position; {joints}"
         + ("; left wheel opposite" if options.opposite else ""),
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
         "  ".join(f"{head:>{max(len(head), 8)}}" for head in HEADS.values()),
@@ -194,8 +194,8 @@ def _write(options: argparse.Namespace, output: Path, name: str, poses: list[Whe
 
     units = {"m": "m", "deg": "deg", "n": "N"}
     names = list(HEADS)
-    heads = [f"{one.rpartition('_')[0]} [{units[one.rpartition('_')[2]]}]" for one in names]
-    columns = [np.array([getattr(pose, one) for pose in poses]) for one in names]
+    heads = [f"{name.rpartition('_')[0]} [{units[name.rpartition('_')[2]]}]" for name in names]
+    columns = [np.array([getattr(pose, name) for pose in poses]) for name in names]
     comments = [
         f"{name}, {options.axle} axle, wheel on the right, against its design position",
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",

@@ -62,21 +62,21 @@ def _job(options: argparse.Namespace) -> None:
     names = _chosen(options.channels, record.units, source)
     table, spectra, picture = output_files_of(options, source.parent, FILES)
     duration = float(record.time[-1] - record.time[0])
-    found = [
+    spectra_of_channels = [
         load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
         for name in names
     ]
     summary = available_summary(source.parent)
     tyres = summary.get("tyre") if summary else None
-    about = (
+    caption = (
         f"{source.name}, {duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
         f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"
     )
-    write_text(table, _table(found, about))
-    write_text(spectra, _spectra(found, about, options.classes))
-    write_whole(picture, lambda path: plot_loads(path, found, about))
+    write_text(table, _table(spectra_of_channels, caption))
+    write_text(spectra, _spectra(spectra_of_channels, caption, options.classes))
+    write_whole(picture, lambda path: plot_loads(path, spectra_of_channels, caption))
     if not options.quiet:
-        print(_report(found, about))
+        print(_report(spectra_of_channels, caption))
         print(f"files: {table.parent}: {', '.join(path.name for path in (table, spectra, picture))}")
 
 
@@ -110,33 +110,33 @@ def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[st
 HEADS = ("minimum", "maximum", "mean", "rms", "cycles", "largest_range", "equivalent_amplitude")
 
 
-def _table(found: list[LoadSpectrum], about: str) -> str:
-    rows = [",".join([one.name, one.unit, *(f"{getattr(one, head):.9g}" for head in HEADS)]) for one in found]
-    return "\n".join([f"# {about}", ",".join(["channel", "unit", *HEADS]), *rows, ""])
+def _table(loads: list[LoadSpectrum], caption: str) -> str:
+    rows = [",".join([load.name, load.unit, *(f"{getattr(load, head):.9g}" for head in HEADS)]) for load in loads]
+    return "\n".join([f"# {caption}", ",".join(["channel", "unit", *HEADS]), *rows, ""])
 
 
-def _spectra(found: list[LoadSpectrum], about: str, classes: int) -> str:
+def _spectra(loads: list[LoadSpectrum], caption: str, classes: int) -> str:
     """Return the range-pair table: cycles in equal classes from zero to the largest range of each channel."""
-    lines = [f"# {about}", "channel,unit,range_above,range_up_to,cycles,cycles_of_this_range_or_more"]
-    for one in found:
-        edges, counts = one.classes(classes)
+    lines = [f"# {caption}", "channel,unit,range_above,range_up_to,cycles,cycles_of_this_range_or_more"]
+    for load in loads:
+        edges, counts = load.classes(classes)
         more = counts[::-1].cumsum()[::-1]
         for number, count in enumerate(counts):
             numbers = (edges[number], edges[number + 1], count, more[number])
-            lines.append(",".join([one.name, one.unit, *(f"{value:.9g}" for value in numbers)]))
+            lines.append(",".join([load.name, load.unit, *(f"{value:.9g}" for value in numbers)]))
     return "\n".join([*lines, ""])
 
 
-def _report(found: list[LoadSpectrum], about: str) -> str:
-    strongest = sorted(found, key=lambda one: -one.equivalent_amplitude * (1.0 if one.unit != "m" else 1e-9))[:SHOWN]
+def _report(loads: list[LoadSpectrum], caption: str) -> str:
+    strongest = sorted(loads, key=lambda load: -load.equivalent_amplitude * (1.0 if load.unit != "m" else 1e-9))[:SHOWN]
     heads = f"{'channel':<34}{'unit':>5}{'min':>11}{'max':>11}{'mean':>11}{'rms':>11}{'cycles':>10}{'equivalent':>12}"
     rows = [
-        f"{one.name:<34}{one.unit:>5}{one.minimum:>11.5g}{one.maximum:>11.5g}{one.mean:>11.5g}{one.rms:>11.5g}"
-        f"{one.cycles:>10.6g}{one.equivalent_amplitude:>12.5g}"
-        for one in strongest
+        f"{load.name:<34}{load.unit:>5}{load.minimum:>11.5g}{load.maximum:>11.5g}{load.mean:>11.5g}{load.rms:>11.5g}"
+        f"{load.cycles:>10.6g}{load.equivalent_amplitude:>12.5g}"
+        for load in strongest
     ]
-    left = len(found) - len(strongest)
-    return "\n".join([about, heads, *rows, *([f"and {left} more in {FILES[0]}"] if left else [])])
+    left = len(loads) - len(strongest)
+    return "\n".join([caption, heads, *rows, *([f"and {left} more in {FILES[0]}"] if left else [])])
 
 
 def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:

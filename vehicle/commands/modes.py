@@ -58,21 +58,21 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
 
     if options.uff is not None and options.uff.exists():
-        own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
-        if not (options.force and own):
+        written_here = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
+        if not (options.force and written_here):
             mend = "was not written by this program; set another name" if options.force else "exists; give --force"
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
-    found = modes_table(car, options.damper)
+    table = modes_table(car, options.damper)
     if options.uff is not None:
         from vehicle.runs.output.folder import write_whole
         from vehicle.runs.output.mode_file import write_modes
 
         write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
     if options.animate is not None:
-        found["film"] = _film(options, car)
-    print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+        table["film"] = _film(options, car)
+    print(json.dumps(table, indent=2, allow_nan=False) if options.json else report(table))
 
 
 def _check_film_options(options: argparse.Namespace) -> None:
@@ -129,7 +129,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
 
     body = car.model.superelement
     trimmed = car.trimmed_body
-    found = car.modes(damper)
+    modes = car.modes(damper)
     return {
         "damper": damper,
         "tyre": car.vehicle.driving.words,
@@ -143,9 +143,9 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
                 "energy": mode.energy,
                 "motions": mode.motions,
             }
-            for mode in found
+            for mode in modes
         ],
-        "growing": [mode.description.removeprefix("grows: ") for mode in found if mode.grows],
+        "growing": [mode.description.removeprefix("grows: ") for mode in modes if mode.grows],
         "free_body": {
             "frequency_hz": [float(value) for value in trimmed.frequencies * car.vehicle.body.frequency_scale],
             "description": list(trimmed.mode_names),
@@ -154,30 +154,30 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     }
 
 
-def report(found: dict[str, Any]) -> str:
+def report(table: dict[str, Any]) -> str:
     """Return the table as text."""
-    width = max((len(mode["description"]) for mode in found["modes"]), default=0)
+    width = max((len(mode["description"]) for mode in table["modes"]), default=0)
     lines = [
-        f"assembled car, dampers {found['damper']}, tyres {found['tyre']}",
+        f"assembled car, dampers {table['damper']}, tyres {table['tyre']}",
         f"{'Hz':>8} {'damping':>8}  {'description':<{width}} energy",
     ]
-    for mode in found["modes"]:
+    for mode in table["modes"]:
         shares = sorted(mode["energy"].items(), key=lambda item: -item[1])
         text = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares if share >= 0.05)
         lines.append(
             f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<{width}} {text}"
         )
-    if found["growing"]:
-        fault = "does not stand" if found["tyre"] == "standing" else "does not keep its course"
-        lines.append(f"this car {fault}: {', '.join(found['growing'])} grows by itself (negative damping above)")
-    lines += [f"note     {text}" for text in found["notices"]]
-    free = found["free_body"]
+    if table["growing"]:
+        fault = "does not stand" if table["tyre"] == "standing" else "does not keep its course"
+        lines.append(f"this car {fault}: {', '.join(table['growing'])} grows by itself (negative damping above)")
+    lines += [f"note     {text}" for text in table["notices"]]
+    free = table["free_body"]
     if free["frequency_hz"]:
         lines.append("free trimmed body")
     for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):
         lines.append(f"{frequency:8.3f}           {name}")
-    if "film" in found:
-        film = found["film"]
+    if "film" in table:
+        film = table["film"]
         lines.append(f"{film['file']}: mode at {film['frequency_hz']:.3f} Hz, the nearest to {film['asked_hz']:g} Hz")
     return "\n".join(lines)
 

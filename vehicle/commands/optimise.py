@@ -76,18 +76,18 @@ def parser() -> Parser:
         metavar="PATH=SIZE",
         help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
     )
-    made = parser.scoped_group(
+    tolerances = parser.scoped_group(
         "cars as they are made",
         needs="--tolerance PATH=SIZE, and there is none",
         active=lambda options: bool(options.tolerance),
     )
-    made.add_argument(
+    tolerances.add_argument(
         "--samples",
         type=int,
         metavar="K",
         help="cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
     )
-    made.add_argument(
+    tolerances.add_argument(
         "--quantile",
         type=float,
         metavar="Q",
@@ -140,7 +140,7 @@ def _job(options: argparse.Namespace) -> None:
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=CARS)
     try:
-        found = plan.run(
+        cars = plan.run(
             folder,
             cars=options.cars,
             population=options.population,
@@ -151,9 +151,9 @@ def _job(options: argparse.Namespace) -> None:
     except KeyboardInterrupt:
         print(f"{folder}: finished generations are kept; --resume goes on", file=sys.stderr)
         raise
-    found.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
+    cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
     if not options.quiet:
-        print(found.text(folder, beside))
+        print(cars.text(folder, beside))
 
 
 main = command(parser, _job)

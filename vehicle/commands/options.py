@@ -69,8 +69,8 @@ def output_options(parser: Parser, path: Path | None, *, default: str = "", meta
         default: default path for the help, if `path` is None.
         metavar: DIR, or FILE with its ending.
     """
-    what = "folder" if metavar == "DIR" else "file"
-    text = f"{what} of the results; {default or path} by default, and the next free name where that exists"
+    destination = "folder" if metavar == "DIR" else "file"
+    text = f"{destination} of the results; {default or path} by default, and the next free name where that exists"
     parser.add_argument("--output", type=Path, default=path, metavar=metavar, help=text)
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
 
@@ -87,17 +87,17 @@ def extra_output_options(parser: Parser, files: str) -> None:
     group.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
-def film_name(given: str, default: str) -> Path:
+def film_name(value: str, default: str) -> Path:
     """Return the path of a film.
 
     Args:
-        given: value of --video; empty for the default.
+        value: value of --video; empty for the default.
         default: default path.
 
     Raises:
         ConfigurationError: it does not end in .mp4.
     """
-    name = Path(given or default)
+    name = Path(value or default)
     if name.suffix != ".mp4":
         raise ConfigurationError(f"--video {name}: a film is written as .mp4; set FILE.mp4")
     return name

@@ -93,31 +93,31 @@ class Parser(argparse.ArgumentParser):
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse the arguments; reject options of earlier versions and of groups that are not active."""
-        words = [str(word) for word in (args or ())]
-        for first, second in pairwise([*words, ""]):
+        arguments = [str(word) for word in (args or ())]
+        for first, second in pairwise([*arguments, ""]):
             for pattern, message in self.former_words:
                 if pattern.match(f"{first} {second}"):
                     raise ConfigurationError(message)
-        options, rest = super().parse_known_args(args, namespace)
-        given = self._given(words)
+        options, unknown = super().parse_known_args(args, namespace)
+        typed = self._given(arguments)
         for scope in self.scopes.values():
             if scope.active is not None and not scope.active(options):
-                _refuse(scope, given)
+                _refuse(scope, typed)
         # Options and scopes of a subparser are in the namespace already.
-        options.given = given | getattr(options, "given", {})
+        options.given = typed | getattr(options, "given", {})
         options.scopes = self.scopes | getattr(options, "scopes", {})
-        return options, rest
+        return options, unknown
 
-    def _given(self, words: Sequence[str]) -> dict[str, str]:
+    def _given(self, arguments: Sequence[str]) -> dict[str, str]:
         """Return the options of a command line: destination to the option as typed."""
-        found: dict[str, str] = {}
-        for word in words:
+        options: dict[str, str] = {}
+        for word in arguments:
             if word == "--":
                 break
             option = word.partition("=")[0]
             if action := self._option_string_actions.get(option):
-                found[action.dest] = option
-        return found
+                options[action.dest] = option
+        return options
 
     def _parse_optional(self, arg_string: str) -> Any:
         """Parse a word with a single minus as a value; argparse does this for plain numbers only."""
@@ -145,7 +145,7 @@ def refuse_idle(options: argparse.Namespace, title: str) -> None:
     _refuse(options.scopes[title], options.given)
 
 
-def _refuse(scope: Scope, given: dict[str, str]) -> None:
+def _refuse(scope: Scope, typed: dict[str, str]) -> None:
     for action in scope.options:
-        if word := given.get(action.dest):
+        if word := typed.get(action.dest):
             raise ConfigurationError(f"{word}: belongs to {scope.needs}")

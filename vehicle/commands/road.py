@@ -89,8 +89,8 @@ def road_of(road: str | Path, options: argparse.Namespace) -> Road:
     choice = Choice()
     if isinstance(options.speed, str) and hasattr(options, "picks"):
         # --rate is that of the run; the times are those of the file.
-        own = {**vars(options), "rate": None}
-        choice = record_choice(argparse.Namespace(**own), "height", known=("speed",)) or Choice()
+        settings = {**vars(options), "rate": None}
+        choice = record_choice(argparse.Namespace(**settings), "height", known=("speed",)) or Choice()
     numbers = {name: value for name in (*ROAD_NUMBERS, "tyre") if (value := getattr(options, name, None)) is not None}
     return Road(road, choice=choice, **numbers)
 

@@ -20,19 +20,19 @@ def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
     Raises:
         ConfigurationError: a folder without files.
     """
-    found: list[str] = []
+    paths: list[str] = []
     for name in names:
         folder = Path(name)
         if not folder.is_dir():
-            found.append(name)
+            paths.append(name)
             continue
-        files = sorted(str(one) for one in folder.iterdir() if one.is_file() and not one.name.startswith("."))
+        files = sorted(str(file) for file in folder.iterdir() if file.is_file() and not file.name.startswith("."))
         if not files:
             raise ConfigurationError(
                 f"{name}: a folder without files; give measurement files, or a folder that has some"
             )
-        found += files
-    return list(dict.fromkeys(found)), len(found) > 1 or any(Path(name).is_dir() for name in names)
+        paths += files
+    return list(dict.fromkeys(paths)), len(paths) > 1 or any(Path(name).is_dir() for name in names)
 
 
 def each_file(

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
     """Return a list in words, with a text for each wheel from its name and its side."""
-    words = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
-    return last.join(word for word in (", ".join(words[:-1]), words[-1]) if word)
+    texts = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
+    return last.join(word for word in (", ".join(texts[:-1]), texts[-1]) if word)
 
 
 def summary_text(summary: RunSummary, output: Path) -> str:
@@ -64,24 +64,24 @@ def _comfort(summary: RunSummary) -> list[str]:
     """Return the lines of comfort at the seat rail and, for a car with seats, on the seat."""
     from vehicle.signals.records.run_summary import unweighted_rms
 
-    lines, places = [], summary["comfort"]
-    if "seat_rail" in places:
-        rms, (low, high) = unweighted_rms(places["seat_rail"])
+    lines, points = [], summary["comfort"]
+    if "seat_rail" in points:
+        rms, (low, high) = unweighted_rms(points["seat_rail"])
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
         lines.append(
             f"comfort     seat rail {rms['overall']:.4f} m/s2 unweighted RMS, {low:g} to {high:g} Hz ({axes}); "
-            f"{_weighted(places, 'seat_rail'):.4f} m/s2 weighted RMS (ISO 2631-1)"
+            f"{_weighted(points, 'seat_rail'):.4f} m/s2 weighted RMS (ISO 2631-1)"
         )
     if (ratio := summary["seat_value"]) is not None:
         lines.append(
-            f"            seat {_weighted(places, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
+            f"            seat {_weighted(points, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
             f"SEAT value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
         )
     return lines
 
 
-def _weighted(places: dict[str, ComfortSummary], place: str) -> float:
-    return float(places[place]["iso2631"]["vector_sum"]["weighted_rms"])
+def _weighted(comfort: dict[str, ComfortSummary], point: str) -> float:
+    return float(comfort[point]["iso2631"]["vector_sum"]["weighted_rms"])
 
 
 def _balance(solver: SolverSummary) -> str:

@@ -157,7 +157,7 @@ CASES = {
         "nodes.csv", line("1,", "11,9.0,0.0,0.4"), MARKET, "node 11 was at [9.0, 0.0, 0.4] before"
     ),
     "node missing": Case("nodes.csv", line("1,", None), MARKET, "node 1 of the matrices has no place"),
-    "no nodes given": Case("K.mtx", nothing, MARKET[:4], "need --nodes too", 2),
+    "no nodes given": Case("K.mtx", nothing, MARKET[:4], "set --nodes too", 2),
     "no dofs given": Case("K.mtx", nothing, (*MARKET[:4], *MARKET[6:]), "needs --dofs", 2),
     "no mass given": Case("K.mtx", nothing, ("import", "K.mtx"), "needs --mass, --nodes and --dofs", 2),
     "map of three": Case(

@@ -221,13 +221,13 @@ def test_a_mode_of_the_page_is_that_of_the_car(reported):
 
 def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(reported, capsys):
     text = unescape(re.sub(r"<[^>]+>", "", reported.text))
-    words = "the contributions to the vertical acceleration at the seat rail are"
-    told = re.findall(rf"At ([\d.]+) Hz {words} (.+?) [+-]\d+ %", text)
+    start = "the contributions to the vertical acceleration at the seat rail are"
+    told = re.findall(rf"At ([\d.]+) Hz {start} (.+?) [+-]\d+ %", text)
     assert 1 <= len(told) <= 3
     peaks = json.loads((reported.folder / "summary.json").read_text())["peaks"]["seat_rail_acc_z"]
     highest = max(peaks, key=lambda peak: peak["magnitude"])["frequency_hz"]
     first = next(name for at, name in told if float(at) == pytest.approx(highest, abs=0.051))
-    (state,) = re.findall(r"linear car with dampers (\w+): `python -m vehicle body participation`", text)
+    (state,) = re.findall(r"linear car with dampers (\w+); see `python -m vehicle body participation`", text)
     words = ["participation", "--at", str(highest), "--damper", state, "--json"]
     assert body_command([*words, "--vehicle", str(reported.folder / "vehicle.toml")]) == 0
     parts = {one["name"]: one["share"] for one in json.loads(capsys.readouterr().out)["contributions"]}

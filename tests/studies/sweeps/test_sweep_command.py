@@ -80,7 +80,7 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
         (["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"], "the nearest is front.damper.viscous", 2),
         (["--vary", "damper.vicsous=1000"], "varied parameter damper.vicsous=1000: no parameter damper.vicsous", 2),
-        (["--vary", "damper.viscous=1000", "--resume", "--force"], "give one of them", 2),
+        (["--vary", "damper.viscous=1000", "--resume", "--force"], "set only one of them", 2),
         (["--vary", "damper.viscous=1000", "--executor", "here"], "allowed are dask://host:port", 2),
         (["--table", "missing.csv"], "cannot be read", 3),
         (["--vary", "damper.viscous=1000", "--executor", "..:x"], "--executor ..:x: TypeError", 2),

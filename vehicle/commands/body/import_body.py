@@ -165,7 +165,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
     require_output(options)
     _check_numbers(options)
-    places = vehicle.composition.attachments()
+    points = vehicle.composition.attachments()
     near = {
         "tolerance": 1e-3 * options.point_distance,
         "spread": 1e-3 * options.spread,
@@ -173,7 +173,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     }
     origin = _origin(options.origin)
     matrices = _matrices(options)
-    idle = (MODES,) if matrices is not None else (MATRICES, FILES)
+    idle: tuple[str, ...] = (MODES,) if matrices is not None else (MATRICES, FILES)
     if matrices is not None and options.file.suffix == ".sti":
         idle = (MODES, FILES)
     elif matrices is None and options.file.suffix != ".frd":
@@ -186,26 +186,26 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
         body = matrices.scaled(*units.sizes).placed(options.axes, origin)
         body = replace(body, source=f"{body.source}, {units.words}")
         notices.append(units.words)
-        require_size(body.positions, places, units)
+        require_size(body.positions, points, units)
         require_mass(body.mass_properties().mass, weight.mass, units)
-        found = interfaces(body, places, **near)
-        modes = modes_of_matrices(body, options.up_to, found, options.method, options.attachment_modes)
+        attached = interfaces(body, points, **near)
+        modes = modes_of_matrices(body, options.up_to, attached, options.method, options.attachment_modes)
         require_first_mode(float(modes.frequencies[0]), units)
     else:
         from vehicle.model.flexbody.sources.mode_shapes import normalised
 
-        given = _given_modes(options, units, weight.mass, places).placed(options.axes, origin)
+        shapes = _given_modes(options, units, weight.mass, points).placed(options.axes, origin)
         notices += [units.words] if options.file.suffix == ".frd" else []
-        found = interfaces(given.body, places, **near)
-        residual = read_residuals(options.residual, places) if options.residual else {}
-        modes = normalised(given, weight, options.modal_mass, options.up_to, residual)
-    model = superelement_of(modes, found, name=options.name or options.file.stem, damping=options.damping)
+        attached = interfaces(shapes.body, points, **near)
+        residual = read_residuals(options.residual, points) if options.residual else {}
+        modes = normalised(shapes, weight, options.modal_mass, options.up_to, residual)
+    model = superelement_of(modes, attached, name=options.name or options.file.stem, damping=options.damping)
     write(options, model)
     print("\n".join([*(f"note: {notice}" for notice in (*notices, *modes.notices)), *report(model, vehicle)]))
     print("points of the car")
-    for place in found:
-        which = f"{place.nodes} nodes, the nearest" if place.nodes > 1 else "a node"
-        print(f"  {place.name:<28} {which} {1e3 * place.distance:.2f} mm away")
+    for interface in attached:
+        which = f"{interface.nodes} nodes, the nearest" if interface.nodes > 1 else "a node"
+        print(f"  {interface.name:<28} {which} {1e3 * interface.distance:.2f} mm away")
 
 
 def _matrices(options: argparse.Namespace) -> Any:
@@ -231,7 +231,7 @@ def _matrices(options: argparse.Namespace) -> Any:
     return read_matrices(file, options.mass, options.dofs, options.nodes)
 
 
-def _given_modes(options: argparse.Namespace, units: Units, mass: float, places: Mapping[str, Point]) -> GivenModes:
+def _given_modes(options: argparse.Namespace, units: Units, mass: float, points: Mapping[str, Point]) -> GivenModes:
     """Read modes: from CalculiX (.frd) in the units of the options, or from a universal file."""
     from vehicle.model.flexbody.sources.frd import read_frd
     from vehicle.model.flexbody.sources.mode_shapes import modes_of_measurement
@@ -239,10 +239,10 @@ def _given_modes(options: argparse.Namespace, units: Units, mass: float, places:
     from vehicle.signals.records.reader import read_record
 
     if options.file.suffix == ".frd":
-        given = read_frd(options.file, *units.sizes)
-        require_size(given.body.positions, places, units)
-        require_level(given.vectors, given.modal_mass, mass, units)
-        return given
+        modes = read_frd(options.file, *units.sizes)
+        require_size(modes.body.positions, points, units)
+        require_level(modes.vectors, modes.modal_mass, mass, units)
+        return modes
     return modes_of_measurement(read_record(options.file))
 
 
@@ -251,8 +251,8 @@ def _vehicle_mass(vehicle: Vehicle) -> MassProperties:
     from vehicle.model.flexbody.mass_properties import MassProperties
     from vehicle.model.flexbody.rigid_body import rigid_body
 
-    own = rigid_body(vehicle.body)
-    return MassProperties(mass=own.mass, cog=own.cog, inertia=own.inertia)
+    body = rigid_body(vehicle.body)
+    return MassProperties(mass=body.mass, cog=body.cog, inertia=body.inertia)
 
 
 def _origin(text: str) -> tuple[float, float, float]:
@@ -269,7 +269,7 @@ def _check_numbers(options: argparse.Namespace) -> None:
     """Check the numeric options of an import; NaN is outside every range."""
     from vehicle.model.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
 
-    most = 1e3 * LARGEST_TOLERANCE
+    limit = 1e3 * LARGEST_TOLERANCE
     for name, value, allowed, text in (
         ("--up-to", options.up_to, 0.0 < options.up_to < math.inf, "a frequency above 0 Hz"),
         (
@@ -282,8 +282,8 @@ def _check_numbers(options: argparse.Namespace) -> None:
         (
             "--point-distance",
             options.point_distance,
-            0.0 < options.point_distance <= most,
-            f"above 0, up to {most:g} mm",
+            0.0 < options.point_distance <= limit,
+            f"above 0, up to {limit:g} mm",
         ),
         ("--spread", options.spread, 0.0 <= options.spread < math.inf, "0 mm or a radius"),
         (

@@ -46,10 +46,10 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     from vehicle.commands.body.shown_numbers import numbers
 
     try:
-        found = numbers(model, vehicle, levels(model, vehicle), _bare(model, vehicle))
+        content = numbers(model, vehicle, levels(model, vehicle), _bare(model, vehicle))
     except DataError:
-        found = numbers(model, vehicle, {}, None)
-    print(json.dumps(found, indent=2, allow_nan=False))
+        content = numbers(model, vehicle, {}, None)
+    print(json.dumps(content, indent=2, allow_nan=False))
 
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
@@ -79,19 +79,19 @@ def mass_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Return lines with mass, CoG and inertia about the CoG, of the model and of the vehicle."""
     from vehicle.model.flexbody.rigid_body import rigid_body
 
-    own, lines = rigid_body(vehicle.body), [f"{'':<18} {'model':>10} {'vehicle':>10} {'difference':>11}"]
+    body, lines = rigid_body(vehicle.body), [f"{'':<18} {'model':>10} {'vehicle':>10} {'difference':>11}"]
 
     def line(name: str, mine: float, theirs: float, digits: int) -> None:
         apart = f"{mine - theirs:>+z11.{digits}f}"
         lines.append(f"{name:<18} {mine:>z10.{digits}f} {theirs:>z10.{digits}f} {apart}")
 
-    line("mass [kg]", model.mass, own.mass, 2)
-    for axis, mine, theirs in zip("xyz", model.cog, own.cog, strict=True):
+    line("mass [kg]", model.mass, body.mass, 2)
+    for axis, mine, theirs in zip("xyz", model.cog, body.cog, strict=True):
         line(f"CoG {axis} [m]", float(mine), float(theirs), 4)
     for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
         sign = 1.0 if i == j else -1.0  # products as integrals, as in the vehicle file
         name = f"I{'xyz'[i]}{'xyz'[j]} [kg m2]"
-        line(name, sign * float(model.inertia[i, j]), sign * float(own.inertia[i, j]), 1)
+        line(name, sign * float(model.inertia[i, j]), sign * float(body.inertia[i, j]), 1)
     lines.append("  moments about the CoG, products as integrals; the car takes those of the vehicle")
     return lines
 
@@ -110,10 +110,10 @@ def levels(model: Superelement, vehicle: Vehicle) -> dict[str, Any]:
 
     from vehicle.model.flexbody.superelement import attached_nodes
 
-    places = vehicle.composition.attachments()
-    nodes = attached_nodes(model, places)
+    points = vehicle.composition.attachments()
+    nodes = attached_nodes(model, points)
     scale = float(np.sqrt(model.mass))
-    return {name: scale * model.shapes[:, model.node_index(nodes[at])] for name, at in places.items() if at in nodes}
+    return {name: scale * model.shapes[:, model.node_index(nodes[at])] for name, at in points.items() if at in nodes}
 
 
 def attachment_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
@@ -122,12 +122,14 @@ def attachment_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
 
     count = min(len(model.frequencies), COLUMNS)
     cut = "" if count == len(model.frequencies) else f"; the first {count} modes, all with --output"
-    found = {name: np.linalg.norm(one, axis=1) for name, one in levels(model, vehicle).items()}
+    amplitudes = {name: np.linalg.norm(shape, axis=1) for name, shape in levels(model, vehicle).items()}
     lines = [
         f"participation of attachments and output points: |shape| over its mean in the body, sqrt(m) |Phi| [-]{cut}",
         f"  {'mode':<28}" + "".join(f"{number:>6}" for number in range(1, count + 1)),
     ]
-    return lines + [f"  {name:<28}" + "".join(f"{one:>6.2f}" for one in own[:count]) for name, own in found.items()]
+    return lines + [
+        f"  {name:<28}" + "".join(f"{value:>6.2f}" for value in values[:count]) for name, values in amplitudes.items()
+    ]
 
 
 def residual_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
@@ -136,9 +138,9 @@ def residual_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
 
     if model.residual:
         lines = ["residual flexibility [m/N]: along x, y, z, and the largest value in any direction"]
-        for name, own in model.residual.items():
-            along = "".join(f"{value:>11.3g}" for value in np.diag(own))
-            lines.append(f"  {name:<28}{along}{np.linalg.eigvalsh(own)[-1]:>11.3g}")
+        for name, flexibility in model.residual.items():
+            along = "".join(f"{value:>11.3g}" for value in np.diag(flexibility))
+            lines.append(f"  {name:<28}{along}{np.linalg.eigvalsh(flexibility)[-1]:>11.3g}")
     else:
         lines = ["residual flexibility: none known"]
     bare = _bare(model, vehicle)
@@ -154,8 +156,12 @@ def _bare(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Return the points of connections to the body whose node has no residual flexibility."""
     from vehicle.model.flexbody.superelement import attached_nodes
 
-    own = vehicle.composition
-    acting = {one.point: one.at for one in own.connections if "body" in (one.moving, one.carrier)}
+    car = vehicle.composition
+    acting = {
+        connection.point: connection.at
+        for connection in car.connections
+        if "body" in (connection.moving, connection.carrier)
+    }
     nodes = attached_nodes(model, acting)
     return [name for name, at in acting.items() if nodes.get(at) not in model.residual]
 
@@ -164,15 +170,17 @@ def rotation_lines(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Return lines with the points of rotational stiffness at which the model has, or lacks, nodal rotations."""
     from vehicle.model.flexbody.superelement import attached_nodes
 
-    turning = {
-        one.point: one.at
-        for one in vehicle.composition.connections
-        if "body" in (one.moving, one.carrier) and one.law is not None and one.law.rotational_stiffness > 0.0
+    stiff = {
+        connection.point: connection.at
+        for connection in vehicle.composition.connections
+        if "body" in (connection.moving, connection.carrier)
+        and connection.law is not None
+        and connection.law.rotational_stiffness > 0.0
     }
-    nodes = attached_nodes(model, turning)
-    unknown = [name for name, at in turning.items() if nodes[at] not in model.rotations]
-    known = [name for name in turning if name not in unknown]
-    lines = [f"rotations of nodes under rotational stiffness: known at {', '.join(known)}"] if known else []
+    nodes = attached_nodes(model, stiff)
+    unknown = [name for name, at in stiff.items() if nodes[at] not in model.rotations]
+    present = [name for name in stiff if name not in unknown]
+    lines = [f"rotations of nodes under rotational stiffness: known at {', '.join(present)}"] if present else []
     if unknown:
         lines.append(
             f"rotations of nodes under rotational stiffness: unknown at {', '.join(unknown)}; the body is rigid "

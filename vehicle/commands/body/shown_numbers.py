@@ -46,7 +46,7 @@ def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], ba
             for frequency, ratio, name in modes
         ],
         "on_this_car": bare is not None,
-        "participation": {name: np.linalg.norm(one, axis=1).tolist() for name, one in levels.items()},
-        "residual_m_per_n": {name: np.asarray(own).tolist() for name, own in model.residual.items()},
+        "participation": {name: np.linalg.norm(shape, axis=1).tolist() for name, shape in levels.items()},
+        "residual_m_per_n": {name: np.asarray(flexibility).tolist() for name, flexibility in model.residual.items()},
         "without_residual": bare,
     }

@@ -117,9 +117,9 @@ class Car:
 
     def _anew(self, overrides: Iterable[str]) -> Vehicle:
         """Return the parameters of this car with other values, composed again from the vehicle table."""
-        own, folder = self.vehicle.table, self.folder
-        optional = partial(optional_paths, own, folder or Path())
-        return vehicle_of(varied_table(own, list(overrides), optional, self.overrides), folder)
+        table, folder = self.vehicle.table, self.folder
+        optional = partial(optional_paths, table, folder or Path())
+        return vehicle_of(varied_table(table, list(overrides), optional, self.overrides), folder)
 
     def __repr__(self) -> str:
         """One line."""
@@ -282,11 +282,11 @@ class Car:
         """Return the run on a signal; arguments and errors as of `run`."""
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        known = self.vehicle.channels
-        self.vehicle.require_channels(channels or (), (*known, *self.vehicle.requested_channels))
+        defaults = self.vehicle.channels
+        self.vehicle.require_channels(channels or (), (*defaults, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)
-        names = known if channels is None else channels
-        more = [name for name in names if name not in known]
+        names = defaults if channels is None else channels
+        more = [name for name in names if name not in defaults]
         loads = [name for name in more if name in self.vehicle.load_channels]
         require_samples(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"

@@ -111,7 +111,9 @@ class Road:
             return None
         if self.tyre not in (None, "rolling", "standing"):
             raise ConfigurationError(f"tyre: found {self.tyre!r}, must be rolling or standing")
-        on_blocks = any(one.ground for one in vehicle.composition.connections if not isinstance(one.law, Tyre))
+        on_blocks = any(
+            connection.ground for connection in vehicle.composition.connections if not isinstance(connection.law, Tyre)
+        )
         if self.tyre == "standing" or (self.tyre is None and on_blocks):
             return 0.0 if vehicle.driving.rolling else None
         return math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6

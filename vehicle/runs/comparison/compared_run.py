@@ -66,8 +66,8 @@ def compare_run(
     if not isinstance(measured, Measured):
         asked = choice or Choice()
         asked = replace(asked, channels={**asked.channels, **(channels or {})})
-        known = tuple(simulated.record.channels)
-        measured = read_measured(Path(measured), known, asked, turned=turned, window=window)
+        names = tuple(simulated.record.channels)
+        measured = read_measured(Path(measured), names, asked, turned=turned, window=window)
     return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
 
 
@@ -113,10 +113,12 @@ def comparison_of(
         notices += clock_advice(parts, float(step), delay, drift, command)
         notices += [*sign_and_unit(parts), *unlike_copies(records)]
         judged = {part.channel for part in parts if part.known}
-    for one in responses:
-        if one.channel not in judged:
-            weight = np.nan_to_num(one.measured_coherence, nan=1.0) * np.nan_to_num(one.simulated_coherence, nan=1.0)
-            notices += response_faults(one.channel, one.measured, one.simulated, weight)
+    for response in responses:
+        if response.channel not in judged:
+            weight = np.nan_to_num(response.measured_coherence, nan=1.0) * np.nan_to_num(
+                response.simulated_coherence, nan=1.0
+            )
+            notices += response_faults(response.channel, response.measured, response.simulated, weight)
     if not responses and not records:
         raise DataError(f"{measured.file.path}: no channel is also in the run {simulated.name}")
     return Comparison(

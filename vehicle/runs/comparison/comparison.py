@@ -83,30 +83,30 @@ class Comparison:
         bands = [
             {
                 "kind": "frf",
-                "channel": one.channel,
+                "channel": item.channel,
                 "low_hz": band.low,
                 "high_hz": band.high,
                 **{name: getattr(band, name) for name in BAND_HEADS},
-                "frac": one.frac,
-                "scaled_frac": one.scaled_frac,
-                "frequency_scale": one.scale,
+                "frac": item.frac,
+                "scaled_frac": item.scaled_frac,
+                "frequency_scale": item.scale,
             }
-            for one in self.responses
-            for band in one.bands
+            for item in self.responses
+            for band in item.bands
         ]
         times = [
             {
                 "kind": "time",
-                "channel": one.channel,
-                "rms_ratio": one.rms_ratio,
-                "correlation": one.correlation,
-                "iso18571": one.rating.overall,
-                **{name: getattr(one.rating, name) for name in ("corridor", "phase", "magnitude", "slope")},
-                "lag_s": one.lag,
-                "drift_ppm": PARTS * one.drift,
-                "window_s": one.rating.window,
+                "channel": item.channel,
+                "rms_ratio": item.rms_ratio,
+                "correlation": item.correlation,
+                "iso18571": item.rating.overall,
+                **{name: getattr(item.rating, name) for name in ("corridor", "phase", "magnitude", "slope")},
+                "lag_s": item.lag,
+                "drift_ppm": PARTS * item.drift,
+                "window_s": item.rating.window,
             }
-            for one in self.records
+            for item in self.records
         ]
         return [
             *sorted(bands, key=lambda row: -row["error"]),
@@ -115,9 +115,9 @@ class Comparison:
 
     def summary(self) -> dict[str, Any]:
         """Return the content of `compare.json`."""
-        together = None
+        agreement = None
         if self.signatures is not None:
-            together = {
+            agreement = {
                 "channels": self.signatures.channels,
                 "csac_mean": _mean(self.signatures.csac),
                 "csf_mean": _mean(self.signatures.csf),
@@ -132,32 +132,32 @@ class Comparison:
             "tyre": self.tyres or None,
             "responses": [
                 {
-                    "channel": one.channel,
-                    "frac": _plain(one.frac),
-                    "scaled_frac": _plain(one.scaled_frac),
-                    "frequency_scale": one.scale,
-                    "bands": [asdict(band) for band in one.bands],
+                    "channel": item.channel,
+                    "frac": _plain(item.frac),
+                    "scaled_frac": _plain(item.scaled_frac),
+                    "frequency_scale": item.scale,
+                    "bands": [asdict(band) for band in item.bands],
                 }
-                for one in self.responses
+                for item in self.responses
             ],
-            "signatures": together,
+            "signatures": agreement,
             "records": [
                 {
-                    "channel": one.channel,
-                    "unit": one.unit,
-                    "rms": one.rms,
-                    "rms_ratio": _plain(one.rms_ratio),
-                    "correlation": _plain(one.correlation),
-                    "iso18571": {**asdict(one.rating), "overall": one.rating.overall, "grade": one.rating.grade},
-                    "rated_rate_hz": 1.0 / float(one.time[1] - one.time[0]),
-                    "lag_s": _plain(one.lag),
-                    "lag_error_s": _plain(one.clock.shift_error) if one.clock else None,
-                    "drift_ppm": _plain(PARTS * one.drift),
-                    "drift_error_ppm": _plain(PARTS * one.clock.drift_error) if one.clock else None,
-                    "aligned_correlation": one.clock.correlation if one.clock else None,
-                    "repeats_after_s": one.clock.period if one.clock else None,
+                    "channel": item.channel,
+                    "unit": item.unit,
+                    "rms": item.rms,
+                    "rms_ratio": _plain(item.rms_ratio),
+                    "correlation": _plain(item.correlation),
+                    "iso18571": {**asdict(item.rating), "overall": item.rating.overall, "grade": item.rating.grade},
+                    "rated_rate_hz": 1.0 / float(item.time[1] - item.time[0]),
+                    "lag_s": _plain(item.lag),
+                    "lag_error_s": _plain(item.clock.shift_error) if item.clock else None,
+                    "drift_ppm": _plain(PARTS * item.drift),
+                    "drift_error_ppm": _plain(PARTS * item.clock.drift_error) if item.clock else None,
+                    "aligned_correlation": item.clock.correlation if item.clock else None,
+                    "repeats_after_s": item.clock.period if item.clock else None,
                 }
-                for one in self.records
+                for item in self.records
             ],
             "table": [{name: _plain(value) for name, value in row.items()} for row in self.rows()],
             "notices": list(self.notices),
@@ -165,19 +165,19 @@ class Comparison:
 
     def csv(self) -> str:
         """Return the content of `compare.csv`; columns of the other kind of row are empty."""
-        about = (
+        header = (
             f"# measured {self.measured}, simulated {self.run}; worst first; error: root of the mean of "
             "|ln(simulated / measured)|^2 weighted by both coherences; magnitude positive where simulated is larger; "
             "iso18571: ISO/TS 18571, 0 to 1, mean over windows of window_s at the full rate, weighted by their RMS; "
             "lag: positive where simulated is late, in the middle of the record; drift: its change per time"
         )
         rows = [",".join(_cell(row.get(name)) for name in HEADS) for row in self.rows()]
-        return "\n".join([about, ",".join(HEADS), *rows, ""])
+        return "\n".join([header, ",".join(HEADS), *rows, ""])
 
     def text(self) -> str:
         """Return the tables for the console."""
         rows = self.rows()
-        bands, times = ([row for row in rows if row["kind"] == kind] for kind in ("frf", "time"))
+        bands, times = ([row for row in rows if row["kind"] == section] for section in ("frf", "time"))
         lines = [f"measured {self.measured}, simulated {self.run}"]
         if bands:
             worst = bands[0]
@@ -213,7 +213,7 @@ class Comparison:
                 for row in times[:SHOWN]
             ]
             lines += _left(times)
-            windows = sorted({(one.rating.window, one.rating.windows) for one in self.records})
+            windows = sorted({(record.rating.window, record.rating.windows) for record in self.records})
             lines.append(
                 "ISO 18571: mean over "
                 + ", ".join(f"{count} window{'s' if count > 1 else ''} of {length:.4g} s" for length, count in windows)
@@ -236,8 +236,8 @@ def _left(rows: Sequence[object]) -> list[str]:
 
 
 def _mean(values: Any) -> float:
-    known = values[np.isfinite(values)]
-    return float(known.mean()) if known.size else 0.0
+    finite = values[np.isfinite(values)]
+    return float(finite.mean()) if finite.size else 0.0
 
 
 def _plain(value: Any) -> Any:

@@ -71,10 +71,10 @@ def edges_of(text: str) -> tuple[float, ...]:
         ConfigurationError: fewer than two numbers, or they do not increase.
     """
     try:
-        found = tuple(float(part) for part in text.split(","))
+        edges = tuple(float(part) for part in text.split(","))
     except ValueError:
-        found = ()
-    return checked_edges(found, f"--bands {text}")
+        edges = ()
+    return checked_edges(edges, f"--bands {text}")
 
 
 def checked_edges(edges: Sequence[float], where: str) -> tuple[float, ...]:
@@ -118,7 +118,7 @@ def compare_responses(
             f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: no common line"
         )
     bands = list(pairwise(edges))
-    found = []
+    comparisons = []
     for row, name in enumerate(measured.channels):
         if name not in simulated.channels:
             continue
@@ -131,7 +131,7 @@ def compare_responses(
         )
         weight = np.nan_to_num(coherences[0], nan=1.0) * np.nan_to_num(coherences[1], nan=1.0)
         stretched, scale = scaled_frac(frequency, top, bottom)
-        found.append(
+        comparisons.append(
             FrfComparison(
                 channel=name,
                 frequency=frequency,
@@ -145,9 +145,12 @@ def compare_responses(
                 bands=band_errors(frequency, top, bottom, weight, bands),
             )
         )
-    if len(found) < 2:
-        return tuple(found), None
-    tops, bottoms = np.array([one.measured for one in found]), np.array([one.simulated for one in found])
-    return tuple(found), Signatures(
-        frequency=frequency, csac=csac(tops, bottoms), csf=csf(tops, bottoms), channels=len(found)
+    if len(comparisons) < 2:
+        return tuple(comparisons), None
+    tops, bottoms = (
+        np.array([comparison.measured for comparison in comparisons]),
+        np.array([comparison.simulated for comparison in comparisons]),
+    )
+    return tuple(comparisons), Signatures(
+        frequency=frequency, csac=csac(tops, bottoms), csf=csf(tops, bottoms), channels=len(comparisons)
     )

@@ -57,8 +57,8 @@ class RecordComparison:
     @property
     def drift(self) -> float:
         """Change of the lag per time [-]; NaN where the record does not tell it."""
-        told = self.clock is not None and math.isfinite(self.clock.drift_error)
-        return self.clock.drift if told and self.clock is not None else math.nan
+        resolved = self.clock is not None and math.isfinite(self.clock.drift_error)
+        return self.clock.drift if resolved and self.clock is not None else math.nan
 
 
 def compare_records(
@@ -89,8 +89,8 @@ def compare_records(
         )
     grid = start + step * np.arange(count)
     parts = counterparts(measured, simulated, times)
-    found = [_compared(measured, simulated, times, grid, step, part) for part in parts]
-    return tuple(found), parts
+    comparisons = [_compared(measured, simulated, times, grid, step, part) for part in parts]
+    return tuple(comparisons), parts
 
 
 def _compared(
@@ -99,7 +99,7 @@ def _compared(
     """Compare one channel at common times."""
     truth = at_times(times, measured.channels[part.channel], grid, step)
     curve = at_times(simulated.time, simulated.channels[part.channel], grid, step)
-    size, other = (float(np.sqrt(np.mean(one**2))) for one in (truth, curve))
+    size, other = (float(np.sqrt(np.mean(values**2))) for values in (truth, curve))
     spread = float(np.std(truth) * np.std(curve))
     return RecordComparison(
         channel=part.channel,
@@ -124,14 +124,14 @@ def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
         records: see `compare_records`.
     """
     said = []
-    for number, one in enumerate(records):
+    for number, record in enumerate(records):
         for other in records[:number]:
-            if not np.ptp(one.measured) > 0.0 or one.unit != other.unit:
+            if not np.ptp(record.measured) > 0.0 or record.unit != other.unit:
                 continue
-            same = np.array_equal(one.measured, other.measured)
-            if same and not np.allclose(one.simulated, other.simulated, atol=1e-3 * float(np.std(one.simulated))):
+            same = np.array_equal(record.measured, other.measured)
+            if same and not np.allclose(record.simulated, other.simulated, atol=1e-3 * float(np.std(record.simulated))):
                 said.append(
-                    f"{other.channel} and {one.channel} have equal samples in the measurement, but not in the run: was "
-                    f"a channel copied? Choose another channel: --map {one.channel}=NAME"
+                    f"{other.channel} and {record.channel} have equal samples in the measurement, but not in the run: "
+                    f"was a channel copied? Choose another channel: --map {record.channel}=NAME"
                 )
     return said

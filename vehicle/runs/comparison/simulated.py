@@ -39,13 +39,13 @@ def of_run(run: Run) -> Simulated:
     """Return the simulated data of a run."""
 
     def responses(names: Sequence[str], window: float | None) -> FrfData:
-        found = run.frf(names, window=window)
+        response = run.frf(names, window=window)
         return FrfData(
-            frequency=found.frequency,
+            frequency=response.frequency,
             channels=tuple(names),
-            response=found.response,
-            coherence=found.coherence,
-            random_error=found.random_error,
+            response=response.response,
+            coherence=response.coherence,
+            random_error=response.random_error,
         )
 
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
@@ -66,8 +66,8 @@ def of_folder(folder: Path) -> Simulated:
 
     def responses(names: Sequence[str], window: float | None) -> FrfData | None:
         if window is not None:
-            found = estimated_frf(record, window)
-            return None if found is None else found[0]
+            estimate = estimated_frf(record, window)
+            return None if estimate is None else estimate[0]
         return read_frf(folder / "frf.csv") if (folder / "frf.csv").is_file() else None
 
     summary = available_summary(folder)

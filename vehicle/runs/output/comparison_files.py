@@ -70,5 +70,5 @@ def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, st
     """
     comparison = comparison_of(measured, of_run(run), command="python -m vehicle compare, after the run")
     files |= write_comparison(folder, comparison)
-    told = comparison.summary()
-    return {"file": comparison.measured, "table": told["table"], "notices": told["notices"]}
+    content = comparison.summary()
+    return {"file": comparison.measured, "table": content["table"], "notices": content["notices"]}

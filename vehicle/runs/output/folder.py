@@ -120,20 +120,20 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> 
     """
     try:
         folder = path.resolve()
-        here = Path.cwd()
+        current = Path.cwd()
     except (OSError, RuntimeError) as error:
         raise OutputError(f"--output {path}: cannot be reached ({error}); choose another folder") from None
     for file in protect:
         source = file.resolve()
         if folder == source or folder in source.parents:
             raise ConfigurationError(f"--output {path}: holds the input {file}; choose another folder")
-    if folder == here or folder in here.parents:
+    if folder == current or folder in current.parents:
         raise ConfigurationError(f"--output {path}: is the working folder, or holds it; give a folder of its own")
     if folder.exists() and not folder.is_dir():
         raise ConfigurationError(f"--output {path}: is a file; give a folder")
     if folder.exists() and not force:
         raise ConfigurationError(f"--output {path}: exists; give --force to replace it, or another folder")
-    parent = next(place for place in folder.parents if place.exists())
+    parent = next(parent for parent in folder.parents if parent.exists())
     if not os.access(parent, os.W_OK) or not parent.is_dir():
         raise OutputError(f"--output {path}: {parent} cannot be written; choose another folder")
     if folder.exists():
@@ -235,7 +235,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
         yield
         return
     path = folder.parent / f".{folder.name}.lock"
-    made = [parent for parent in path.parents if not parent.exists()]
+    new_folders = [parent for parent in path.parents if not parent.exists()]
     try:
         descriptor = _opened(path)
     except OSError as error:
@@ -262,7 +262,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
     finally:
         os.close(descriptor)
         with suppress(OSError):  # a folder that is in use by now
-            for parent in made:
+            for parent in new_folders:
                 parent.rmdir()
 
 

@@ -35,15 +35,15 @@ def write_own_files(folder: Path, car: Car) -> dict[str, str]:
     Raises:
         OutputError: a file cannot be written.
     """
-    found: dict[str, Path] = {}
+    files: dict[str, Path] = {}
     if car.folder is not None:
-        places = (car.folder, car.folder / "templates")
-        names = [str(i.numbers["template"]) for i in instances(car.vehicle.table, places).values()]
-        found = {f"templates/{file.name}": file for file in own_templates(names, places)}
+        folders = (car.folder, car.folder / "templates")
+        names = [str(i.numbers["template"]) for i in instances(car.vehicle.table, folders).values()]
+        files = {f"templates/{file.name}": file for file in own_templates(names, folders)}
     if body := own_body_file(car.vehicle, car.folder):
-        found[body.name] = body
-    for name, file in found.items():
+        files[body.name] = body
+    for name, file in files.items():
         (folder / name).parent.mkdir(exist_ok=True)
         text = file.read_bytes()
         write_whole(folder / name, lambda path, text=text: path.write_bytes(text))  # type: ignore[misc]
-    return {("template_" if "/" in name else "body_") + file.stem: name for name, file in found.items()}
+    return {("template_" if "/" in name else "body_") + file.stem: name for name, file in files.items()}

@@ -21,14 +21,14 @@ NO_SEAT = (
 
 def comfort_values(run: Run) -> dict[str, ComfortSummary]:
     """Return the comfort values at seat rail and seat, if recorded: unweighted RMS (Bommer 2006), and ISO 2631-1."""
-    return {place: _at(run, place) for place in (RAIL, SEAT) if _recorded(run, place)}
+    return {point: _at(run, point) for point in (RAIL, SEAT) if _recorded(run, point)}
 
 
 def seat_values(run: Run) -> SeatSummary | None:
     """Return the SEAT value of a run, by RMS and by dose; None for a car without seat, or a rail at rest."""
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
-    seat, rail = (run[f"{place}_acc_z"] for place in (SEAT, RAIL))
+    seat, rail = (run[f"{point}_acc_z"] for point in (SEAT, RAIL))
     if not np.any(rail):
         return None
     value = seat_value(run.recording.timestep, seat, rail, skip=run.skip)
@@ -40,7 +40,7 @@ def comfort_notices(run: Run) -> list[str]:
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if not _recorded(run, RAIL):
         return bare
-    found = [
+    drifting = [
         f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
         f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
         for axis, part in zip(
@@ -48,16 +48,16 @@ def comfort_notices(run: Run) -> list[str]:
         )
         if not part.settled
     ]
-    return found + bare
+    return drifting + bare
 
 
-def _recorded(run: Run, place: str) -> bool:
-    return all(f"{place}_acc_{axis}" in run.recording.channels for axis in AXES)
+def _recorded(run: Run, point: str) -> bool:
+    return all(f"{point}_acc_{axis}" in run.recording.channels for axis in AXES)
 
 
-def _at(run: Run, place: str) -> ComfortSummary:
-    value = run.comfort(place)
-    xyz = [run[f"{place}_acc_{axis}"] for axis in AXES]
+def _at(run: Run, point: str) -> ComfortSummary:
+    value = run.comfort(point)
+    xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
     rms: dict[str, float | None] = {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall}
     iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
     if run.signal.highest is None:

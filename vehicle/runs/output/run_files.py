@@ -120,10 +120,10 @@ def write_run(
     write_whole(folder / files["time"], lambda path: write_record(path, time_format, record, frame))
     if responses:
         first, *others = responses
-        further, words = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
+        further, motions = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
         write_whole(
             folder / "frf.csv",
-            lambda path: write_frf(path, first.response, channels, FRAME, further=further, words=words),
+            lambda path: write_frf(path, first.response, channels, FRAME, further=further, words=motions),
         )
         caption = _caption(run, first.response)
         write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
@@ -165,16 +165,19 @@ def _write_psd(path: Path, run: Run) -> None:
     """Write one-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
     window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
     each = [
-        power_spectral_density(recording.timestep, one[run.evaluated], window_s=window)
-        for one in recording.channels.values()
+        power_spectral_density(recording.timestep, values[run.evaluated], window_s=window)
+        for values in recording.channels.values()
     ]
-    found = each[0]
-    inside = found.frequency <= PSD_HIGHEST
+    first = each[0]
+    inside = first.frequency <= PSD_HIGHEST
     cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]
-    method = f"one-sided power spectral density: Hann windows of {window:g} s, {found.averages:.3g} averages"
+    method = f"one-sided power spectral density: Hann windows of {window:g} s, {first.averages:.3g} averages"
     method += f"; from {run.skip:g} s on"
     write_table(
-        path, cells, [found.frequency[inside], *(one.density[0, inside] for one in each)], [method, f"frame: {FRAME}"]
+        path,
+        cells,
+        [first.frequency[inside], *(values.density[0, inside] for values in each)],
+        [method, f"frame: {FRAME}"],
     )
 
 
@@ -236,7 +239,7 @@ def summarise(
     statistics, static, vehicle = run.recording.statistics, run.car.static, run.car.vehicle
     energies, wheels = statistics.energies, vehicle.wheels
     response, channels = (responses[0].response if responses else None), vehicle.acceleration_channels
-    motion_notice = what_moves([one.motion for one in responses]) if responses else ""
+    motion_notice = what_moves([motion.motion for motion in responses]) if responses else ""
     body = rigid_body(vehicle.body)
     return {
         "frame": FRAME,
@@ -298,7 +301,7 @@ def summarise(
             *body_notices(vehicle, run.car.overrides),
             *run.signal.notices,
             *([motion_notice] if motion_notice else []),
-            *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
+            *dict.fromkeys(reason for motion in responses for reason in motion.response.reasons),
             *comfort_notices(run),
             *statistics.notices,
             *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
@@ -317,19 +320,19 @@ def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -
     Degrees of freedom: averages that would give the random errors by H1, median and range over lines and channels.
     """
     response = responses[0].response
-    known = response.averages[np.isfinite(response.averages)]
+    averages = response.averages[np.isfinite(response.averages)]
     motions: list[MotionSummary] = []
-    for number, one in enumerate(responses):
-        motion: MotionSummary = {"plates": dict(one.motion), "columns": "<channel>"}
+    for number, independent in enumerate(responses):
+        motion: MotionSummary = {"plates": dict(independent.motion), "columns": "<channel>"}
         if number:
-            motion |= {"columns": f"<channel>_to_{one.first}", "peaks": _peaks(one.response, channels)}
+            motion |= {"columns": f"<channel>_to_{independent.first}", "peaks": _peaks(independent.response, channels)}
         motions.append(motion)
     return {
         "estimator": response.estimator,
         "window": response.window,
         "resolution_hz": response.resolution_hz,
-        "degrees_of_freedom": float(np.median(known)) if known.size else None,
-        "degrees_of_freedom_range": [float(known.min()), float(known.max())] if known.size else None,
+        "degrees_of_freedom": float(np.median(averages)) if averages.size else None,
+        "degrees_of_freedom_range": [float(averages.min()), float(averages.max())] if averages.size else None,
         "to": motions,
     }
 

@@ -37,11 +37,11 @@ def response_channels(responses: Sequence[MotionResponse], channels: Sequence[st
         responses: FRFs to each independent plate motion.
         channels: names of the rows.
     """
-    found = []
-    for one, (row, name) in product(responses, enumerate(channels)):
-        plate, response = f"plate_{one.first}", one.response
-        about = _point(name) | {"reference": f"{plate}+Z"}
-        found.append(
+    result = []
+    for motion, (row, name) in product(responses, enumerate(channels)):
+        plate, response = f"plate_{motion.first}", motion.response
+        attributes = _point(name) | {"reference": f"{plate}+Z"}
+        result.append(
             Channel(
                 name=f"{name} / {plate}",
                 values=response.response[row],
@@ -49,20 +49,20 @@ def response_channels(responses: Sequence[MotionResponse], channels: Sequence[st
                 axis=response.frequency,
                 kind="frequency",
                 function="frequency response",
-                **about,
+                **attributes,
             )
         )
-        found.append(
+        result.append(
             Channel(
                 name=f"{name} / {plate} coherence",
                 values=response.coherence[row],
                 axis=response.frequency,
                 kind="frequency",
                 function="coherence",
-                **about,
+                **attributes,
             )
         )
-    return tuple(found)
+    return tuple(result)
 
 
 def _point(name: str) -> dict[str, Any]:
@@ -80,13 +80,13 @@ def _point(name: str) -> dict[str, Any]:
 def geometry(of: Car) -> Geometry:
     """Return the output points of a car in the design position, and lines from each plate over its wheel."""
     car = of.vehicle.composition
-    points = {one.name: tuple(one.at) for one in car.outputs}
+    points = {output.name: tuple(output.at) for output in car.outputs}
     lines = []
     for wheel in car.wheels:
         plate = f"plate_{wheel.name}"
-        own = [name for name in points if re.search(rf"_{wheel.name}(_|$)", name)]
+        above_plate = [name for name in points if re.search(rf"_{wheel.name}(_|$)", name)]
         points[plate] = tuple(wheel.patch)
-        lines.append([plate, *sorted(own, key=lambda name: points[name][2])])
+        lines.append([plate, *sorted(above_plate, key=lambda name: points[name][2])])
     return Geometry(points=points, lines=[line for line in lines if len(line) > 1])
 
 
@@ -106,11 +106,11 @@ def writer(
         record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
         return lambda path: write_record(path, form, record, frame)
     histories = time_channels(run)
-    about = f"{run.car.vehicle.name}; {frame}"
+    title = f"{run.car.vehicle.name}; {frame}"
     write = BY_NAME[form].function("writer", "write")
     if form == "rpc":
-        return lambda path: write(path, histories, about)
+        return lambda path: write(path, histories, title)
     everything = histories + response_channels(responses, channels)
     if form == "uff":
-        return lambda path: write(path, everything, about, geometry(run.car))
-    return lambda path: write(path, everything, about)
+        return lambda path: write(path, everything, title, geometry(run.car))
+    return lambda path: write(path, everything, title)

@@ -50,8 +50,8 @@ def note(path: Path, digest: str = "") -> None:
     """
     folder, name = _entry(path)
     mark(folder)
-    known = written(folder)
-    if name not in known or (digest not in known[name] if digest else known[name]):
+    listed = written(folder)
+    if name not in listed or (digest not in listed[name] if digest else listed[name]):
         with (folder / MARKER).open("a", encoding="utf-8") as file:
             file.write(f"{digest}  {name}\n" if digest else f"{name}\n")
 
@@ -80,34 +80,34 @@ def written(folder: Path) -> dict[str, frozenset[str]]:
         lines = (folder / MARKER).read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError):
         return dict.fromkeys(_of_earlier_versions(folder), frozenset())
-    found: dict[str, frozenset[str]] = {MARKER: frozenset()}
+    listed: dict[str, frozenset[str]] = {MARKER: frozenset()}
     for line in lines:
         if (match := _LINE.fullmatch(line)) and not line.startswith("#"):
             digest, name = match.groups()
-            known = found.get(name)
-            any_content = not digest or (known is not None and not known)
-            found[name] = frozenset() if any_content else (known or frozenset()) | {digest}
-    return found
+            digests = listed.get(name)
+            any_content = not digest or (digests is not None and not digests)
+            listed[name] = frozenset() if any_content else (digests or frozenset()) | {digest}
+    return listed
 
 
 def _of_earlier_versions(folder: Path) -> set[str]:
     """Return the files of a folder without a list: of earlier versions and of a clone, by what marks each kind."""
-    found: set[str] = set()
+    names: set[str] = set()
     if (folder / "summary.json").is_file():
         files = _files_of_summary(folder / "summary.json")
-        found |= {"summary.json", *files} if files else set()
+        names |= {"summary.json", *files} if files else set()
     if (folder / "rows.jsonl").is_file():
-        found |= SWEEP
+        names |= SWEEP
     if (folder / "results.json").is_file():
-        found |= {path.name for path in folder.iterdir() if path.suffix in STUDY and path.is_file()}
-        found |= {f"figures/{path.name}" for path in (folder / "figures").glob("*.png")}
+        names |= {path.name for path in folder.iterdir() if path.suffix in STUDY and path.is_file()}
+        names |= {f"figures/{path.name}" for path in (folder / "figures").glob("*.png")}
     pages = (path for path in folder.glob("*.md") if path.is_file())
-    found |= {path.name for path in pages if GENERATED_PAGE.encode() in path.read_bytes()[:1000]}
+    names |= {path.name for path in pages if GENERATED_PAGE.encode() in path.read_bytes()[:1000]}
     car = folder / "car.xml"
     if car.is_file() and GENERATED.encode() in car.read_bytes()[:1000]:
         meshes = (f"meshes/{mesh.name}" for mesh in (folder / "meshes").glob("*.stl"))
-        found |= {"car.xml", "scene.xml", *meshes}
-    return found
+        names |= {"car.xml", "scene.xml", *meshes}
+    return names
 
 
 def _files_of_summary(path: Path) -> set[str]:
@@ -132,25 +132,25 @@ def _unchanged(path: Path, digests: frozenset[str] | None) -> bool:
 
 def foreign(folder: Path) -> list[str]:
     """Return the files in a folder and below that the program did not write, relative to it, sorted."""
-    known = written(folder)
-    return sorted(name for name in _files(folder) if name not in known and not _is_left_over(name, known))
+    listed = written(folder)
+    return sorted(name for name in _files(folder) if name not in listed and not _is_left_over(name, listed))
 
 
 def changed(folder: Path) -> list[str]:
     """Return the files in a folder and below that were changed since the program wrote them, sorted."""
-    known = written(folder)
-    return sorted(name for name in _files(folder) & known.keys() if not _unchanged(folder / name, known[name]))
+    listed = written(folder)
+    return sorted(name for name in _files(folder) & listed.keys() if not _unchanged(folder / name, listed[name]))
 
 
 def _files(folder: Path) -> set[str]:
     """Return all files and links in a folder and below, relative to the folder."""
-    found = (path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir())
-    return {path.relative_to(folder).as_posix() for path in found}
+    paths = (path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir())
+    return {path.relative_to(folder).as_posix() for path in paths}
 
 
-def _is_left_over(name: str, known: dict[str, frozenset[str]]) -> bool:
+def _is_left_over(name: str, listed: dict[str, frozenset[str]]) -> bool:
     """Return True for a temporary file of a killed process."""
-    return name != (final := _TEMPORARY.sub(r"\1", name)) and final in known
+    return name != (final := _TEMPORARY.sub(r"\1", name)) and final in listed
 
 
 def refuse_foreign(folder: Path, *, changes_only: bool = False) -> None:
@@ -164,13 +164,13 @@ def refuse_foreign(folder: Path, *, changes_only: bool = False) -> None:
         ConfigurationError: the message lists the files.
     """
     others = [] if changes_only else foreign(folder)
-    found = [f"files that no run wrote: {_some(others)}"] if others else []
+    faults = [f"files that no run wrote: {_some(others)}"] if others else []
     if edited := changed(folder):
-        found.append(f"files that were changed since a run wrote them: {_some(edited)}")
-    if found:
+        faults.append(f"files that were changed since a run wrote them: {_some(edited)}")
+    if faults:
         raise ConfigurationError(
-            f"--output {folder}: holds {'; and '.join(found)}; --force replaces only what a run wrote; move them away, "
-            "or give another folder"
+            f"--output {folder}: holds {'; and '.join(faults)}; --force replaces only files of a run; move the "
+            "others, or set another folder"
         )
 
 
@@ -197,11 +197,11 @@ def refuse_foreign_file(path: Path, option: str = "--output") -> None:
 
 def discard(folder: Path) -> None:
     """Remove the files of the program, and folders that become empty."""
-    known = written(folder)
+    listed = written(folder)
     for name in _files(folder):
-        if _is_left_over(name, known) or (name in known and _unchanged(folder / name, known[name])):
+        if _is_left_over(name, listed) or (name in listed and _unchanged(folder / name, listed[name])):
             (folder / name).unlink(missing_ok=True)
     inner = [path for path in folder.rglob("*") if path.is_dir() and not path.is_symlink()]
-    for place in [*sorted(inner, key=lambda path: -len(path.parts)), folder]:
-        if not any(place.iterdir()):
-            place.rmdir()
+    for emptied in [*sorted(inner, key=lambda path: -len(path.parts)), folder]:
+        if not any(emptied.iterdir()):
+            emptied.rmdir()

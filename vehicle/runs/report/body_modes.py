@@ -21,28 +21,28 @@ def body_modes(run: FinishedRun, state: str) -> list[str]:
         state: state of the dampers, "stuck" or "sliding".
     """
     car, peaks = run.car, run.summary["peaks"].get(PLACE)
-    on_body = any(one.name == "seat_rail" and one.on == "body" for one in car.vehicle.composition.outputs)
+    on_body = any(output.name == "seat_rail" and output.on == "body" for output in car.vehicle.composition.outputs)
     single = len(run.responses) == 1 and len(run.responses[0].motion) == 1
     if not (peaks and single and on_body and car.vehicle.body.flexible and len(car.model.superelement.frequencies)):
         return []
     highest = sorted(peaks, key=lambda peak: -peak["magnitude"])[:MOST_PEAKS]
     lines = sorted(float(peak["frequency_hz"]) for peak in highest)
     stuck = state == "stuck"
-    found = participation(car.model, car.matrices, car.load_rows, PLACE, lines, stuck=stuck, wheel=run.wheel)
+    result = participation(car.model, car.matrices, car.load_rows, PLACE, lines, stuck=stuck, wheel=run.wheel)
     sentences = []
     for at, frequency in enumerate(lines):
-        shares = found.shares[:, at]
+        shares = result.shares[:, at]
         order = [int(i) for i in np.argsort(-np.abs(shares)) if abs(shares[i]) >= LEAST][:MOST_PARTS]
-        parts = ", ".join(f"{found.names[i]} {_percent(shares[i])}" for i in order)
+        parts = ", ".join(f"{result.names[i]} {_percent(shares[i])}" for i in order)
         text = f"At {frequency:.1f} Hz the contributions to the vertical acceleration at the {WORDS} are {parts}"
         if modes := [i - 6 for i in order if i >= 6]:
-            drivers = found.attachment_shares[modes[0], :, at]
-            most = [int(i) for i in np.argsort(-np.abs(drivers))[:2]]
-            names = ", ".join(f"{found.attachments[i]} {_percent(drivers[i])}" for i in most)
+            drivers = result.attachment_shares[modes[0], :, at]
+            largest = [int(i) for i in np.argsort(-np.abs(drivers))[:2]]
+            names = ", ".join(f"{result.attachments[i]} {_percent(drivers[i])}" for i in largest)
             text += f"; the largest excitation of mode {modes[0] + 1} is at {names}"
         sentences.append(f"{text}.")
-    about = f"In phase with the sum, linear car with dampers {state}; see `python -m vehicle body participation`."
-    return [*sentences, about]
+    note = f"In phase with the sum, linear car with dampers {state}; see `python -m vehicle body participation`."
+    return [*sentences, note]
 
 
 def _percent(share: float) -> str:

@@ -20,9 +20,9 @@ NO_ERROR = (
 def comfort(run: FinishedRun) -> Markup:
     """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run."""
     parts, totals = [], {}
-    for place, value in run.summary["comfort"].items():
+    for point, value in run.summary["comfort"].items():
         iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
-        totals[PLACES.get(place, place)] = iso["vector_sum"]["weighted_rms"]
+        totals[PLACES.get(point, point)] = iso["vector_sum"]["weighted_rms"]
         heads = (
             "axis",
             "weighting",
@@ -55,17 +55,17 @@ def comfort(run: FinishedRun) -> Markup:
             )
         )
         span = f", {run.span} of the run" if run.span else ""
-        caption = f"{PLACES.get(place, place).capitalize()}, {iso['standard']}{span}"
+        caption = f"{PLACES.get(point, point).capitalize()}, {iso['standard']}{span}"
         parts.append(table(heads, rows, caption=caption, words=2))
         parts += [tag("p", text) for text in iso["reasons"]]
-    here = {word: [place for place, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
+    matches = {word: [point for point, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
     body = [
         tag(
             "tr",
             tag("td", _range(low, high)),
             tag("td", word),
-            tag("td", ", ".join(here[word])),
-            class_="here" if here[word] else None,
+            tag("td", ", ".join(matches[word])),
+            class_="here" if matches[word] else None,
         )
         for word, low, high in REACTIONS
     ]
@@ -88,8 +88,8 @@ def comfort(run: FinishedRun) -> Markup:
     )
     seat = run.summary.get("seat_value")
     if seat is not None:
-        words = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: the seat isolates below 1."
-        parts.append(tag("p", words))
+        text = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: the seat isolates below 1."
+        parts.append(tag("p", text))
     parts.append(tag("p", NO_ERROR))
     parts.append(tag("p", "The standard applies to the vibration on the seat surface; the seat rail is below it."))
     return joined(parts)

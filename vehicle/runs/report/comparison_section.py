@@ -20,8 +20,8 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
     for run in runs[1:]:
         heads += [run.name, "change"]
     rows = []
-    for name, unit in dict.fromkeys(key for one in figures for key in one):
-        values = [one.get((name, unit)) for one in figures]
+    for name, unit in dict.fromkeys(key for table_of_run in figures for key in table_of_run):
+        values = [table_of_run.get((name, unit)) for table_of_run in figures]
         cells = [number(values[0])]
         for value in values[1:]:
             cells += [number(value), difference(values[0], value, unit)]
@@ -67,12 +67,12 @@ def _overlay(runs: Sequence[FinishedRun]) -> Markup:
     }
     if len(with_response) > 1:
         channels = shared_channels([run for run, _ in with_response.values()], wanted)
-        words = "Vertical frequency responses of all runs"
-        parts.append(drawing(lambda path: plot_responses(path, with_response, channels, words), words))
+        title = "Vertical frequency responses of all runs"
+        parts.append(drawing(lambda path: plot_responses(path, with_response, channels, title), title))
     elif len(runs) > len(with_response):
         channels = shared_channels(runs, wanted)
-        words = "Power spectral densities of the vertical acceleration"
+        title = "Power spectral densities of the vertical acceleration"
         parts.append(
-            drawing(lambda path: plot_densities(path, {run.name: run for run in runs}, channels, words), words)
+            drawing(lambda path: plot_densities(path, {run.name: run for run in runs}, channels, title), title)
         )
     return joined(parts)

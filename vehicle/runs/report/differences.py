@@ -38,13 +38,13 @@ def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
     """
     if vehicle.name in CARS:
         return load_vehicle(vehicle_file(vehicle.name))
-    own, found = dict(flattened(vehicle.table)), dict[str, float]()
+    parameters, shares = dict(flattened(vehicle.table)), dict[str, float]()
     for name in CARS:
         other = dict(flattened(vehicle_table(vehicle_file(name))))
-        paths = {*own, *other}
-        found[name] = sum(own.get(path) != other.get(path) for path in paths) / len(paths)
-    nearest = min(found, key=lambda name: found[name])
-    return load_vehicle(vehicle_file(nearest)) if found[nearest] <= LARGEST_SHARE else None
+        paths = {*parameters, *other}
+        shares[name] = sum(parameters.get(path) != other.get(path) for path in paths) / len(paths)
+    nearest = min(shares, key=lambda name: shares[name])
+    return load_vehicle(vehicle_file(nearest)) if shares[nearest] <= LARGEST_SHARE else None
 
 
 def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list[str]]]:
@@ -58,13 +58,13 @@ def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list
     """
     tables = [dict(flattened(vehicle.table)) for vehicle in vehicles]
     paths = dict.fromkeys(path for table in tables for path in table)
-    found = []
+    changes = []
     for path in paths:
         values = [table.get(path) for table in tables]
         if any(value != values[0] for value in values[1:]):
             owner = vehicles[next(i for i, value in enumerate(values) if value is not None)]
-            found.append((path, _unit(owner, path), [_text(value) for value in values]))
-    return found
+            changes.append((path, _unit(owner, path), [_text(value) for value in values]))
+    return changes
 
 
 def _unit(vehicle: Vehicle, path: str) -> str:
@@ -80,7 +80,7 @@ def _text(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(_text(one) for one in value)}]"
+        return f"[{', '.join(_text(item) for item in value)}]"
     return str(value)
 
 
@@ -91,24 +91,26 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
         run: the run.
     """
     summary = run.summary
-    found: dict[tuple[str, str], float | None] = {}
-    for place, value in summary["comfort"].items():
-        words = place.replace("_", " ")
-        found[f"{words}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"]["weighted_rms"]
-        found |= {
-            (f"{words}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
+    figures: dict[tuple[str, str], float | None] = {}
+    for point, value in summary["comfort"].items():
+        label = point.replace("_", " ")
+        figures[f"{label}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"][
+            "weighted_rms"
+        ]
+        figures |= {
+            (f"{label}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
         }
     shares = slip_shares(summary)
     for wheel, share in shares.items():
-        found[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
-        found[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
+        figures[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
+        figures[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
     for channel in (f"knuckle_{run.wheel}_acc_z", "seat_rail_acc_z"):
         peaks = summary["peaks"].get(channel)
         if peaks:
             top = max(peaks, key=lambda peak: peak["magnitude"])
-            found[f"{channel}: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
-            found[f"{channel}: its height", "m/s² per m"] = top["magnitude"]
-    return found
+            figures[f"{channel}: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
+            figures[f"{channel}: its height", "m/s² per m"] = top["magnitude"]
+    return figures
 
 
 DIFFERENCES = {"s": "s", "%": "percentage points"}

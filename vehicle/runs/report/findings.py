@@ -42,17 +42,17 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
         modes: modes of the car, for dampers "stuck" and "sliding".
     """
     summary = run.summary
-    found = [Finding("Dampers", text) for text in _dampers(summary)]
-    found += [Finding("Resonances", text) for text in _resonances(run, modes)]
-    found += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
-    found += [Finding("Comfort", text) for text in _comfort(summary)]
-    found += [Finding("Linearity", text) for text in _linearity(run)]
-    return [*found, *(Finding("Computation", text) for text in _computation(summary))]
+    sentences = [Finding("Dampers", text) for text in _dampers(summary)]
+    sentences += [Finding("Resonances", text) for text in _resonances(run, modes)]
+    sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
+    sentences += [Finding("Comfort", text) for text in _comfort(summary)]
+    sentences += [Finding("Linearity", text) for text in _linearity(run)]
+    return [*sentences, *(Finding("Computation", text) for text in _computation(summary))]
 
 
 def _dampers(summary: RunSummary) -> list[str]:
     shares, limit = slip_shares(summary), 1e3 * summary["slip_share"]["slip_velocity"]
-    found = []
+    sentences = []
     for wheel, share in shares.items():
         side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]
         percent = "never" if first is None else f"for {100 * share:.2g} % of the time, first at {first:.3f} s"
@@ -62,13 +62,13 @@ def _dampers(summary: RunSummary) -> list[str]:
             state = "slides: friction and viscous damping act during much of the time"
         else:
             state = "alternates between stick and slip: its effect depends on the level of the input"
-        found.append(f"The {side} damper {state}. Its velocity exceeds {limit:g} mm/s {percent}.")
-    return found
+        sentences.append(f"The {side} damper {state}. Its velocity exceeds {limit:g} mm/s {percent}.")
+    return sentences
 
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[str]:
-    found = []
-    for channel, place in main_places(run).items():
+    sentences = []
+    for channel, point in main_places(run).items():
         peaks = run.summary["peaks"].get(channel)
         if peaks:
             top = max(peaks, key=lambda peak: peak["magnitude"])
@@ -78,11 +78,11 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
                 if nearest is None
                 else f", near the mode of {nearest.frequency:.1f} Hz ({nearest.description}; {state})"
             )
-            found.append(
-                f"The highest vertical resonance at the {place} is at {top['frequency_hz']:.1f} Hz{mode}: "
+            sentences.append(
+                f"The highest vertical resonance at the {point} is at {top['frequency_hz']:.1f} Hz{mode}: "
                 f"{number(top['magnitude'])} m/s² per m{of_plate(run)}."
             )
-    return found or ["No resonance was identified: the input excites none, or there are no FRFs."]
+    return sentences or ["No resonance was identified: the input excites none, or there are no FRFs."]
 
 
 def main_places(run: FinishedRun) -> dict[str, str]:
@@ -122,42 +122,42 @@ def damper_state(run: FinishedRun) -> str:
 
 
 def _comfort(summary: RunSummary) -> list[str]:
-    found = []
-    for place, words in (("seat_rail", "seat rail"), ("seat", "seat")):
-        value = summary["comfort"].get(place)
+    sentences = []
+    for point, label in (("seat_rail", "seat rail"), ("seat", "seat")):
+        value = summary["comfort"].get(point)
         if value is None:
             continue
         iso, (rms, (low, high)) = value["iso2631"], unweighted_rms(value)
         total = iso["vector_sum"]["weighted_rms"]
-        axis = max("xyz", key=lambda one: iso[one]["multiplying_factor"] * iso[one]["weighted_rms"])
-        found.append(
-            f"At the {words} the weighted acceleration is {number(total)} m/s²: {' to '.join(reactions(total))} "
+        axis = max("xyz", key=lambda direction: iso[direction]["multiplying_factor"] * iso[direction]["weighted_rms"])
+        sentences.append(
+            f"At the {label} the weighted acceleration is {number(total)} m/s²: {' to '.join(reactions(total))} "
             f"according to ISO 2631-1, annex C. The largest share is along {axis}. Unweighted, {low:g} to {high:g} "
             f"Hz: {number(rms['overall'])} m/s². Lower is better."
         )
-        factor = max((iso[one]["crest_factor"] or 0.0) for one in "xyz")
+        factor = max((iso[direction]["crest_factor"] or 0.0) for direction in "xyz")
         if factor > CREST_FACTOR_LIMIT:
-            found.append(
-                f"At the {words} the crest factor is {factor:.3g}, above {CREST_FACTOR_LIMIT:g}: the weighted RMS "
+            sentences.append(
+                f"At the {label} the crest factor is {factor:.3g}, above {CREST_FACTOR_LIMIT:g}: the weighted RMS "
                 "underestimates the discomfort; consider MTVV and VDV in the tables (ISO 2631-1, 6.2.1)."
             )
-    return found
+    return sentences
 
 
 def _linearity(run: FinishedRun) -> list[str]:
-    response, found = run.response, []
+    response, sentences = run.response, []
     if response is None:
         return ["There are no FRFs: see the notices." if run.summary["notices"] else "There are no FRFs."]
     rows = {name: row for row, name in enumerate(run.car.vehicle.acceleration_channels)}
-    for channel, place in ((f"knuckle_{run.wheel}_acc_z", "knuckle"), ("seat_rail_acc_z", "seat rail")):
+    for channel, point in ((f"knuckle_{run.wheel}_acc_z", "knuckle"), ("seat_rail_acc_z", "seat rail")):
         if channel not in rows:
             continue
         coherence = response.coherence[rows[channel]]
-        known = coherence[np.isfinite(coherence)]
-        if known.size:
-            low = float(np.mean(known < COHERENT))
-            found.append(
-                f"At the {place} the median of the coherence is {np.median(known):.3f}"
+        finite = coherence[np.isfinite(coherence)]
+        if finite.size:
+            low = float(np.mean(finite < COHERENT))
+            sentences.append(
+                f"At the {point} the median of the coherence is {np.median(finite):.3f}"
                 + (
                     f"; it is below {COHERENT:g} on {100 * low:.2g} % of the lines: there the response is nonlinear "
                     "or very small."
@@ -165,15 +165,15 @@ def _linearity(run: FinishedRun) -> list[str]:
                     else f", and never below {COHERENT:g}: the response is linear."
                 )
             )
-    return found
+    return sentences
 
 
 def _computation(summary: RunSummary) -> list[str]:
     solver = summary["solver"]
     residual = solver["energy_residual"]
     balance = "" if residual is None else f"; the error of the energy balance is {residual:.1e} of the input work"
-    found = [
+    sentences = [
         f"The {solver['engine']} engine took {number(solver['wall_s'])} s, {number(solver['realtime_factor'])} times "
         f"real time, with steps of {1e3 * solver['timestep_s']:g} ms{balance}."
     ]
-    return [*found, *(f"Warning: {text}" for text in solver["warnings"])]
+    return [*sentences, *(f"Warning: {text}" for text in solver["warnings"])]

@@ -83,11 +83,12 @@ class FinishedRun:
     @property
     def caption(self) -> str:
         """Caption of a plot: input, level, tyres and engine."""
-        given, solver = self.summary["input"], self.summary["solver"]
+        excitation, solver = self.summary["input"], self.summary["solver"]
         estimator = f"; estimator: {self.response.estimator}" if self.response is not None else ""
         return (
-            f"{Path(given['file']).name}, RMS {1e3 * given['rms_m']:.3g} mm at wheel {given['wheel']}, "
-            f"{given['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: {solver['engine']}"
+            f"{Path(excitation['file']).name}, RMS {1e3 * excitation['rms_m']:.3g} mm at wheel {excitation['wheel']}, "
+            f"{excitation['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
+            f"{solver['engine']}"
         )
 
 
@@ -108,14 +109,14 @@ def read_run(
     """
     summary = read_summary(folder)
     names, solver = summary["files"], summary["solver"]
-    places = {kind: folder / names[kind] for kind in ("vehicle", "time", "frf") if kind in names}
-    if missing := next((kind for kind in ("vehicle", "time") if kind not in places), None):
+    paths = {purpose: folder / names[purpose] for purpose in ("vehicle", "time", "frf") if purpose in names}
+    if missing := next((purpose for purpose in ("vehicle", "time") if purpose not in paths), None):
         raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{missing}: missing); run the simulation again")
-    for kind, path in places.items():
+    for purpose, path in paths.items():
         if not path.is_file():
-            raise DataError(f"{path}: missing, though summary.json lists it as {kind}; run it again")
+            raise DataError(f"{path}: missing, though summary.json lists it as {purpose}; run it again")
     if recording is None:
-        record = read_columns(places["time"])
+        record = read_columns(paths["time"])
         recording = Recording(
             time=record.time,
             channels=record.channels,
@@ -133,18 +134,18 @@ def read_run(
                 energies=None,
             ),
         )
-    own = car or _car(places["vehicle"], summary)
-    about = summary["frf"]
+    run_car = car or _car(paths["vehicle"], summary)
+    estimate = summary["frf"]
     frfs: tuple[MotionResponse, ...] = ()
-    if about is not None and "frf" in places:
-        motions = [motion["plates"] for motion in about.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
-        frfs = _responses(places["frf"], own.vehicle.acceleration_channels, about, motions)
+    if estimate is not None and "frf" in paths:
+        motions = [motion["plates"] for motion in estimate.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
+        frfs = _responses(paths["frf"], run_car.vehicle.acceleration_channels, estimate, motions)
     return FinishedRun(
         name=(place or folder).resolve().name,
         folder=folder,
         place=place or folder,
         summary=summary,
-        car=own,
+        car=run_car,
         recording=recording,
         responses=frfs,
     )
@@ -159,18 +160,18 @@ def _car(path: Path, summary: RunSummary) -> Car:
 
 
 def _responses(
-    path: Path, channels: Sequence[str], about: FrfSummary, motions: Sequence[dict[str, float]]
+    path: Path, channels: Sequence[str], estimate: FrfSummary, motions: Sequence[dict[str, float]]
 ) -> tuple[MotionResponse, ...]:
     """Read the FRFs to each motion of the plates.
 
     Args:
         path: table of FRFs.
         channels: names of the acceleration channels.
-        about: estimate of the FRFs, from the summary.
+        estimate: estimate of the FRFs, from the summary.
         motions: plates with their factors, for each motion.
     """
     table = read_frf(path)
-    found = []
+    responses = []
     for index, motion in enumerate(motions):
         ending = f"_to_{next(iter(motion))}" if index else ""
         missing = [name for name in channels if name + ending not in table.channels]
@@ -184,10 +185,10 @@ def _responses(
             random_error=table.random_error[rows],
             averages=np.full((len(rows), table.frequency.size), np.nan),
             segments=0,
-            window=about["window"],
-            estimator=about["estimator"],
-            resolution_hz=about["resolution_hz"],
+            window=estimate["window"],
+            estimator=estimate["estimator"],
+            resolution_hz=estimate["resolution_hz"],
             reasons=(),
         )
-        found.append(MotionResponse(motion=motion, response=response))
-    return tuple(found)
+        responses.append(MotionResponse(motion=motion, response=response))
+    return tuple(responses)

@@ -33,7 +33,7 @@ def tag(name: str, *content: object, **attributes: object) -> Markup:
         for key, value in attributes.items()
         if value is not None
     )
-    return Markup(f"<{name}{pairs}>{''.join(escaped(one) for one in content)}</{name}>")
+    return Markup(f"<{name}{pairs}>{''.join(escaped(item) for item in content)}</{name}>")
 
 
 def joined(parts: Iterable[object]) -> Markup:

@@ -31,26 +31,26 @@ ERROR = (
 
 def measured(run: FinishedRun) -> Markup | None:
     """Return the table of differences, largest first, and the pictures; None without a measurement."""
-    about = run.summary.get("measured")
-    if not about:
+    comparison = run.summary.get("measured")
+    if not comparison:
         return None
-    heads = list(dict.fromkeys(key for row in about["table"] for key in row))
-    rows = [[_cell(row.get(key)) for key in heads] for row in about["table"]]
-    words = [UNITS.get(head, head.replace("_", " ")) for head in heads]
+    heads = list(dict.fromkeys(key for row in comparison["table"] for key in row))
+    rows = [[_cell(row.get(key)) for key in heads] for row in comparison["table"]]
+    titles = [UNITS.get(head, head.replace("_", " ")) for head in heads]
     parts = [
-        tag("p", f"Measured: {about['file']}. The table is sorted by type of data, largest error first; {ERROR}"),
-        *([table(words, rows[:WORST], words=2)] if len(rows) > MANY else []),
-        shortened(f"All {len(rows)} rows", words, rows, words=2),
+        tag("p", f"Measured: {comparison['file']}. The table is sorted by type of data, largest error first; {ERROR}"),
+        *([table(titles, rows[:WORST], words=2)] if len(rows) > MANY else []),
+        shortened(f"All {len(rows)} rows", titles, rows, words=2),
     ]
-    for kind, name in run.summary["files"].items():
+    for purpose, name in run.summary["files"].items():
         path = run.folder / name
-        if kind.startswith("compare_") and path.suffix == ".png" and path.is_file():
+        if purpose.startswith("compare_") and path.suffix == ".png" and path.is_file():
             source = "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-            parts.append(tag("figure", tag("img", src=source, alt=kind.replace("_", " "))))
+            parts.append(tag("figure", tag("img", src=source, alt=purpose.replace("_", " "))))
     return joined(parts)
 
 
 def _cell(value: object) -> str:
     if isinstance(value, list | tuple):
-        return " to ".join(_cell(one) for one in value)
+        return " to ".join(_cell(item) for item in value)
     return number(value) if isinstance(value, float) or value is None else str(value)

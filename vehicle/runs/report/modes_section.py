@@ -20,30 +20,29 @@ VIEWS = {"corner": "Corner", "side": "Side", "front": "Front", "top": "Top"}
 
 def car_modes_of(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> list[dict[str, object]]:
     """Return the modes of each car; equal cars appear once."""
-    found: list[dict[str, object]] = []
+    sets: list[dict[str, object]] = []
     seen: list[tuple[FinishedRun, dict[str, object]]] = []
-    for run, own in zip(runs, modes, strict=True):
-        same = next((one for other, one in seen if other.car.vehicle == run.car.vehicle), None)
+    for run, car_modes in zip(runs, modes, strict=True):
+        same = next((entry for other, entry in seen if other.car.vehicle == run.car.vehicle), None)
         if same is None:
-            one = mode_set(run.name, run.wheel, car_wireframe(run.car.model), own)
-            seen.append((run, one))
-            found.append(one)
+            entry = mode_set(run.name, run.wheel, car_wireframe(run.car.model), car_modes)
+            seen.append((run, entry))
+            sets.append(entry)
         else:
             same["name"] = f"{same['name']}, {run.name}"
-    return found
+    return sets
 
 
 def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     """Return canvas, controls, gallery and tables of the modes."""
 
-    def select(words: str, name: str) -> Markup:
-        return tag("div", tag("label", words, for_=f"mode-{name}"), tag("select", id=f"mode-{name}"))
+    def select(label: str, name: str) -> Markup:
+        return tag("div", tag("label", label, for_=f"mode-{name}"), tag("select", id=f"mode-{name}"))
 
-    def slider(words: str, name: str, least: float, most: float, step: float, value: float) -> Markup:
-        control = (
-            f'<input type="range" id="mode-{name}" min="{least:g}" max="{most:g}" step="{step:g}" value="{value:g}">'
-        )
-        return joined([tag("label", words, for_=f"mode-{name}", class_="only-screen"), Markup(control)])
+    def slider(label: str, name: str, minimum: float, maximum: float, step: float, value: float) -> Markup:
+        limits = f'min="{minimum:g}" max="{maximum:g}" step="{step:g}"'
+        control = f'<input type="range" id="mode-{name}" {limits} value="{value:g}">'
+        return joined([tag("label", label, for_=f"mode-{name}", class_="only-screen"), Markup(control)])
 
     views = [tag("button", word, type="button", data_view=view) for view, word in VIEWS.items()]
     controls = tag(
@@ -73,9 +72,11 @@ def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         tag("div", id="mode-gallery", class_="gallery"),
     ]
     heads = ("mode shape", "frequency [Hz]", "damping ratio [%]")
-    for run, own in zip(runs, modes, strict=True):
-        for state, found in own.items():
-            rows = [(one.description, f"{one.frequency:.3f}", f"{100 * one.damping_ratio:.2f}") for one in found]
+    for run, car_modes in zip(runs, modes, strict=True):
+        for state, state_modes in car_modes.items():
+            rows = [
+                (mode.description, f"{mode.frequency:.3f}", f"{100 * mode.damping_ratio:.2f}") for mode in state_modes
+            ]
             title = f"{len(rows)} modes up to {HIGHEST_MODE:g} Hz, dampers {state}" + (
                 f": {run.name}" if len(runs) > 1 else ""
             )

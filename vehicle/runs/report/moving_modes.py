@@ -37,7 +37,7 @@ def mode_set(name: str, wheel: str, wire: CarWireframe, modes: Mapping[str, Sequ
         "points": np.rint(1e3 * wire.points).astype(int).ravel().tolist(),
         "lines": wire.lines.ravel().tolist(),
         "groups": wire.groups.tolist(),
-        "states": {state: [_mode(wire, mode) for mode in found] for state, found in modes.items()},
+        "states": {state: [_mode(wire, mode) for mode in state_modes] for state, state_modes in modes.items()},
     }
 
 

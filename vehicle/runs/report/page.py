@@ -42,12 +42,12 @@ def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] |
     if len(runs) > 1:
         parts += [("Comparison of the runs", "comparison", beside_each_other(runs))]
     done(0.1)
-    for index, (run, own) in enumerate(zip(runs, modes, strict=True)):
-        found = _of_run(run, own)
+    for index, (run, car_modes) in enumerate(zip(runs, modes, strict=True)):
+        run_parts = _of_run(run, car_modes)
         if len(runs) == 1:
-            parts += found
+            parts += run_parts
         else:
-            inner = joined(part for title, _, content in found for part in (tag("h3", title), content))
+            inner = joined(part for title, _, content in run_parts for part in (tag("h3", title), content))
             parts.append((run.name, f"run-{index + 1}", inner))
         done(0.1 + 0.8 * (index + 1) / len(runs))
     before = next((i for i, (_, anchor, _) in enumerate(parts) if anchor == "tables"), len(parts))
@@ -63,13 +63,13 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
     longer = [
         f"{run.place.resolve().parent.name}/{run.name}" if names.count(run.name) > 1 else run.name for run in runs
     ]
-    told = [f"{name} ({i + 1})" if longer.count(name) > 1 else name for i, name in enumerate(longer)]
-    return [dataclasses.replace(run, name=name) for run, name in zip(runs, told, strict=True)]
+    unique = [f"{name} ({i + 1})" if longer.count(name) > 1 else name for i, name in enumerate(longer)]
+    return [dataclasses.replace(run, name=name) for run, name in zip(runs, unique, strict=True)]
 
 
 def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
     """Return title, anchor and content of each section of a run."""
-    found = [
+    parts = [
         ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
         (
@@ -83,9 +83,9 @@ def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
     ]
     for title, anchor, content in (("Measured", "measured", measured(run)), ("Film", "film", sections.film(run))):
         if content is not None:
-            found.append((title, anchor, content))
+            parts.append((title, anchor, content))
     return [
-        *found,
+        *parts,
         ("All values", "tables", sections.tables(run)),
         ("How to repeat the run", "repeat", sections.repeating(run)),
     ]
@@ -100,7 +100,7 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
     policy = (
         f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src 'sha256-{allowed}'"
     )
-    about = "; ".join(dict.fromkeys(run.caption for run in runs))
+    captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
     pages = {"responses", "time", "modes", "comparison"}
     body = joined(
@@ -113,7 +113,7 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<link rel="icon" href="data:,">\n'
         f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
-        f"{tag('header', tag('h1', title), tag('p', about, class_='about'))}\n{links}\n<main>{body}</main>\n"
+        f"{tag('header', tag('h1', title), tag('p', captions, class_='about'))}\n{links}\n<main>{body}</main>\n"
         f'<script type="application/json" id="mode-data">{data}</script>\n<script>{script}</script>\n</body>\n</html>\n'
     )
 

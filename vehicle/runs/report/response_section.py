@@ -40,8 +40,8 @@ def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Markup]:
     """Return tables of the highest resonances of the main output points with the nearest modes."""
-    found, plate = [], of_plate(run).replace(" of", " to motion of", 1)
-    for channel, place in main_places(run).items():
+    tables, plate = [], of_plate(run).replace(" of", " to motion of", 1)
+    for channel, point in main_places(run).items():
         peaks = sorted(run.summary["peaks"].get(channel, ()), key=lambda peak: -peak["magnitude"])[:STRONGEST]
         rows = []
         for peak in sorted(peaks, key=lambda peak: peak["frequency_hz"]):
@@ -50,9 +50,9 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[M
             rows.append((near, f"{peak['frequency_hz']:.2f}", number(peak["magnitude"]), number(peak["coherence"])))
         heads = ("nearest mode", "resonance [Hz]", "m/s² per m", "coherence")
         if rows:
-            many = f"the {len(rows)} highest" if len(rows) > 1 else "one found"
-            found.append(table(heads, rows, caption=f"Vertical resonances at the {place}{plate}: {many}"))
-    return found
+            count = f"the {len(rows)} highest" if len(rows) > 1 else "one found"
+            tables.append(table(heads, rows, caption=f"Vertical resonances at the {point}{plate}: {count}"))
+    return tables
 
 
 STRONGEST = 6

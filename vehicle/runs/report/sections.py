@@ -34,29 +34,29 @@ def tiles(run: FinishedRun) -> Markup:
     """Return the key figures of a run as tiles."""
     summary = run.summary
     shares = slip_shares(summary)
-    found = []
-    for place, value in list(summary["comfort"].items())[:1]:
+    values = []
+    for point, value in list(summary["comfort"].items())[:1]:
         total = value["iso2631"]["vector_sum"]["weighted_rms"]
-        words = f"weighted acceleration at the {place.replace('_', ' ')}, {' to '.join(reactions(total))}"
-        found.append((f"{number(total)} m/s²", words))
-    found += [
+        label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
+        values.append((f"{number(total)} m/s²", label))
+    values += [
         (f"{100 * share:.2g} %", f"of the time in slip, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()
     ]
     peaks = summary["peaks"].get(f"knuckle_{run.wheel}_acc_z")
     if peaks:
         top = max(peaks, key=lambda peak: peak["magnitude"])
-        found.append((f"{top['frequency_hz']:.1f} Hz", "highest resonance of the vertical motion of the knuckle"))
-    found.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the plate {run.wheel}"))
-    boxes = [tag("div", tag("b", value), tag("span", words), class_="tile") for value, words in found]
+        values.append((f"{top['frequency_hz']:.1f} Hz", "highest resonance of the vertical motion of the knuckle"))
+    values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the plate {run.wheel}"))
+    boxes = [tag("div", tag("b", value), tag("span", label), class_="tile") for value, label in values]
     return tag("div", *boxes, class_="tiles")
 
 
 def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
     """Return findings by topic, and all notices."""
     topics: dict[str, list[str]] = {}
-    for one in findings(run, modes):
-        topics.setdefault(one.topic, []).append(one.text)
+    for finding in findings(run, modes):
+        topics.setdefault(finding.topic, []).append(finding.text)
     rows = [
         part
         for topic, texts in topics.items()
@@ -71,15 +71,19 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
 
 def what_was_run(run: FinishedRun) -> Markup:
     """Return tables of car, signal and engine, and of parameters that differ from the shipped car."""
-    given, solver, vehicle = run.summary["input"], run.summary["solver"], run.car.vehicle
-    signal = [("file", given["file"]), ("SHA-256", given["sha256"] or "–"), ("length", f"{given['duration_s']:g} s")]
+    excitation, solver, vehicle = run.summary["input"], run.summary["solver"], run.car.vehicle
+    signal = [
+        ("file", excitation["file"]),
+        ("SHA-256", excitation["sha256"] or "–"),
+        ("length", f"{excitation['duration_s']:g} s"),
+    ]
     signal += [
         (f"plate {wheel}", f"RMS {1e3 * rms:.4g} mm" if rms else "at rest")
-        for wheel, rms in given["plate_rms_m"].items()
+        for wheel, rms in excitation["plate_rms_m"].items()
     ]
     if run.span:
         signal.append(("comfort, slip shares, densities of", run.span))
-    road = given.get("road") or {}
+    road = excitation.get("road") or {}
     signal += [(word, str(road[key])) for key, word in ROAD_WORDS.items() if road.get(key) is not None]
     engine = [
         ("engine", f"{solver['engine']} ({solver['engine_reason']})"),
@@ -93,8 +97,8 @@ def what_was_run(run: FinishedRun) -> Markup:
         ("tyres", vehicle.driving.words),
         ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
-    about = (("Car", car), ("Signal", signal), ("Engine", engine))
-    parts = [tag("div", *(table((title, ""), rows, words=2) for title, rows in about), class_="columns")]
+    tables = (("Car", car), ("Signal", signal), ("Engine", engine))
+    parts = [tag("div", *(table((title, ""), rows, words=2) for title, rows in tables), class_="columns")]
     default = shipped_origin(vehicle)
     if default is None:
         parts.append(tag("p", "The car is not derived from a shipped car."))
@@ -131,7 +135,9 @@ def dampers(run: FinishedRun) -> Markup:
     heads = ("damper", f"time above {slip:g} mm/s", "first", f"time above {limit:g} mm/s", "first")
     rows = []
     for wheel in first:
-        velocity, force = (np.abs(run.recording[f"damper_{wheel}_{kind}"]).max() for kind in ("velocity", "force"))
+        velocity, force = (
+            np.abs(run.recording[f"damper_{wheel}_{quantity}"]).max() for quantity in ("velocity", "force")
+        )
         rows.append(
             (
                 side_of(wheel, list(first)),
@@ -143,10 +149,10 @@ def dampers(run: FinishedRun) -> Markup:
                 f"{force:.3g} N",
             )
         )
-    words = (
+    note = (
         f"Slip in all tables: a damper velocity above {slip:g} mm/s. Above {limit:g} mm/s the friction is at its limit."
     )
-    return joined([table((*heads, "largest velocity", "largest force"), rows), tag("p", words)])
+    return joined([table((*heads, "largest velocity", "largest force"), rows), tag("p", note)])
 
 
 def _when(value: float | None) -> str:
@@ -156,13 +162,17 @@ def _when(value: float | None) -> str:
 def film(run: FinishedRun) -> Markup | None:
     """Return the film of the run; None if there is no readable film."""
     name = run.summary["files"].get("video")
-    path = None if name is None else next((one for one in (run.folder / name, Path(name)) if one.is_file()), None)
+    path = (
+        None
+        if name is None
+        else next((candidate for candidate in (run.folder / name, Path(name)) if candidate.is_file()), None)
+    )
     if path is None:
         return None
     source = "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-    words = f"{path.name}: the motion is exaggerated by the factor in the picture."
+    note = f"{path.name}: the motion is exaggerated by the factor in the picture."
     video = tag("video", src=source, controls="", preload="metadata", class_="only-screen")
-    return joined([video, tag("p", words)])
+    return joined([video, tag("p", note)])
 
 
 def tables(run: FinishedRun) -> Markup:
@@ -173,9 +183,9 @@ def tables(run: FinishedRun) -> Markup:
         numbers = (float(np.sqrt(np.mean(values**2))), float(values.min()), float(values.max()))
         levels.append((name, recording.units[name], *(number(value, 4) for value in numbers)))
     peaks = [
-        (channel, ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in found))
-        for channel, found in summary["peaks"].items()
-        if found
+        (channel, ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in resonances))
+        for channel, resonances in summary["peaks"].items()
+        if resonances
     ]
     static = summary["static"]
     loads = [(f"tyre {wheel}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]

@@ -13,12 +13,12 @@ FONTS = "'DejaVu Sans', Verdana, sans-serif"
 """Fonts of the figures: the layout uses the first, and the second has equal widths; the page contains no fonts."""
 
 
-def drawing(plot: Callable[[Path], object], words: str) -> Markup:
+def drawing(plot: Callable[[Path], object], label: str) -> Markup:
     """Return a figure as an HTML element.
 
     Args:
         plot: function that writes the figure to a path.
-        words: alternative text of the figure.
+        label: alternative text of the figure.
 
     Returns:
         A `figure` element with the SVG in it.
@@ -27,15 +27,15 @@ def drawing(plot: Callable[[Path], object], words: str) -> Markup:
         path = Path(folder) / "figure.svg"
         plot(path)
         text = path.read_text(encoding="utf-8")
-    return tag("figure", Markup(small(text, words)))
+    return tag("figure", Markup(small(text, label)))
 
 
-def small(svg: str, words: str) -> str:
+def small(svg: str, label: str) -> str:
     """Return an SVG file as a compact element: coordinates rounded to 0.01 points, no unused names.
 
     Args:
         svg: SVG text of matplotlib.
-        words: label of the figure.
+        label: label of the figure.
     """
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
@@ -45,11 +45,11 @@ def small(svg: str, words: str) -> str:
     svg = re.sub(r'(?<= d=")[^"]*(?=")', lambda match: _short(match[0]), svg)
     svg = re.sub(r'(?<= [xy]=")-?\d+\.\d+(?=")', lambda match: _rounded(match[0]), svg)
     svg = re.sub(r">\s+<", ">\n<", svg)
-    head, rest = svg.split(">", 1)
+    head, content = svg.split(">", 1)
     view = re.search(r'viewBox="[^"]*"', head)
     assert view is not None
-    label = tag("title", words)
-    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{label}{rest.strip()}'
+    label = tag("title", label)
+    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{label}{content.strip()}'
 
 
 def _short(path: str) -> str:
