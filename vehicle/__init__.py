@@ -5,8 +5,8 @@
     car = Car.load("focus", {"damper.coulomb_friction": 93.75})
     run = car.run("low.csv")
 
-Names are imported at their first use; `help(vehicle.run_sweep)` explains one. A function is never named as a module of
-`python -m vehicle.NAME`, whose import would replace it.
+Names are imported at their first use; `help(vehicle.run_sweep)` prints the documentation of a name. No function has the
+name of a module of `python -m vehicle.NAME`: the import of the module would replace the function.
 """
 
 from __future__ import annotations

@@ -21,35 +21,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         Exit code, see `run_command`.
     """
-    words = sys.argv[1:] if arguments is None else list(arguments)
+    typed = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None:
         begin_process()
-    if words and words[0] in COMMANDS:
-        code: int = import_module(f"vehicle.commands.{words[0]}").main(words[1:])
+    if typed and typed[0] in COMMANDS:
+        code: int = import_module(f"vehicle.commands.{typed[0]}").main(typed[1:])
         return code
-    return run_command(lambda: _print(words))
+    return run_command(lambda: _print(typed))
 
 
-def _print(words: Sequence[str]) -> None:
+def _print(typed: Sequence[str]) -> None:
     """Print the list of commands, the version or a completion script.
 
     Raises:
         ConfigurationError: the first word is no command and no option.
     """
-    if words[:1] == ["--version"]:
+    if typed[:1] == ["--version"]:
         from vehicle.commands.version import package_version
 
         print(package_version())
         return
-    if words[:1] == ["--print-completion"]:
+    if typed[:1] == ["--print-completion"]:
         from vehicle.commands.completion import completion_script
 
-        print(completion_script("".join(words[1:2])), end="")
+        print(completion_script("".join(typed[1:2])), end="")
         return
-    if words and words[0] not in ("-h", "--help"):
-        close = get_close_matches(words[0], COMMANDS, n=1)
+    if typed and typed[0] not in ("-h", "--help"):
+        close = get_close_matches(typed[0], COMMANDS, n=1)
         nearest = f"; did you mean {close[0]}?" if close else ""
-        raise ConfigurationError(f"no command {words[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
+        raise ConfigurationError(f"no command {typed[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
     print("usage: python -m vehicle COMMAND [options]; `COMMAND --help` lists the options of a command\n")
     for name in COMMANDS:
         print(f"  {name:<11} {import_module(f'vehicle.commands.{name}').parser().description}")

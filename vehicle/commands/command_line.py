@@ -180,8 +180,8 @@ class ProgressLine:
         enabled: False prints nothing.
     """
 
-    def __init__(self, what: str, *, enabled: bool = True) -> None:
-        self.what = what
+    def __init__(self, work: str, *, enabled: bool = True) -> None:
+        self.what = work
         self.enabled = enabled
         self.moving = sys.stderr.isatty()
         self.started = time.monotonic()

@@ -50,8 +50,8 @@ def parser() -> Parser:
         "--window",
         type=float,
         metavar="S",
-        help="length of the Hann windows that the measured responses were averaged over [s]; the simulated ones are "
-        "then estimated alike; by default a local rational model of the whole record",
+        help="length of the Hann windows that the measured responses were averaged over [s]; the simulated "
+        "responses are estimated in the same way; by default a local rational model of the whole record",
     )
     responses.add_argument(
         "--bands",
@@ -166,12 +166,12 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> Choice:
+def measured_choice(options: argparse.Namespace, input_names: Container[str] = ()) -> Choice:
     """Return the choice of channels and units of the measurement.
 
     Args:
         options: parsed options of the command.
-        taken: names of --unit that belong to the input.
+        input_names: names of --unit that belong to the input.
 
     Raises:
         ConfigurationError: a channel twice, an unknown unit, a number out of range.
@@ -181,7 +181,7 @@ def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> 
     channels = pairs("--map", options.mapping, "")
     if "" in channels:
         raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
-    units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in taken}
+    units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in input_names}
     settings = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
     settings["databases"] = tuple(options.databases)
     return Choice(channels=channels, units=units, **(settings if hasattr(options, "delay") else {}))
@@ -269,25 +269,29 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
 
 
 def _measured(
-    options: argparse.Namespace, known: tuple[str, ...], choice: Choice, measurement: Measurement | None = None
+    options: argparse.Namespace, channels: tuple[str, ...], choice: Choice, measurement: Measurement | None = None
 ) -> Measured:
     from vehicle.signals.records.measured import read_measured
 
     window = getattr(options, "window", None)
-    return read_measured(options.measured, known, choice, turned=options.turned, window=window, measurement=measurement)
+    return read_measured(
+        options.measured, channels, choice, turned=options.turned, window=window, measurement=measurement
+    )
 
 
-def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: Container[str] = ()) -> Measured | None:
+def measured_beside(
+    options: argparse.Namespace, channels: tuple[str, ...], input_names: Container[str] = ()
+) -> Measured | None:
     """Read the measurement of --measured before the run; return None without --measured.
 
     Args:
         options: parsed options, with those of `measured_options`.
-        known: names of the channels of the run.
-        taken: names of --unit that belong to the input.
+        channels: names of the channels of the run.
+        input_names: names of --unit that belong to the input.
     """
     if options.measured is None:
         return None
-    return _measured(options, known, measured_choice(options, taken))
+    return _measured(options, channels, measured_choice(options, input_names))
 
 
 def _run(

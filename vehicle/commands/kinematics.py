@@ -57,8 +57,8 @@ def parser() -> Parser:
         "--tyre",
         choices=("rolling", "standing"),
         default="rolling",
-        help="patches that roll freely, or that stand, with the horizontal force and torque with which the car was set "
-        "down; %(default)s by default",
+        help="rolling: contact patches that roll freely; standing: patches with the horizontal force and "
+        "torque of the car at rest; %(default)s by default",
     )
     extra_output_options(parser, "kinematics.csv and kinematics.png")
     parser.former("--replace", "--replace: files are replaced by --force, as in all commands")

@@ -87,7 +87,7 @@ def _time_file(run: Path) -> Path:
     for name in ("time.npz", "time.csv"):
         if (run / name).is_file():
             return run / name
-    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file of its own")
+    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file")
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:

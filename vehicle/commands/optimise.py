@@ -44,19 +44,19 @@ def parser() -> Parser:
         default=[],
         metavar="NUMBER[@INPUT]",
         help="an objective: comfort, weighted, seat [m/s2], tyre_load, lowest_load, slip_share [-], travel [m]; one "
-        "axis or wheel is comfort_z, travel_fr; behind the @ an input, as road_A_120 or the stem of a file, or mean or "
+        "axis or wheel is comfort_z, travel_fr; after the @ an input, as road_A_120 or the stem of a file, or mean or "
         "worst of all; may be repeated",
     )
     search.add_argument(
-        "--maximise", action="append", default=[], metavar="NUMBER[@INPUT]", help="the same, to be as large as can be"
+        "--maximise", action="append", default=[], metavar="NUMBER[@INPUT]", help="an objective to maximise"
     )
     search.add_argument(
         "--limit",
         action="append",
         default=[],
         metavar="NUMBER[@INPUT]<=VALUE",
-        help="constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; without an "
-        "input on every one; may be repeated",
+        help="constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; applies to "
+        "every input by default; may be repeated",
     )
     search.add_argument("--cars", type=int, default=2000, metavar="N", help="cars to try; %(default)s by default")
     search.add_argument(

@@ -201,7 +201,7 @@ def _job(options: argparse.Namespace) -> None:
 
             progress = ProgressLine("report    ", enabled=not options.quiet)
             path.write_text(
-                report_page([read_run(folder, place=output, car=car, recording=run.recording)], progress),
+                report_page([read_run(folder, final_path=output, car=car, recording=run.recording)], progress),
                 encoding="utf-8",
             )
 

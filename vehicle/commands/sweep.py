@@ -119,8 +119,8 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
         items = [item.strip() for item in re.split(r",(?![^\[]*\])", listed)]
         if not separator or not path.strip() or not all(items):
             raise ConfigurationError(
-                f"--vary {text}: must be PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; one component of a "
-                "vector has its axis behind the path: bushings.tyre.stiffness.z=2e5,2.5e5"
+                f"--vary {text}: must be PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; the path of one "
+                "component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
             )
         if path.strip() in paths:
             raise ConfigurationError(f"--vary {path.strip()}: given twice; list all its values in one option")

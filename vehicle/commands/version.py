@@ -12,7 +12,7 @@ PROJECT = "vehicle-on-shaker"
 def package_version() -> str:
     """Return the name and the version of the package, as "vehicle-on-shaker 0.1.0".
 
-    The metadata of an editable installation are those of its day, so `pyproject.toml` beside the package goes first.
+    The metadata of an editable installation can be outdated, so `pyproject.toml` of a clone has priority.
     """
     try:
         project = tomllib.loads(Path(__file__).parents[2].joinpath("pyproject.toml").read_text(encoding="utf-8"))

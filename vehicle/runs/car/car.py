@@ -279,7 +279,7 @@ class Car:
         return replace(run, skip=start) if start else run
 
     def _simulated(self, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None) -> Run:
-        """Return the run on a signal; arguments and errors as of `run`."""
+        """Return the run on a signal; arguments and errors like `run`."""
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
         defaults = self.vehicle.channels

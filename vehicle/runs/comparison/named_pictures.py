@@ -17,10 +17,10 @@ def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
     drawings: dict[str, Callable[[Path], None]] = {}
     for point in dict.fromkeys(_place(item.channel) for item in comparison.responses):
         responses = [item for item in comparison.responses if _place(item.channel) == point]
-        drawings[f"compare_frf_{point}"] = partial(plot_responses, place=point, responses=responses, caption=caption)
+        drawings[f"compare_frf_{point}"] = partial(plot_responses, point=point, responses=responses, caption=caption)
     for point in dict.fromkeys(_place(item.channel) for item in comparison.records):
         rows = [item for item in comparison.records if _place(item.channel) == point]
-        drawings[f"compare_time_{point}"] = partial(plot_histories, place=point, histories=rows, caption=caption)
+        drawings[f"compare_time_{point}"] = partial(plot_histories, point=point, histories=rows, caption=caption)
     agreement = comparison.signatures
     if agreement is not None:
         text = f"{agreement.channels} responses; {caption}"

@@ -1,4 +1,4 @@
-"""Pictures of a comparison: responses and time histories of a place, signatures, MAC."""
+"""Pictures of a comparison: responses and time histories of an output point, signatures, MAC."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ LOOKS = {
     "simulated": {"color": SIMULATED, "linestyle": "--", "linewidth": 1.3},
 }
 DETAIL = 1.0
-"""Length of the magnified stretch [s]."""
+"""Length of the magnified excerpt [s]."""
 
 
-def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], caption: str) -> None:
-    """Write magnitude, phase and both coherences of the responses of one place, a column for each.
+def plot_responses(path: Path, point: str, responses: Sequence[FrfComparison], caption: str) -> None:
+    """Write magnitude, phase and both coherences of the responses of one output point, a column for each.
 
     Args:
         path: PNG file.
-        place: for the title.
-        responses: of the place.
+        point: output point, for the title.
+        responses: responses of the output point.
         caption: what was measured and what was simulated.
     """
     size = (max(7.6, 5.2 * len(responses) + 1.0), 8.2)
@@ -45,7 +45,7 @@ def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], c
         values for response in responses for values in (response.measured_coherence, response.simulated_coherence)
     ]
     caption += f"; {FADED}" if any(np.isfinite(values).any() for values in coherences) else ""
-    with saved_figure(path, size, f"{place}: measured beside simulated", caption) as figure:
+    with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
         axes = figure.subplots(
             3, len(responses), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False
         )
@@ -71,20 +71,20 @@ def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], c
             axes[0, 0].set_xlim(low, high)
 
 
-def plot_histories(path: Path, place: str, histories: Sequence[RecordComparison], caption: str) -> None:
-    """Write the time histories of one place, a row for each: the whole record and its liveliest moment.
+def plot_histories(path: Path, point: str, histories: Sequence[RecordComparison], caption: str) -> None:
+    """Write the time histories of one output point, a row for each: whole record, and excerpt with the highest level.
 
     Args:
         path: PNG file.
-        place: for the title.
-        histories: of the place.
+        point: output point, for the title.
+        histories: time histories of the output point.
         caption: what was measured and what was simulated.
     """
     size = (13.0, 2.6 * len(histories) + 1.4)
-    with saved_figure(path, size, f"{place}: measured beside simulated", caption) as figure:
+    with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
         axes = figure.subplots(len(histories), 2, sharey="row", width_ratios=(1.6, 1.4), squeeze=False)
         for history, (whole, detail) in zip(histories, axes, strict=True):
-            inside = _liveliest(history)
+            inside = _highest_level(history)
             for label in LOOKS:
                 values = getattr(history, label)
                 whole.plot(history.time, values, **(LOOKS[label] | {"linewidth": 0.6}), label=label)
@@ -93,14 +93,14 @@ def plot_histories(path: Path, place: str, histories: Sequence[RecordComparison]
             whole.set_xlim(history.time[0], history.time[-1])
             detail.set_xlim(history.time[inside][0], history.time[inside][-1])
         axes[0, 0].set_title("whole record")
-        axes[0, 1].set_title("liveliest stretch of the measurement")
+        axes[0, 1].set_title("excerpt with the highest measured level")
         axes[0, 1].legend(loc="upper right", ncols=2)
         for axis in axes[-1]:
             axis.set_xlabel("time of the run [s]")
 
 
-def _liveliest(record: RecordComparison) -> slice:
-    """The stretch of `DETAIL` in which the measured record holds most."""
+def _highest_level(record: RecordComparison) -> slice:
+    """Return the excerpt of length `DETAIL` with the highest measured level."""
     count = min(max(int(DETAIL / (record.time[1] - record.time[0])), 2), record.time.size)
     total = np.concatenate([[0.0], np.cumsum(record.measured**2)])
     first = int(np.argmax(total[count:] - total[:-count]))

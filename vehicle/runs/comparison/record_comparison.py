@@ -56,7 +56,7 @@ class RecordComparison:
 
     @property
     def drift(self) -> float:
-        """Change of the lag per time [-]; NaN where the record does not tell it."""
+        """Change of the lag per time [-]; NaN if the record does not determine it."""
         resolved = self.clock is not None and math.isfinite(self.clock.drift_error)
         return self.clock.drift if resolved and self.clock is not None else math.nan
 

@@ -17,7 +17,7 @@ from vehicle.signals.records.run_summary import MeasuredSummary
 def save_comparison(
     comparison: Comparison, folder: Path | str, *, force: bool = False, protect: tuple[Path, ...] = ()
 ) -> Path:
-    """Write the tables of a comparison and a picture for each output point into a folder of their own.
+    """Write the tables of a comparison and a picture for each output point into a new folder.
 
     Args:
         comparison: result of `compare_run`.

@@ -128,7 +128,7 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> 
         if folder == source or folder in source.parents:
             raise ConfigurationError(f"--output {path}: holds the input {file}; choose another folder")
     if folder == current or folder in current.parents:
-        raise ConfigurationError(f"--output {path}: is the working folder, or holds it; give a folder of its own")
+        raise ConfigurationError(f"--output {path}: is the working folder, or contains it; set another folder")
     if folder.exists() and not folder.is_dir():
         raise ConfigurationError(f"--output {path}: is a file; give a folder")
     if folder.exists() and not force:

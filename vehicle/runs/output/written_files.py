@@ -190,8 +190,8 @@ def refuse_foreign_file(path: Path, option: str = "--output") -> None:
     """
     if (path.is_file() or path.is_symlink()) and not is_own(path):
         raise ConfigurationError(
-            f"{option} {path}: is not as this program wrote it there, and nothing else is ever replaced; move it away, "
-            "or give another name"
+            f"{option} {path}: is not as this program wrote it there, and other files are never replaced; move "
+            "the file, or set another name"
         )
 
 

@@ -93,13 +93,13 @@ class FinishedRun:
 
 
 def read_run(
-    folder: Path, *, place: Path | None = None, car: Car | None = None, recording: Recording | None = None
+    folder: Path, *, final_path: Path | None = None, car: Car | None = None, recording: Recording | None = None
 ) -> FinishedRun:
     """Read the folder of a run.
 
     Args:
         folder: folder with `summary.json`, `vehicle.toml`, `time.npz` or `time.csv`, and `frf.csv` if there are FRFs.
-        place: final path of a folder that is still written under a temporary name.
+        final_path: final path of a folder that is still written under a temporary name.
         car: car of the run; by default built from `vehicle.toml`.
         recording: time histories; by default read from the folder.
 
@@ -141,9 +141,9 @@ def read_run(
         motions = [motion["plates"] for motion in estimate.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
         frfs = _responses(paths["frf"], run_car.vehicle.acceleration_channels, estimate, motions)
     return FinishedRun(
-        name=(place or folder).resolve().name,
+        name=(final_path or folder).resolve().name,
         folder=folder,
-        place=place or folder,
+        place=final_path or folder,
         summary=summary,
         car=run_car,
         recording=recording,
@@ -176,7 +176,7 @@ def _responses(
         ending = f"_to_{next(iter(motion))}" if index else ""
         missing = [name for name in channels if name + ending not in table.channels]
         if missing:
-            raise DataError(f"{path}: no FRFs of {missing[0] + ending}, which the car of the run has; run it again")
+            raise DataError(f"{path}: no FRFs of {missing[0] + ending}, a channel of the car; run the simulation again")
         rows = [table.channels.index(name + ending) for name in channels]
         response = FrequencyResponse(
             frequency=table.frequency,
