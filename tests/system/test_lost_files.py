@@ -92,7 +92,7 @@ def test_generated_files_of_a_clone_are_replaced(tmp_path):
     page.write_text("# Page\n\n<!-- Written by `python -m scenarios.published`; never edit by hand. -->\n")
     check_file(page, force=True)
     page.write_text("# Page of somebody else\n")
-    with pytest.raises(ConfigurationError, match="nothing else is ever replaced"):
+    with pytest.raises(ConfigurationError, match="other files are never replaced"):
         check_file(page, force=True)
 
 
@@ -219,7 +219,7 @@ def test_a_link_leads_to_the_folder_that_is_replaced(tmp_path):
 @pytest.mark.parametrize("name", [".", "..", "/"])
 def test_the_working_folder_is_no_output(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ConfigurationError, match="is the working folder, or holds it"):
+    with pytest.raises(ConfigurationError, match="is the working folder, or contains it"):
         put(Path(name), "a.csv", force=True)
 
 
