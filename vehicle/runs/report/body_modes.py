@@ -34,14 +34,17 @@ def body_modes(run: FinishedRun, state: str) -> list[str]:
         shares = result.shares[:, at]
         order = [int(i) for i in np.argsort(-np.abs(shares)) if abs(shares[i]) >= LEAST][:MOST_PARTS]
         parts = ", ".join(f"{result.names[i]} {_percent(shares[i])}" for i in order)
-        text = f"At {frequency:.1f} Hz the contributions to the vertical acceleration at the {WORDS} are {parts}"
+        text = (
+            f"At {frequency:.1f} Hz the largest contributions to the vertical acceleration at the {WORDS} are {parts}"
+        )
         if modes := [i - 6 for i in order if i >= 6]:
             drivers = result.attachment_shares[modes[0], :, at]
             largest = [int(i) for i in np.argsort(-np.abs(drivers))[:2]]
             names = ", ".join(f"{result.attachments[i]} {_percent(drivers[i])}" for i in largest)
             text += f"; the largest excitation of mode {modes[0] + 1} is at {names}"
         sentences.append(f"{text}.")
-    note = f"In phase with the sum, linear car with dampers {state}; see `python -m vehicle body participation`."
+    note = f"Shares in phase with the sum, of the linear car with dampers {state}; "
+    note += "see `python -m vehicle body participation`."
     return [*sentences, note]
 
 

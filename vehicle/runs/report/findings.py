@@ -55,14 +55,15 @@ def _dampers(summary: RunSummary) -> list[str]:
     sentences = []
     for wheel, share in shares.items():
         side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]
-        percent = "never" if first is None else f"for {100 * share:.2g} % of the time, first at {first:.3f} s"
+        times = "never exceeds" if first is None else "exceeds"
+        share_text = "" if first is None else f" for {100 * share:.2g} % of the time, first at {first:.3f} s"
         if share <= STICKS:
             state = "sticks: it dissipates almost no energy, and the strut acts as a rigid link"
         elif share >= WORKS:
             state = "slides: friction and viscous damping act during much of the time"
         else:
             state = "alternates between stick and slip: its effect depends on the level of the input"
-        sentences.append(f"The {side} damper {state}. Its velocity exceeds {limit:g} mm/s {percent}.")
+        sentences.append(f"The {side} damper {state}. Its velocity {times} {limit:g} mm/s{share_text}.")
     return sentences
 
 
@@ -162,7 +163,7 @@ def _linearity(run: FinishedRun) -> list[str]:
                     f"; it is below {COHERENT:g} on {100 * low:.2g} % of the lines: there the response is nonlinear "
                     "or very small."
                     if low > 0.0
-                    else f", and never below {COHERENT:g}: the response is linear."
+                    else f"; it is never below {COHERENT:g}: the response is linear."
                 )
             )
     return sentences
