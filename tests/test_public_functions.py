@@ -123,7 +123,7 @@ def test_wrong_arguments_are_refused(focus, record, tmp_path):
     for call, message in (
         (lambda: focus.run("low.csv", skip=70.0), r"--skip 70 s: allowed is 0 s to less than low\.csv"),
         (lambda: compare_run(tmp_path, record, drift=0.2), "--drift 200000: must be"),
-        (lambda: compare_run(tmp_path, record, bands=(9.0, 3.0)), "needed are rising edges"),
+        (lambda: compare_run(tmp_path, record, bands=(9.0, 3.0)), "must be increasing edges"),
         (lambda: write_report("nowhere", "report.html"), "nowhere: is no folder"),
         (lambda: write_report([tmp_path], "report.pdf"), r"this file is written as \.html"),
         (lambda: optimise_car(focus, vary, "low.csv", ["comfort"], cars=4), "--cars 4: must be at least 8"),

@@ -5,8 +5,8 @@
     car = Car.load("focus", {"damper.coulomb_friction": 93.75})
     run = car.run("low.csv")
 
-Names are imported at their first use; `help(vehicle.run_sweep)` explains one. A function is never named as a module of
-`python -m vehicle.NAME`, whose import would replace it.
+Names are imported at their first use; `help(vehicle.run_sweep)` prints the documentation of a name. No function has the
+name of a module of `python -m vehicle.NAME`: the import of the module would replace the function.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from vehicle.runs.car.road import Road as Road
     from vehicle.runs.car.run import Run as Run
     from vehicle.runs.comparison.compared_run import compare_run as compare_run
+    from vehicle.runs.comparison.comparison import Comparison as Comparison
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
-    from vehicle.runs.comparison.tables import Comparison as Comparison
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
     from vehicle.runs.output.saved_run import save_run as save_run
     from vehicle.runs.report.report_file import write_report as write_report
@@ -57,7 +57,7 @@ _MODULES = {
     "Car": "vehicle.runs.car.car",
     "Choice": "vehicle.signals.records.choice",
     "ComfortMeasure": "vehicle.studies.sweeps.measure",
-    "Comparison": "vehicle.runs.comparison.tables",
+    "Comparison": "vehicle.runs.comparison.comparison",
     "ConfigurationError": "vehicle.errors",
     "DataError": "vehicle.errors",
     "FoundCars": "vehicle.studies.optimisation.found_cars",

@@ -82,7 +82,7 @@ def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
         (["--input", "low.csv", "--tyre", "rolling"], "--tyre: belongs to a road"),
         (
             [*ROAD, "--tyre", "standing", "--set", "driving.speed=3", "--vehicle", "sedan"],
-            "--tyre standing beside --set driving.speed",
+            "--tyre standing and --set driving.speed",
         ),
         ([*ROAD, "--tyre", "rolling"], "has other ground contacts than wheels"),
     ],

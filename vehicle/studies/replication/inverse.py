@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy import fft
+import scipy
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -35,8 +35,8 @@ class Lines:
     def __init__(self, samples: int, step: float, band: tuple[float, float]) -> None:
         low, high = band
         self.samples = samples
-        self.size = fft.next_fast_len(samples + int(np.ceil(PERIODS / (low * step))), real=True)
-        every = fft.rfftfreq(self.size, step)
+        self.size = scipy.fft.next_fast_len(samples + int(np.ceil(PERIODS / (low * step))), real=True)
+        every = scipy.fft.rfftfreq(self.size, step)
         rise = np.clip((every - LOW_TAPER * low) / (low - LOW_TAPER * low), 0.0, 1.0)
         fall = np.clip((HIGH_TAPER * high - every) / (HIGH_TAPER * high - high), 0.0, 1.0)
         weight = 0.25 * (1.0 - np.cos(np.pi * rise)) * (1.0 - np.cos(np.pi * fall))
@@ -46,15 +46,16 @@ class Lines:
 
     def in_band(self, signals: Vector) -> Vector:
         """What signals (..., n) hold in the band, both edges included."""
-        found: Vector = fft.irfft(fft.rfft(signals, self.size) * self.inside, self.size)[..., : self.samples]
+        spectrum = scipy.fft.rfft(signals, self.size) * self.inside
+        found: Vector = scipy.fft.irfft(spectrum, self.size)[..., : self.samples]
         return found
 
     def correction(self, inverse: Complex, error: Vector) -> Vector:
         """Drives (p, n) that take back an error of the responses (k, n), by an inverse (m, p, k)."""
-        spectrum = fft.rfft(error, self.size)[:, self.used]
+        spectrum = scipy.fft.rfft(error, self.size)[:, self.used]
         found = np.zeros((inverse.shape[1], self.size // 2 + 1), dtype=complex)
         found[:, self.used] = self.weight * np.einsum("mpk,km->pm", inverse, spectrum)
-        back: Vector = fft.irfft(found, self.size)[:, : self.samples]
+        back: Vector = scipy.fft.irfft(found, self.size)[:, : self.samples]
         return back
 
 

@@ -1,4 +1,4 @@
-"""What differs: the car of a run from the shipped one, and several runs among each other."""
+"""Differences of a car from the shipped car, and between several runs."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.names import side_of
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.signals.records.run_summary import slip_shares
 
 LARGEST_SHARE = 0.5
-"""Largest share of other or further parameters in a car that was made from a shipped one: a car with more of them is a
-car of its own. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
+"""Largest share of other or further parameters in a car that was made from a shipped one: above it a car counts
+as a new car. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
 
 
 def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, object]]:
-    """Values of a vehicle file by their whole paths."""
+    """Yield the full path and the value of every parameter of a vehicle file."""
     for key, value in table.items():
         if isinstance(value, Mapping):
             yield from flattened(value, f"{path}{key}.")
@@ -27,44 +28,43 @@ def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, o
 
 
 def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
-    """Return the shipped car that a car was made from: its namesake, else the one with the fewest other parameters.
+    """Return the shipped car of the same name, else the shipped car with the fewest different parameters.
 
     Args:
         vehicle: the car.
 
     Returns:
-        The shipped car; None where every shipped car differs in more than `LARGEST_SHARE` of the parameters.
+        The shipped car; None if every shipped car differs in more than `LARGEST_SHARE` of the parameters.
     """
     if vehicle.name in CARS:
         return load_vehicle(vehicle_file(vehicle.name))
-    own, found = dict(flattened(vehicle.table)), dict[str, float]()
+    parameters, shares = dict(flattened(vehicle.table)), dict[str, float]()
     for name in CARS:
         other = dict(flattened(vehicle_table(vehicle_file(name))))
-        paths = {*own, *other}
-        found[name] = sum(own.get(path) != other.get(path) for path in paths) / len(paths)
-    nearest = min(found, key=lambda name: found[name])
-    return load_vehicle(vehicle_file(nearest)) if found[nearest] <= LARGEST_SHARE else None
+        paths = {*parameters, *other}
+        shares[name] = sum(parameters.get(path) != other.get(path) for path in paths) / len(paths)
+    nearest = min(shares, key=lambda name: shares[name])
+    return load_vehicle(vehicle_file(nearest)) if shares[nearest] <= LARGEST_SHARE else None
 
 
 def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list[str]]]:
-    """Parameters in which cars differ.
+    """Return the parameters in which cars differ.
 
     Args:
         vehicles: cars.
 
     Returns:
-        Path, unit, and the value of each car as text ("–" where it has none), in the order of the first
-        car that has it.
+        Path, unit, and the value of each car as text ("–" for a missing parameter), in the order of the first car.
     """
     tables = [dict(flattened(vehicle.table)) for vehicle in vehicles]
     paths = dict.fromkeys(path for table in tables for path in table)
-    found = []
+    changes = []
     for path in paths:
         values = [table.get(path) for table in tables]
         if any(value != values[0] for value in values[1:]):
             owner = vehicles[next(i for i, value in enumerate(values) if value is not None)]
-            found.append((path, _unit(owner, path), [_text(value) for value in values]))
-    return found
+            changes.append((path, _unit(owner, path), [_text(value) for value in values]))
+    return changes
 
 
 def _unit(vehicle: Vehicle, path: str) -> str:
@@ -80,48 +80,50 @@ def _text(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(_text(one) for one in value)}]"
+        return f"[{', '.join(_text(item) for item in value)}]"
     return str(value)
 
 
 def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
-    """Numbers in which runs are compared, by name and unit.
+    """Return the key figures for the comparison of runs, by name and unit.
 
     Args:
         run: the run.
     """
     summary = run.summary
-    found: dict[tuple[str, str], float | None] = {}
-    for place, value in summary["comfort"].items():
-        words = place.replace("_", " ")
-        found[f"{words}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"]["weighted_rms"]
-        found |= {
-            (f"{words}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
+    figures: dict[tuple[str, str], float | None] = {}
+    for point, value in summary["comfort"].items():
+        label = point.replace("_", " ")
+        figures[f"{label}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"][
+            "weighted_rms"
+        ]
+        figures |= {
+            (f"{label}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
         }
-    shares = {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
+    shares = slip_shares(summary)
     for wheel, share in shares.items():
-        found[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
-        found[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
+        figures[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
+        figures[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
     for channel in (f"knuckle_{run.wheel}_acc_z", "seat_rail_acc_z"):
         peaks = summary["peaks"].get(channel)
         if peaks:
             top = max(peaks, key=lambda peak: peak["magnitude"])
-            found[f"{channel}: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
-            found[f"{channel}: its height", "m/s² per m"] = top["magnitude"]
-    return found
+            figures[f"{channel}: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
+            figures[f"{channel}: its height", "m/s² per m"] = top["magnitude"]
+    return figures
 
 
 DIFFERENCES = {"s": "s", "%": "percentage points"}
-"""Units of which a ratio says nothing, with the unit of their difference: a time at which something happens is counted
-from the start of the record, and a share may begin at next to none."""
+"""Units compared by a difference instead of a ratio, with the unit of the difference: a time counts from the start of
+the record, and a share may be near zero."""
 
 
 def difference(first: float | None, other: float | None, unit: str = "") -> str:
-    """Change from one number to another: a difference for the units of `DIFFERENCES`, else in percent; or a dash.
+    """Return the change between two values: a difference for the units of `DIFFERENCES`, else in percent; or a dash.
 
     Args:
-        first, other: the numbers; None where there is none.
-        unit: of both.
+        first, other: values; None if missing.
+        unit: unit of both.
     """
     if first is None or other is None:
         return "–"

@@ -1,4 +1,4 @@
-"""The figures of a run as SVG for a page: the plots of `rendering`, made small."""
+"""Plots of `rendering` as compact SVG elements of a page."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from tempfile import TemporaryDirectory
 from vehicle.runs.report.markup import Markup, tag
 
 FONTS = "'DejaVu Sans', Verdana, sans-serif"
-"""The figures are laid out with the first, which has the widths of the second; no font travels with the page."""
+"""Fonts of the figures: the layout uses the first, and the second has equal widths; the page contains no fonts."""
 
 
-def drawing(plot: Callable[[Path], object], words: str) -> Markup:
-    """Draw a figure for a page.
+def drawing(plot: Callable[[Path], object], label: str) -> Markup:
+    """Return a figure as an HTML element.
 
     Args:
-        plot: writes the figure at the path it is given.
-        words: what it shows, for those who cannot see it.
+        plot: function that writes the figure to a path.
+        label: alternative text of the figure.
 
     Returns:
         A `figure` element with the SVG in it.
@@ -27,15 +27,15 @@ def drawing(plot: Callable[[Path], object], words: str) -> Markup:
         path = Path(folder) / "figure.svg"
         plot(path)
         text = path.read_text(encoding="utf-8")
-    return tag("figure", Markup(small(text, words)))
+    return tag("figure", Markup(small(text, label)))
 
 
-def small(svg: str, words: str) -> str:
-    """An SVG file as an element: coordinates to a hundredth of a point, no names that nothing refers to.
+def small(svg: str, label: str) -> str:
+    """Return an SVG file as a compact element: coordinates rounded to 0.01 points, no unused names.
 
     Args:
-        svg: as matplotlib writes it.
-        words: its label.
+        svg: SVG text of matplotlib.
+        label: label of the figure.
     """
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
@@ -45,11 +45,11 @@ def small(svg: str, words: str) -> str:
     svg = re.sub(r'(?<= d=")[^"]*(?=")', lambda match: _short(match[0]), svg)
     svg = re.sub(r'(?<= [xy]=")-?\d+\.\d+(?=")', lambda match: _rounded(match[0]), svg)
     svg = re.sub(r">\s+<", ">\n<", svg)
-    head, rest = svg.split(">", 1)
+    head, content = svg.split(">", 1)
     view = re.search(r'viewBox="[^"]*"', head)
     assert view is not None
-    label = tag("title", words)
-    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{label}{rest.strip()}'
+    label = tag("title", label)
+    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{label}{content.strip()}'
 
 
 def _short(path: str) -> str:

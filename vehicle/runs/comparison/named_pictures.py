@@ -7,24 +7,24 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from vehicle.runs.comparison.comparison import Comparison
 from vehicle.runs.comparison.pictures import plot_histories, plot_responses, plot_signatures
-from vehicle.runs.comparison.tables import Comparison
 
 
 def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
     """Return the name of each picture, as "compare_frf_seat_rail", and what writes it as PNG at a path."""
     caption = f"measured: {comparison.measured}; simulated: {comparison.run}"
     drawings: dict[str, Callable[[Path], None]] = {}
-    for place in dict.fromkeys(_place(one.channel) for one in comparison.responses):
-        own = [one for one in comparison.responses if _place(one.channel) == place]
-        drawings[f"compare_frf_{place}"] = partial(plot_responses, place=place, responses=own, caption=caption)
-    for place in dict.fromkeys(_place(one.channel) for one in comparison.records):
-        rows = [one for one in comparison.records if _place(one.channel) == place]
-        drawings[f"compare_time_{place}"] = partial(plot_histories, place=place, histories=rows, caption=caption)
-    together = comparison.signatures
-    if together is not None:
-        words = f"{together.channels} responses; {caption}"
-        drawings["compare_signatures"] = partial(plot_signatures, signatures=together, caption=words)
+    for point in dict.fromkeys(_place(item.channel) for item in comparison.responses):
+        responses = [item for item in comparison.responses if _place(item.channel) == point]
+        drawings[f"compare_frf_{point}"] = partial(plot_responses, point=point, responses=responses, caption=caption)
+    for point in dict.fromkeys(_place(item.channel) for item in comparison.records):
+        rows = [item for item in comparison.records if _place(item.channel) == point]
+        drawings[f"compare_time_{point}"] = partial(plot_histories, point=point, histories=rows, caption=caption)
+    agreement = comparison.signatures
+    if agreement is not None:
+        text = f"{agreement.channels} responses; {caption}"
+        drawings["compare_signatures"] = partial(plot_signatures, signatures=agreement, caption=text)
     return drawings
 
 

@@ -68,3 +68,7 @@ def test_the_wheel_runs_in_an_empty_folder(tmp_path):
     # And it is the installed package that answered, not the sources that this test runs in.
     assert str(installed) in run("shaker", "--input", "lov.csv", "--debug").stderr
     assert list(here.iterdir()) == []
+    assert run("--version").stdout.startswith("vehicle-on-shaker ")  # of the metadata: there is no pyproject.toml
+    done = run("shaker", "--input", "low.csv", "--engine", "reduced", "--report", "--quiet")
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    assert {"summary.json", "frf.csv", "report.html"} <= {path.name for path in (here / "runs" / "low").iterdir()}

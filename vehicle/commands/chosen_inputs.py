@@ -1,4 +1,4 @@
-"""Inputs of a command of many runs, by its options: files of signals, or roads."""
+"""Inputs of a sweep or a search from the command line: files of signals, or roads."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 def chosen_inputs(options: argparse.Namespace, vehicle: Vehicle) -> list[Road] | list[SignalFile]:
-    """Return the inputs that the options ask for.
+    """Return the inputs of the options --input or --road.
 
     Args:
-        options: as of `signal_options` with several.
-        vehicle: the car, which names the wheel on the shaker where no option does.
+        options: parsed options of `signal_options` with several=True.
+        vehicle: the car; its shaker wheel is the default of --wheel.
 
     Raises:
-        ConfigurationError: none, a file that does not exist, or a speed for no road.
+        ConfigurationError: no input, a file that does not exist, or a speed without a road.
     """
     return _roads(options) if drives_on_road(options) else _files(options, vehicle)
 

@@ -1,4 +1,4 @@
-"""Where a command writes: a name that is free, or one that may be replaced, locked until the command ends."""
+"""Free, or replaceable, names for the results of a command, locked until the command ends."""
 
 from __future__ import annotations
 
@@ -11,41 +11,41 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.output.folder import OccupiedError, check_file, check_output, claim
 
 MOST = 10_000
-"""Maximum number behind a name; nobody keeps as many runs of one input."""
+"""Maximum number in a name, as low-10000; more runs of one input are not expected."""
 
 
 def named(held: ExitStack, path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> Path:
     """Check and lock a folder that the user names.
 
     Args:
-        held: keeps the lock until the command ends.
+        held: exit stack that holds the lock until the command ends.
         path: the folder.
-        force: replace what a run wrote there.
-        protect: input files; a folder that holds one of them is never replaced.
+        force: replace files of an earlier run.
+        protect: input files; a folder that contains one of them is never replaced.
 
     Returns:
         The same path.
 
     Raises:
-        ConfigurationError, OutputError: as of `check_output` and `folder_lock`.
+        ConfigurationError, OutputError: see `check_output` and `folder_lock`.
     """
     held.enter_context(claim(check_output(path, force=force, protect=protect)))
     return path
 
 
 def free_folder(held: ExitStack, default: Path, *, protect: tuple[Path, ...] = ()) -> Path:
-    """Lock the first folder of `low`, `low-2`, `low-3` ... that neither exists nor is being written.
+    """Lock the first folder of `low`, `low-2`, `low-3` ... that is free.
 
     Args:
-        held: keeps the lock until the command ends.
-        default: the first one.
-        protect: as of `named`.
+        held: exit stack that holds the lock until the command ends.
+        default: first candidate.
+        protect: input files, see `named`.
 
     Returns:
         The folder.
 
     Raises:
-        ConfigurationError, OutputError: as of `check_output`.
+        ConfigurationError, OutputError: see `check_output`.
     """
     for number in itertools.count(1):
         path = default if number == 1 else default.with_name(f"{default.name}-{number}")
@@ -63,25 +63,25 @@ def named_file(
     force: bool,
     protect: tuple[Path, ...] = (),
 ) -> Path:
-    """Check and lock a file that the user names; arguments, result and errors as of `named` and `check_file`."""
+    """Check and lock a file that the user names; see `named` and `check_file`."""
     check_file(path, option, ending=ending, force=force, protect=protect)
     held.enter_context(claim(path.parent.resolve() / path.name))
     return path
 
 
 def free_file(held: ExitStack, default: Path, *, option: str = "--output") -> Path:
-    """Lock the first file of `road.csv`, `road-2.csv`, `road-3.csv` ... that neither exists nor is being written.
+    """Lock the first file of `road.csv`, `road-2.csv`, `road-3.csv` ... that is free.
 
     Args:
-        held: keeps the lock until the command ends.
-        default: the first one.
-        option: that names another file.
+        held: exit stack that holds the lock until the command ends.
+        default: first candidate.
+        option: option that names the file, for messages.
 
     Returns:
         The file.
 
     Raises:
-        ConfigurationError, OutputError: as of `check_file`.
+        ConfigurationError, OutputError: see `check_file`.
     """
     for number in itertools.count(1):
         path = _numbered(default, number)
@@ -92,18 +92,18 @@ def free_file(held: ExitStack, default: Path, *, option: str = "--output") -> Pa
 
 
 def free_files(held: ExitStack, folder: Path, names: Sequence[str]) -> list[Path]:
-    """Lock the first set of `loads.csv`, `loads.png`, then `loads-2.csv`, `loads-2.png` ... of which nothing exists.
+    """Lock the first free set of names: `loads.csv`, `loads.png`, then `loads-2.csv`, `loads-2.png` ...
 
     Args:
-        held: keeps the lock until the command ends.
-        folder: of the files.
-        names: of the files.
+        held: exit stack that holds the lock until the command ends.
+        folder: folder of the files.
+        names: names of the files.
 
     Returns:
         The files.
 
     Raises:
-        ConfigurationError, OutputError: as of `check_file`.
+        ConfigurationError, OutputError: see `check_file`.
     """
     for number in itertools.count(1):
         paths = [folder / _numbered(Path(name), number) for name in names]
@@ -118,7 +118,7 @@ def _numbered(path: Path, number: int) -> Path:
 
 
 def _claimed_if_free(held: ExitStack, path: Path, number: int) -> bool:
-    """Lock a path where nothing is; False where something is or another process writes."""
+    """Lock a free path; return False if the path exists or another process writes there."""
     if number > MOST:
         raise ConfigurationError(f"{path}: exists, as do the {MOST} names before it; give --output")
     if path.exists() or path.is_symlink():
@@ -128,7 +128,7 @@ def _claimed_if_free(held: ExitStack, path: Path, number: int) -> bool:
             attempt.enter_context(claim(path.parent.resolve() / path.name))
         except OccupiedError:
             return False
-        if path.exists():  # finished between the two lines
+        if path.exists():  # written by another process in the meantime
             return False
         held.push(attempt.pop_all())
     return True
