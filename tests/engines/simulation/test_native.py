@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from tests.engines.simulation.python_form import difference, python_run
+from tests.validation import validated
 from vehicle.engines.simulation import structures
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
 from vehicle.engines.simulation.compiled import CompiledRows
@@ -79,7 +80,10 @@ def test_energies_and_poses_agree(compiled: Recording, python: Recording) -> Non
     for name in ("work_in", "dissipated", "stored"):
         found, expected = (getattr(run.statistics.energies, name) for run in (compiled, python))
         # The stored energy is a difference of 1e4 J of weight and preload: 1e-12 of it.
-        assert found == pytest.approx(expected, rel=1e-9, abs=1e-8)
+        validated(
+            "Integration in MuJoCo", f"compiled element laws, energy {name}", found, expected, rel=1e-9, abs=1e-8,
+            unit="J", source="second derivation: Python form of the laws",
+        )  # fmt: skip
     np.testing.assert_array_equal(compiled.pose_time, python.pose_time)
     # Metres and radians; round-off of one step is 1e-16.
     np.testing.assert_allclose(compiled.poses, python.poses, rtol=0.0, atol=1e-12)
