@@ -84,42 +84,42 @@ def prepare_compiler_cache() -> None:
     Order: NUMBA_CACHE_DIR from the environment, `__pycache__` next to the sources (numba's default), $XDG_CACHE_HOME or
     ~/.cache, a private folder in the temporary folder, a new temporary folder. The first writable folder is used.
     """
-    given = os.environ.get(VARIABLE)
-    if given:
-        if _writable(Path(given)):
+    environment_folder = os.environ.get(VARIABLE)
+    if environment_folder:
+        if _writable(Path(environment_folder)):
             return
     elif all(_writable(PACKAGE / room / "__pycache__") for room in COMPILING):
         return
-    place = next((place for place in _places() if _writable(place)), None)
-    chosen = tempfile.mkdtemp(prefix="vehicle-") if place is None else str(place)
+    folder = next((folder for folder in _candidates() if _writable(folder)), None)
+    chosen = tempfile.mkdtemp(prefix="vehicle-") if folder is None else str(folder)
     os.environ[VARIABLE] = chosen
     if "numba" in sys.modules:
         sys.modules["numba"].config.CACHE_DIR = chosen
 
 
-def _places() -> list[Path]:
+def _candidates() -> list[Path]:
     """Return candidate cache folders outside the package, preferred first."""
-    found = []
+    candidates = []
     named = os.environ.get("XDG_CACHE_HOME", "")
     home = Path(os.path.expanduser("~"))  # noqa: PTH111 - Path.home() raises where there is none
     if Path(named).is_absolute():
-        found.append(Path(named) / "vehicle")
+        candidates.append(Path(named) / "vehicle")
     elif home.is_absolute() and home.is_dir():
-        found.append(home / ".cache" / "vehicle")
+        candidates.append(home / ".cache" / "vehicle")
     shared = Path(tempfile.gettempdir()) / f"vehicle-{os.geteuid()}"
     if _private(shared):
-        found.append(shared)
-    return found
+        candidates.append(shared)
+    return candidates
 
 
 def _private(folder: Path) -> bool:
     """Return True if a folder exists, or can be made, that belongs to this user alone."""
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
-        found = folder.lstat()
+        status = folder.lstat()
     except OSError:
         return False
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o077
+    return stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid() and not status.st_mode & 0o077
 
 
 def _writable(folder: Path) -> bool:
