@@ -8,7 +8,7 @@ from pathlib import Path
 from vehicle.engines.simulation.recording import Recording
 from vehicle.runs.car import Car, Run
 from vehicle.studies.sweeps.case import Case, Input, digest, signal_of
-from vehicle.studies.sweeps.evaluation import run_of
+from vehicle.studies.sweeps.case_evaluation import run_of
 from vehicle.studies.sweeps.executors import process_pool
 
 

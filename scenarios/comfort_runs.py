@@ -19,8 +19,8 @@ from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.evaluation import recordings_of, run_of
-from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
+from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.sweep import sweep
 
 Vector = npt.NDArray[np.float64]

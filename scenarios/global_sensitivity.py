@@ -33,10 +33,10 @@ from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import all_tyre_words, table_cases
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
-from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.store import ROWS
 from vehicle.studies.sweeps.sweep import sweep
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Matrix = npt.NDArray[np.float64]
 

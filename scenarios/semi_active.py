@@ -33,7 +33,7 @@ from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.spectra import band_rms
 from vehicle.studies.sweeps.case import Case, all_tyre_words, overrides_of
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs, Vector
 from vehicle.studies.sweeps.sweep import sweep
 
 CAR = "focus_road"

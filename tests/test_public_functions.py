@@ -23,8 +23,8 @@ from vehicle import (
     write_report,
 )
 from vehicle.signals.records.text_format import write_table
-from vehicle.studies.sweeps.inputs import file_of, inputs_of
 from vehicle.studies.sweeps.plan import changes_of, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import file_of, inputs_of
 from vehicle.studies.tuning.car_fit import ranges_of
 
 VISCOUS = "damper.viscous"

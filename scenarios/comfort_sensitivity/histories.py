@@ -18,7 +18,7 @@ from vehicle.signals.analysis.segments import window_extremes
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import signal_of
-from vehicle.studies.sweeps.evaluation import recordings_of
+from vehicle.studies.sweeps.case_evaluation import recordings_of
 
 Vector = npt.NDArray[np.float64]
 

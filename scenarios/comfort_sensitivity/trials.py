@@ -13,7 +13,7 @@ from scenarios.evidence import COMFORT_ENDS, LEVELS
 from vehicle.signals.analysis.segments import window_extremes
 from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.evaluation import recordings_of
+from vehicle.studies.sweeps.case_evaluation import recordings_of
 
 EDGE_FACTORS = (0.6, 1.7)
 """Of the lower edge of the roads, which is not printed."""

@@ -50,12 +50,12 @@ from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.studies.tuning.car_fit import require_fittable
-from vehicle.studies.tuning.fit import Target, fit
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
+from vehicle.studies.tuning.least_squares import Target, fit
 from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
-from vehicle.studies.tuning.result import TuningResult
 
 
 class Tuning:

@@ -11,10 +11,10 @@ from scenarios.claims import OWN_CHECK, Claim, markdown
 from scenarios.tuning.data import NOISE, SLIDING
 from vehicle.model.parameters.paths import unit_of
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.full_steps import SMALL, FullSteps
 from vehicle.studies.tuning.identifiability import WIDEST
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
-from vehicle.studies.tuning.result import TuningResult
 
 WITHIN = 3.0
 """Standard errors: 99.7 % of the values of a normal distribution; one of nine is beyond in one fit of forty."""

@@ -12,9 +12,9 @@ from scenarios.charts import FrfCurve, draw_frf, figure_file, rows_of
 from vehicle.drawing.rendering.figure import COLOURS, INK
 from vehicle.names import channel_units
 from vehicle.runs.car import Car
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.record_target import RecordTarget
-from vehicle.studies.tuning.result import TuningResult
 
 DATA, START, FITTED = "#9a9a9a", COLOURS[3], COLOURS[0]
 """Light, dotted and dashed: where data and fit agree, both are still seen."""

@@ -40,7 +40,7 @@ from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 
 needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 

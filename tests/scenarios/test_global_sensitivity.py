@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from scenarios.global_sensitivity import RANGES, _evaluate, main, points_of
-from tests.studies.sweeps.pieces import ShortRoad
+from tests.studies.sweeps.sweep_samples import ShortRoad
 from vehicle.errors import DataError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.studies.sweeps.case import table_cases
-from vehicle.studies.sweeps.result import Result
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 
 def test_ranges_hold_the_car():
@@ -36,7 +36,7 @@ def test_points():
 @pytest.mark.parametrize("method", ["sobol", "morris", "lhs"])
 def test_quick(method, tmp_path, capsys):
     arguments = ["--method", method, "--quick", "--output", str(tmp_path / "out"), "--executor"]
-    arguments.append("tests.studies.sweeps.pieces:threads")
+    arguments.append("tests.studies.sweeps.sweep_samples:threads")
     assert main(arguments) == 0
     assert " 0 failed" in capsys.readouterr().out
     files = {path.name for path in (tmp_path / "out").iterdir()}

@@ -13,7 +13,7 @@ from scenarios.semi_active import LEAD_S, RideMeasure, Setting, main, settings
 from vehicle.model.parameters.semi_active import LAWS
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.weighting import weighted_record
-from vehicle.studies.sweeps.runs import Runs
+from vehicle.studies.sweeps.run_batch import Runs
 
 
 def test_settings_cover_laws_roads_delays_and_the_passive_range():

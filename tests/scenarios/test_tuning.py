@@ -15,8 +15,8 @@ from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.records.frf import write_frf
-from vehicle.studies.tuning.fit import fit
 from vehicle.studies.tuning.full_steps import FullSteps
+from vehicle.studies.tuning.least_squares import fit
 
 MOUNT = "bushings.suspension_mount.stiffness.z"
 CHANNELS = ("knuckle_fl_acc_z", "seat_rail_acc_z")

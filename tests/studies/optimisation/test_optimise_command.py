@@ -16,7 +16,7 @@ from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.sweeps.case import SignalFile, table_cases
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
 
 LOOSE = "damper.coulomb_friction=10"
 SKIP = 1.0

@@ -14,8 +14,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.studies.optimisation.problem import Tolerance, Wish, parsed_range, parsed_tolerance, parsed_wishes
 from vehicle.studies.optimisation.trials import Spread, Trials, bands, on_executor, samples_for
 from vehicle.studies.sweeps.case import SignalFile
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.measure import ComfortMeasure
-from vehicle.studies.sweeps.result import Result
 
 ROADS = ("smooth", "rough")
 ROAD, MEASURE = SignalFile(path=Path("road.csv"), wheel="fl"), ComfortMeasure()

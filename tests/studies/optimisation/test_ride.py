@@ -12,7 +12,7 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.optimisation.ride import KINDS, RideMeasure, ride_measure, split
-from vehicle.studies.sweeps.runs import Runs
+from vehicle.studies.sweeps.run_batch import Runs
 
 TIME = np.arange(0.0, 10.0005, 1e-3)
 

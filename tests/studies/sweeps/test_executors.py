@@ -10,13 +10,13 @@ from typing import ClassVar
 
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.studies.sweeps import executors
-from vehicle.studies.sweeps.crew import FILL, PER_WORKER
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.dispatcher import FILL, PER_WORKER
 from vehicle.studies.sweeps.executors import process_pool, workers_of
 from vehicle.studies.sweeps.program import program_digest
-from vehicle.studies.sweeps.result import Result
 from vehicle.studies.sweeps.sweep import case_keys, sweep
 from vehicle.studies.sweeps.worker import carry_out
 

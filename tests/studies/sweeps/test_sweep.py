@@ -15,13 +15,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid, threads
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid, threads
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps import executors
 from vehicle.studies.sweeps.case import SignalFile, table_cases
-from vehicle.studies.sweeps.crew import DIED
+from vehicle.studies.sweeps.dispatcher import DIED
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
 from vehicle.studies.sweeps.sweep import case_keys, sweep
@@ -182,8 +182,8 @@ def test_a_killed_worker_takes_nothing_with_it(tmp_path):
 
 SCRIPT = """
 from pathlib import Path
-from tests.studies.sweeps.pieces import Peak, ShortRoad
-from tests.studies.sweeps.pieces import grid
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad
+from tests.studies.sweeps.sweep_samples import grid
 from vehicle.studies.sweeps.sweep import sweep
 
 if __name__ == "__main__":
@@ -238,7 +238,7 @@ def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
 
 
 def test_an_executor_of_ones_own():
-    make = executor_factory("tests.studies.sweeps.pieces:threads", 1)
+    make = executor_factory("tests.studies.sweeps.sweep_samples:threads", 1)
     table = sweep(two_by_two(), Peak(), executor=make)
     alone = sweep(two_by_two(), Peak(), executor=in_threads)
     assert [r.values for r in table.results] == [r.values for r in alone.results]
@@ -250,7 +250,7 @@ def test_an_executor_of_ones_own():
     [
         ("dusk://host:1", "allowed are dask://host:port and module:factory"),
         ("nowhere.at_all:make", "No module named 'nowhere'"),
-        ("tests.studies.sweeps.pieces:missing", "has no attribute 'missing'"),
+        ("tests.studies.sweeps.sweep_samples:missing", "has no attribute 'missing'"),
         ("threads", "allowed are dask://host:port and module:factory"),
     ],
 )
@@ -261,7 +261,7 @@ def test_bad_executors(text, message):
 
 def test_a_factory_must_return_an_executor():
     with pytest.raises(ConfigurationError, match=r"returned str, needed is a concurrent\.futures\.Executor"):
-        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.pieces:no_executor", 1))
+        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.sweep_samples:no_executor", 1))
 
 
 def test_jobs_below_one_are_refused():

@@ -9,7 +9,7 @@ import pytest
 from vehicle import Car, Road
 from vehicle.commands.sweep import every_combination, main
 from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.table import read_variations
+from vehicle.studies.sweeps.sweep_table import read_variations
 
 
 @pytest.fixture

@@ -12,9 +12,9 @@ from vehicle.runs.car import Car
 from vehicle.signals.excitation.bump import bump
 from vehicle.signals.records.frf import FrfData
 from vehicle.signals.records.table import Record
-from vehicle.studies.tuning.fit import fit
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import SMALL, full_steps
+from vehicle.studies.tuning.least_squares import fit
 from vehicle.studies.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")

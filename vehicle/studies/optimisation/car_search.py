@@ -14,18 +14,18 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
-from vehicle.studies.optimisation.closer_look import chosen_cars, compared, left_validity, new_cars, without_tolerances
-from vehicle.studies.optimisation.found_cars import FoundCars
-from vehicle.studies.optimisation.kept_search import kept_search
+from vehicle.studies.optimisation.front_checks import chosen_cars, compared, left_validity, new_cars, without_tolerances
 from vehicle.studies.optimisation.outcome import outcome
 from vehicle.studies.optimisation.problem import Tolerance, parsed_tolerance, parsed_wishes
 from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.optimisation.search import pymoo
+from vehicle.studies.optimisation.search_result import FoundCars
+from vehicle.studies.optimisation.stored_search import kept_search
 from vehicle.studies.optimisation.trials import ALONE, Spread, Trials, bands, on_executor, samples_for
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import process_pool
-from vehicle.studies.sweeps.inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
 
 Tolerances = Mapping[str, float | str] | Sequence[Tolerance]
 """Path to half of the band: in the unit of the parameter, or as "15%"."""

@@ -16,7 +16,7 @@ from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs, Vector
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
 SEAT = tuple(f"seat_acc_{axis}" for axis in AXES)

@@ -15,12 +15,12 @@ import scipy
 from vehicle.errors import ConfigurationError
 from vehicle.studies.optimisation.problem import Problem, Tolerance, Vector
 from vehicle.studies.sweeps.case import Case, Input, table_cases
-from vehicle.studies.sweeps.crew import Crew
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.measure import Measure
-from vehicle.studies.sweeps.result import Result
 
 Evaluate = Callable[[Sequence[Case], Measure], Sequence[Result]]
-"""As of `vehicle.studies.sweeps.evaluation.evaluate`."""
+"""As of `vehicle.studies.sweeps.case_evaluation.evaluate`."""
 
 
 def on_executor(executor: Executor, measure: Measure) -> Evaluate:
@@ -30,12 +30,12 @@ def on_executor(executor: Executor, measure: Measure) -> Evaluate:
         executor: as of `vehicle.studies.sweeps.executors`.
         measure: of all cases.
     """
-    crew = Crew(executor, measure)
+    dispatcher = Dispatcher(executor, measure)
 
     def evaluate(cases: Sequence[Case], _: Measure) -> list[Result]:
         found: dict[str, Result] = {}
         todo = {str(number): case for number, case in enumerate(cases)}
-        crew.work(todo, lambda keys, results: found.update(zip(keys, results, strict=True)))
+        dispatcher.work(todo, lambda keys, results: found.update(zip(keys, results, strict=True)))
         return [found[key] for key in todo]
 
     return evaluate

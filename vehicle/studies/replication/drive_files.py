@@ -13,7 +13,7 @@ from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.signals.records.formats import write_record
 from vehicle.signals.records.table import Record
-from vehicle.studies.replication.found_drive import FoundDrive
+from vehicle.studies.replication.drive_search import FoundDrive
 from vehicle.studies.replication.iteration import Replication
 
 FILES = {

@@ -21,7 +21,7 @@ from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.measure import WAVE_NAMES
-from vehicle.studies.sweeps.table import SweepTable, changes
+from vehicle.studies.sweeps.sweep_table import SweepTable, changes
 
 DIFFERENCES = "differences.csv"
 """Name of the file of a sweep."""

@@ -16,7 +16,7 @@ from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES
 from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
 from vehicle.signals.analysis.slip import first_slips, slip_shares
-from vehicle.studies.sweeps.runs import Runs, Vector, single
+from vehicle.studies.sweeps.run_batch import Runs, Vector, single
 
 
 class Measure(Protocol):

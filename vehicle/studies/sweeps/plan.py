@@ -17,10 +17,10 @@ from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.model.parameters.whole_body import body_rules
 from vehicle.runs.car import Car
 from vehicle.studies.sweeps.case import Case, all_tyre_words, varied_cases
-from vehicle.studies.sweeps.inputs import Source, common_start, file_of, inputs_of
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
 from vehicle.studies.sweeps.sweep import Progress, sweep
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Variations = Mapping[str, Sequence[Any]] | Sequence[Iterable[str] | Mapping[str, Any]]
 """Path to values, for every combination; or a list of variations, each path to value or texts "path=value"."""

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from vehicle.errors import DataError, OutputError
 from vehicle.runs.output.written_files import note
-from vehicle.studies.sweeps.result import Result
+from vehicle.studies.sweeps.case_result import Result
 
 ROWS = "rows.jsonl"
 

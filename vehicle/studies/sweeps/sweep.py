@@ -18,14 +18,14 @@ from vehicle.model.parameters.template import SHIPPED as TEMPLATES
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.folder import folder_lock, write_text
 from vehicle.studies.sweeps.case import Case, digest, drivings
-from vehicle.studies.sweeps.crew import Crew
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.differences import DIFFERENCES, differences_text
+from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.executors import process_pool
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
 from vehicle.studies.sweeps.program import class_source, libraries, program_digest
-from vehicle.studies.sweeps.result import Result
 from vehicle.studies.sweeps.store import ROWS, Store
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Progress = Callable[[float], None]
 
@@ -92,7 +92,7 @@ def sweep(
         done: set[str] = set()
         try:
             if todo:
-                Crew(executor or partial(process_pool, jobs), chosen).work(todo, keep)
+                Dispatcher(executor or partial(process_pool, jobs), chosen).work(todo, keep)
         finally:
             if store is not None:
                 store.close()

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import require_same_program
-from vehicle.studies.sweeps.result import Result
 
 
 def carry_out(cases: Sequence[Case], measure: Measure, program: str) -> list[Result]:

@@ -10,11 +10,11 @@ from vehicle.model.parameters.paths import full_path, overrides_of, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
-from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.least_squares import fit
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
-from vehicle.studies.tuning.result import TuningResult
 
 Bounds = Sequence[float]
 """Lower and upper bound of a parameter in its unit, and where given the start of the fit."""

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.runs.car import Run
-from vehicle.studies.tuning.fit import Target
-from vehicle.studies.tuning.result import TuningResult, target_statistics
+from vehicle.studies.tuning.fit_result import TuningResult, target_statistics
+from vehicle.studies.tuning.least_squares import Target
 
 Vector = npt.NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.model.parameters.whole_body import body_rules
 from vehicle.runs.car import Car
 from vehicle.studies.optimisation.car_table import columns
-from vehicle.studies.optimisation.closer_look import NEW_CARS, Differences, Shares
+from vehicle.studies.optimisation.front_checks import NEW_CARS, Differences, Shares
 from vehicle.studies.optimisation.outcome import Outcome
 from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.search_files import Beside, agreement, numbers, write_search

@@ -23,8 +23,8 @@ import scipy
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range, checked_ranges
+from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, target_statistics
 from vehicle.studies.tuning.identifiability import Unidentified, covariance, worst_direction
-from vehicle.studies.tuning.result import RowStatistics, TuningResult, target_statistics
 
 Vector = npt.NDArray[np.float64]
 

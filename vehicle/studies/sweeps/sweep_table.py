@@ -20,7 +20,7 @@ from vehicle.signals.records.formats import recognised_format
 from vehicle.signals.records.sheet_format import read_sheet_texts
 from vehicle.signals.records.text_format import read_texts
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.result import Result
+from vehicle.studies.sweeps.case_result import Result
 
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Columns beside the parameters and the numbers, whose heads have units."""

@@ -7,9 +7,9 @@ from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
-from vehicle.studies.sweeps.crew import DIED, FILL, LARGEST, PER_WORKER, TASK_S, Crew, in_groups
-from vehicle.studies.sweeps.result import Result
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.dispatcher import DIED, FILL, LARGEST, PER_WORKER, TASK_S, Dispatcher, in_groups
 
 
 class Paced(Executor):
@@ -40,7 +40,7 @@ def many(count, engine="auto"):
 
 def worked(todo, executor):
     found: dict[str, Result] = {}
-    Crew(lambda: executor, Peak()).work(todo, lambda keys, results: found.update(zip(keys, results, strict=True)))
+    Dispatcher(lambda: executor, Peak()).work(todo, lambda keys, results: found.update(zip(keys, results, strict=True)))
     assert set(found) == set(todo)
     return found
 

@@ -23,9 +23,9 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case, signal_of
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure
-from vehicle.studies.sweeps.result import Result
-from vehicle.studies.sweeps.runs import Runs
+from vehicle.studies.sweeps.run_batch import Runs
 
 T = TypeVar("T")
 R = TypeVar("R")

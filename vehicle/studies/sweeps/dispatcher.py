@@ -9,10 +9,10 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, 
 
 from vehicle.errors import SimulationError, VehicleError
 from vehicle.studies.sweeps.case import Case
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.executors import workers_of
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import program_digest
-from vehicle.studies.sweeps.result import Result
 from vehicle.studies.sweeps.worker import carry_out
 
 PER_WORKER = 2
@@ -46,7 +46,7 @@ def in_groups(todo: dict[str, Case]) -> deque[str]:
     return deque(sorted(todo, key=order.__getitem__))
 
 
-class Crew:
+class Dispatcher:
     """Hands cases to an executor and survives the death of its workers.
 
     Args:

@@ -15,7 +15,7 @@ from vehicle.signals.analysis.slip import slip_shares
 from vehicle.signals.excitation.exact_road import RATE_HZ, road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs, Vector
 
 SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
 

@@ -6,7 +6,7 @@ import pytest
 from tests.studies.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses, response
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range
-from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.least_squares import fit
 
 PARAMETERS = (
     Range(path="lower", low=5e4, high=1e6, start=1.6e5),

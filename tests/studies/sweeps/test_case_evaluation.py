@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
 
 MEASURE = ComfortMeasure(skip=0.2)
