@@ -94,7 +94,7 @@ def test_parameters_of_a_fit_start_at_the_car(focus):
         ranges_of(focus.vehicle, {VISCOUS: (500.0,)})
     with pytest.raises(ConfigurationError, match=r"the nearest is front\.damper\.viscous"):
         tune_car(focus, {"damper.vicsous": (1.0, 2.0)}, [])
-    with pytest.raises(ConfigurationError, match="targets: none to fit to"):
+    with pytest.raises(ConfigurationError, match="targets: no measurement to fit to"):
         tune_car(focus, {VISCOUS: (500.0, 5000.0)}, [])
 
 

@@ -49,7 +49,7 @@ def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim
     held = next((one for one in result.unidentified if one.path == path), None)
     if held is not None:
         return OWN_CHECK.statement(
-            name, f"hidden {true:g}", f"not told by the data, held at {held.held_at:g}", True, held.sentence()
+            name, f"hidden {true:g}", f"not told by the data, held at {held.held_at:g}", True, held.message()
         )
     away = result.deviation(path, true)
     start = next(one.start for one in result.parameters if one.path == path)
@@ -134,7 +134,7 @@ def fit_notes(title: str, result: TuningResult, final: FullSteps | None) -> list
         _values(result, final),
     ]
     if result.unidentified:
-        sentences = "\n".join(f"- {one.sentence()}" for one in result.unidentified)
+        sentences = "\n".join(f"- {one.message()}" for one in result.unidentified)
         notes.append(
             "Not identified (a direction of the weighted Jacobian with a standard error above "
             f"{WIDEST:.2g} half widths of the bounds, half of what the bounds alone say):\n\n{sentences}"

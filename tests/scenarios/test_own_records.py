@@ -81,7 +81,7 @@ def test_the_part_that_counts(files):
     assert measured(files, "--delay", "0.2", "--stretch", "0.25:0.9").window == pytest.approx((0.25, 0.9))
     late = measured(files)  # taken to begin with the signal: nothing fits
     assert np.sqrt(np.mean(late.residuals(Car.load(overrides=STRIBECK)) ** 2)) > 0.5
-    with pytest.raises(DataError, match="nothing in common; give --delay S"):
+    with pytest.raises(DataError, match="no overlap; set --delay S"):
         measured(files, "--delay", "5")
 
 

@@ -84,7 +84,7 @@ def test_options_of_own_files_are_checked(tmp_path, capsys):
                 *("--set", "damper.friction_law=stribeck", "--fit", "damper.stribeck_friction=50:300:120"),
                 *("--fit", "damper.coulomb_friction=20:100:75"),
             ],
-            "the friction at rest must stay at or above that of sliding",
+            "static friction must not be below sliding friction",
         ),
         (["--channel", "engine_acc_z"], "no channel engine_acc_z; there are knuckle_fl_acc_z, seat_rail_acc_z"),
     ):
@@ -132,7 +132,7 @@ def test_rows_say_what_was_missed(masses):
 
 def test_notes_name_everything(masses):
     text = "\n".join(fit_notes("A fit", masses, finished(masses)))
-    assert "colour: the data cannot tell it (" in text and "held at 2" in text
+    assert "colour: the data do not identify this parameter (" in text and "held at 2" in text
     assert "| damping | 166.667 to 13500 | 2100 |" in text and "-0.50" in text
     assert "body, phase | 60" in text
     assert "damping 1" in frozen_note(masses, {**TRUE, "colour": 2.0})

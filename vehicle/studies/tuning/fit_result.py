@@ -1,4 +1,4 @@
-"""What a fit found, how far to trust it, and the statistics of its residuals, which lie in rows."""
+"""Result of a fit: values, standard errors, correlation, and residual statistics row by row."""
 
 from __future__ import annotations
 
@@ -15,24 +15,26 @@ Vector = npt.NDArray[np.float64]
 
 
 SURE = 2.0
-"""A correlation of neighbours counts from this many of its own standard errors 1/sqrt(n) on, n values of all rows."""
+"""Minimum significant correlation of neighbours, in standard errors 1/sqrt(n) of the correlation, n values of all rows.
+"""
 
 LEAST_VALUES = 8
-"""Values that a row must hold for its size to be found from them; a shorter one is taken as assumed."""
+"""Minimum number of values from which the scale of a row is estimated; a shorter row uses the assumed deviation."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RowStatistics:
-    """Residuals of one row over the standard deviation that was assumed for it.
+    """Statistics of the residuals of one row over the assumed standard deviation.
 
     Attributes:
-        name: what the row is.
-        count: values that count.
-        mean: [-].
-        rms: of the residuals, freed from the share that the parameters took; 1 where the assumption was right.
-        neighbours: correlation of neighbours, 0 where they know nothing of each other.
-        inflation: (1 + rho) / (1 - rho) for a correlation rho of all rows of the target that counts, else 1: as many
-            neighbours make one independent value.
+        name: name of the row.
+        count: number of included values.
+        mean: mean of the residuals [-].
+        rms: RMS of the residuals, corrected for the degrees of freedom of the parameters; 1 if the assumed deviation
+            was right [-].
+        neighbours: correlation of neighbouring samples, 0 for independent samples [-].
+        inflation: samples per independent value, (1 + rho) / (1 - rho) for a significant correlation rho of all rows of
+            the target, else 1 [-].
     """
 
     name: str
@@ -44,8 +46,7 @@ class RowStatistics:
 
     @property
     def scale(self) -> float:
-        """What the assumed standard deviation has to be multiplied by for the sum of squares of the row to count as its
-        independent values do."""
+        """Factor on the assumed standard deviation that weights the row by the number of its independent values [-]."""
         return float(self.rms * np.sqrt(self.inflation))
 
 
@@ -54,23 +55,23 @@ class TuningResult:
     """Fitted parameters with standard errors, correlation and residual statistics.
 
     Attributes:
-        parameters: all that were given.
-        values: path to fitted value; the start for those held.
-        standard_errors: path to standard error, in the unit of the value; NaN for those held or at a bound.
+        parameters: all parameters with bounds and start values.
+        values: path to fitted value; the start value of a held parameter.
+        standard_errors: path to standard error, in the unit of the value; NaN for a parameter held or at a bound.
         free: paths that were fitted and are not at a bound: rows of `correlation`.
-        correlation: of the free ones, (p, p).
-        unidentified: parameters that the data cannot tell; they were held at their start.
-        at_bound: paths whose value ended at a bound: wrong bounds, or a model that cannot follow.
+        correlation: correlation of the free parameters, (p, p).
+        unidentified: unidentifiable parameters, held at their start values.
+        at_bound: paths whose value ended at a bound: wrong bounds, or a model that cannot reproduce the data.
         condition: largest over smallest singular value of the weighted Jacobian, columns in half widths [-].
         rows: statistics of the residuals, row by row.
         before: root of the mean square of the weighted residuals at the start [-].
-        after: the same at the fitted values; 1 where the residuals are as large as the noise found from them.
+        after: root of the mean square at the fitted values [-]; 1 if the residuals are as large as the estimated noise.
         cost: half the sum of squares of the weighted residuals.
-        evaluations: of the model, those for the Jacobians included.
-        converged: whether the iteration ended at a minimum.
-        message: of the iteration.
-        sensitivity: -(J' J)^-1 J' of the free ones, (p, residuals): d ln(value) / d (weighted residuals).
-        weights: of the residuals, one for each row: 1 / (assumed standard deviation times its scale).
+        evaluations: number of model evaluations, including those for the Jacobians.
+        converged: True if the iteration ended at a minimum.
+        message: message of the optimiser.
+        sensitivity: -(J' J)^-1 J' of the free parameters, (p, residuals): d ln(value) / d (weighted residuals).
+        weights: weights of the residuals, (residuals,): 1 over the scale of the row.
     """
 
     parameters: tuple[Range, ...]
@@ -92,58 +93,61 @@ class TuningResult:
     weights: Vector
 
     def deviation(self, path: str, value: float) -> float:
-        """(fitted - value) of a parameter over its standard error [-]."""
+        """Return (fitted - value) of a parameter over its standard error [-]."""
         return (self.values[path] - value) / self.standard_errors[path]
 
     def shift(self, residuals: Vector) -> dict[str, float]:
-        """Gauss-Newton step of the free parameters for given residuals.
+        """Return the Gauss-Newton step of the free parameters for given residuals.
 
         Args:
-            residuals: without the weights, in the order of the targets and their rows, (residuals,).
+            residuals: unweighted residuals in the order of the targets and their rows, (residuals,).
 
         Returns:
             Path to step of ln(value).
         """
         step = self.sensitivity @ (residuals * self.weights)
-        return {path: float(one) for path, one in zip(self.free, step, strict=True)}
+        return {path: float(component) for path, component in zip(self.free, step, strict=True)}
 
 
 def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: float) -> tuple[RowStatistics, ...]:
     """Return the statistics of the rows of one target.
 
-    Neighbours are taken as an autoregression of first order, whose mean over n values varies like that of
-    n (1 - rho) / (1 + rho) independent ones. One rho for all rows, since one estimator or filter made all of them: that
-    of a single short row would scatter and with it the weights.
+    The residuals are modelled as a first-order autoregression, whose mean over n values varies like the mean of
+    n (1 - rho) / (1 + rho) independent values. All rows share one rho, because one estimator or filter made all rows;
+    the rho of a single short row would scatter, and so would the weights.
 
     Args:
-        names: what each row is.
-        rows: residuals, zero where a value does not count; (n,) each.
+        names: names of the rows.
+        rows: residuals, zero where a value is excluded; (n,) each.
         freedom: degrees of freedom of all residuals over their number [-].
 
     Returns:
-        One for each row; `neighbours` is that of the row, `inflation` that of all.
+        Statistics of each row; `neighbours` is computed from the row, `inflation` from all rows.
 
     Source: Bartlett, On the theoretical specification and sampling properties of autocorrelated time-series, Journal of
     the Royal Statistical Society B 8, 1946.
     """
     values = [row[row != 0.0] for row in rows]
-    own = [float(np.sum(one[1:] * one[:-1]) / np.sum(one**2)) if one.size >= LEAST_VALUES else 0.0 for one in values]
-    counts = np.array([one.size if one.size >= LEAST_VALUES else 0 for one in values])
+    correlations = [
+        float(np.sum(residuals[1:] * residuals[:-1]) / np.sum(residuals**2)) if residuals.size >= LEAST_VALUES else 0.0
+        for residuals in values
+    ]
+    counts = np.array([residuals.size if residuals.size >= LEAST_VALUES else 0 for residuals in values])
     total = int(counts.sum())
     inflation = 1.0
     if total:
-        shared = float(counts @ own) / total
+        shared = float(counts @ correlations) / total
         if shared * np.sqrt(total) > SURE:
             shared = min(shared, 0.98)
             inflation = (1.0 + shared) / (1.0 - shared)
     return tuple(
         RowStatistics(
             name=name,
-            count=int(one.size),
-            mean=float(np.mean(one)) if one.size else 0.0,
-            rms=float(np.sqrt(np.mean(one**2) / freedom)) if one.size >= LEAST_VALUES else 1.0,
+            count=int(residuals.size),
+            mean=float(np.mean(residuals)) if residuals.size else 0.0,
+            rms=float(np.sqrt(np.mean(residuals**2) / freedom)) if residuals.size >= LEAST_VALUES else 1.0,
             neighbours=rho,
-            inflation=inflation if one.size >= LEAST_VALUES else 1.0,
+            inflation=inflation if residuals.size >= LEAST_VALUES else 1.0,
         )
-        for name, one, rho in zip(names, values, own, strict=True)
+        for name, residuals, rho in zip(names, values, correlations, strict=True)
     )
