@@ -54,7 +54,6 @@ def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
     replication, plant, run = drive.replication, drive.plant, drive.run
     target = plant.target
     signal, low, high = plant.signal(replication.drive), *target.band
-
     errors = dict(
         zip(target.channels, min(replication.steps, key=lambda step: step.error).errors.tolist(), strict=True)
     )
