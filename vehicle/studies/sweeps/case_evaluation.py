@@ -1,4 +1,4 @@
-"""Results of many cases in this process: cars are varied from one, and marched side by side where the engine allows."""
+"""Evaluation of the cases of a sweep in this process, in batches where the reduced engine supports it."""
 
 from __future__ import annotations
 
@@ -30,55 +30,55 @@ from vehicle.studies.sweeps.run_batch import Runs
 T = TypeVar("T")
 R = TypeVar("R")
 
-TOGETHER = 4 * LANES
-"""Most cars that are in memory at once."""
+BATCH_CARS = 4 * LANES
+"""Maximum number of cars in memory."""
 ROOM = 2**26
-"""Most channels that are in memory at once [byte]: of 32 cars about half a minute of six."""
+"""Maximum size of the channels in memory [byte]: six channels of 32 cars for about half a minute."""
 
 OF_A_RUN = (VehicleError, ArithmeticError, ValueError, MemoryError)
-"""Errors that are about a run, and become its reason."""
+"""Errors of a single run, stored as the reason of its failure."""
 
 _ONE_AT_A_TIME = threading.Lock()
-"""MuJoCo's callbacks belong to the whole process, and an executor of threads may be given."""
+"""Lock for MuJoCo, whose callbacks belong to the whole process: an executor may use threads."""
 
 
 def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
-    """Carry out cases and measure them.
+    """Evaluate the cases of a sweep in this process, in batches where the reduced engine supports it.
 
     Args:
-        cases: the runs; those of one car need not stand together.
-        measure: turns them into numbers.
+        cases: the runs, in any order.
+        measure: measure of each run.
 
     Returns:
-        Results in the order of the cases; a run that fails has its reason instead of numbers. The numbers of a case do
-        not depend on the others, to the last digit.
+        Results in the order of the cases; a failed case has an error message instead of values. The values of a case
+        are bitwise independent of the other cases.
     """
-    found: dict[int, Result] = {}
+    results: dict[int, Result] = {}
     if isinstance(measure, BatchMeasure) and has_compiler():
         cars: dict[Hashable, list[int]] = {}
         for number, case in enumerate(cases):
             if case.engine != "mujoco":
                 cars.setdefault((case.vehicle, case.shared, case.overrides), []).append(number)
-        together = list(cars.values())
-        for first in range(0, len(together), TOGETHER):
-            some = [number for car in together[first : first + TOGETHER] for number in car]
-            found |= zip(some, _side_by_side([cases[number] for number in some], measure), strict=True)
-    return [found[number] if number in found else _alone(case, measure) for number, case in enumerate(cases)]
+        numbers_by_car = list(cars.values())
+        for first in range(0, len(numbers_by_car), BATCH_CARS):
+            batch = [number for car in numbers_by_car[first : first + BATCH_CARS] for number in car]
+            results |= zip(batch, _batch_results([cases[number] for number in batch], measure), strict=True)
+    return [results[number] if number in results else _single(case, measure) for number, case in enumerate(cases)]
 
 
 def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:
-    """Carry out the run of a case by itself; channels as of `Car.run`."""
+    """Run a single case; channels as in `Car.run`."""
     car = _loaded(case.vehicle, _changed(case.vehicle), case.overrides)
     return car.run(signal_of(case.source), engine=case.engine, channels=channels)
 
 
-# A study asks the same car about several roads in a row; building one costs as much as half a minute on the road.
+# A study runs the same car on several roads in succession; building a car costs as much as half a minute of road.
 @lru_cache(maxsize=4)
 def _loaded(vehicle: Path | None, changed: int, overrides: tuple[str, ...]) -> Car:
     return Car.load(vehicle, overrides)
 
 
-# Apart from those that are run by themselves, so that these do not push it out.
+# A separate cache, so that cars of single runs do not evict the reference car.
 @lru_cache(maxsize=4)
 def _reference(vehicle: Path | None, changed: int, shared: tuple[str, ...]) -> Car:
     return Car.load(vehicle, shared)
@@ -90,7 +90,7 @@ def _varied(vehicle: Path | None, changed: int, shared: tuple[str, ...], overrid
 
 
 def _car_of(case: Case) -> Car:
-    """The car of a case, varied from the one with what its study shares; checked for the reduced engine."""
+    """Return the car of a case, modified from the reference car of the study and checked for the reduced engine."""
     changed = _changed(case.vehicle)
     with _ONE_AT_A_TIME:
         car = _varied(case.vehicle, changed, case.overrides[: case.shared], case.overrides[case.shared :])
@@ -99,12 +99,12 @@ def _car_of(case: Case) -> Car:
 
 
 def _changed(vehicle: Path | None) -> int:
-    """When a vehicle file was changed last [ns]."""
+    """Return the modification time of a vehicle file [ns]; 0 without a file."""
     return 0 if vehicle is None or not vehicle.exists() else vehicle.stat().st_mtime_ns
 
 
-def _alone(case: Case, measure: Measure, engine: str | None = None) -> Result:
-    """Result of a run by itself, with another engine than that of the case if one is given."""
+def _single(case: Case, measure: Measure, engine: str | None = None) -> Result:
+    """Run a single case and return its result; `engine` replaces the engine of the case."""
     started = clock.perf_counter()
     try:
         with _ONE_AT_A_TIME:
@@ -115,8 +115,8 @@ def _alone(case: Case, measure: Measure, engine: str | None = None) -> Result:
     return Result(values=values, engine=run.recording.statistics.engine, seconds=clock.perf_counter() - started)
 
 
-def _side_by_side(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]:
-    """Results of runs with the reduced engine, and with MuJoCo of those that leave its validity and may."""
+def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]:
+    """Run a batch with the reduced engine; rerun cases outside its valid range with MuJoCo if the case allows it."""
     started = clock.perf_counter()
     found: dict[int, Result | None] = {}
     cars: dict[int, Car] = {}
@@ -128,66 +128,73 @@ def _side_by_side(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]:
         except OF_A_RUN as error:
             found[number] = _failed(error)
         else:
-            groups.setdefault((case.source, case.engine, kind(cars[number])), []).append(number)
+            groups.setdefault((case.source, case.engine, batch_key(cars[number])), []).append(number)
     for group in groups.values():
         case, rate = cases[group[0]], cars[group[0]].vehicle.solver.record_rate
         signal = signal_of(case.source)
         size = int(max(ROOM / (8.0 * len(measure.channels) * (signal.duration * rate + 1.0)), 1.0))
         for first in range(0, len(group), size):
-            some = group[first : first + size]
-            runs = marched([cars[number] for number in some], signal, measure, beyond=case.engine == "reduced")
-            found |= zip(some, runs, strict=True)
+            batch = group[first : first + size]
+            accept = case.engine == "reduced"
+            runs = measured_batch([cars[number] for number in batch], signal, measure, accept_invalid=accept)
+            found |= zip(batch, runs, strict=True)
     seconds = (clock.perf_counter() - started) / len(cases)
-    results = [found[number] or _alone(case, measure, "mujoco") for number, case in enumerate(cases)]
-    return [replace(one, seconds=one.seconds + seconds) for one in results]
+    results = [found[number] or _single(case, measure, "mujoco") for number, case in enumerate(cases)]
+    return [replace(result, seconds=result.seconds + seconds) for result in results]
 
 
 def _require(vehicle: Vehicle, signal: Signal, measure: BatchMeasure) -> None:
-    """Refuse what `Car.run` refuses."""
+    """Check channels, wheels and number of samples, as `Car.run` does."""
     vehicle.require_channels(measure.channels, vehicle.channels)
     vehicle.require_wheels(signal.wheels)
     require_samples(signal.duration * vehicle.solver.record_rate, len(measure.channels))
 
 
-def kind(car: Car) -> Hashable:
-    """What cars that are marched together have in common: all names, and the rate of the samples."""
-    own = car.vehicle
-    dampers = tuple(damper.name for damper in own.composition.dampers)
-    return own.wheels, dampers, own.channels, tuple(car.matrices.body_rows), own.solver.record_rate
+def batch_key(car: Car) -> Hashable:
+    """Return the key shared by all cars of a batch: channel and element names, and the sample rate."""
+    vehicle = car.vehicle
+    dampers = tuple(damper.name for damper in vehicle.composition.dampers)
+    return vehicle.wheels, dampers, vehicle.channels, tuple(car.matrices.body_rows), vehicle.solver.record_rate
 
 
-def marched(cars: Sequence[Car], signal: Signal, measure: BatchMeasure, *, beyond: bool) -> list[Result | None]:
-    """Results of cars of one kind on a signal.
+def measured_batch(
+    cars: Sequence[Car], signal: Signal, measure: BatchMeasure, *, accept_invalid: bool
+) -> list[Result | None]:
+    """Simulate a batch of cars on a signal with the reduced engine and return the result of each car.
 
     Args:
-        cars, signal, measure: as of a run.
-        beyond: whether a run beyond the validity of the reduced engine counts; else its result is None.
+        cars: cars with equal `batch_key`.
+        signal: plate signals of all cars.
+        measure: measure of all runs.
+        accept_invalid: keep runs outside the valid range of the reduced engine; otherwise their result is None.
     """
     try:
-        many = _marched(cars, signal, measure.channels, measure.timestep)
+        simulated = _simulated(cars, signal, measure.channels, measure.timestep)
     except OF_A_RUN as error:
-        return _each(cars, error, lambda car: marched([car], signal, measure, beyond=beyond)[0])
-    found: list[Result | None] = [None] * len(cars)
+        return _retry_each(
+            cars, error, lambda car: measured_batch([car], signal, measure, accept_invalid=accept_invalid)[0]
+        )
+    results: list[Result | None] = [None] * len(cars)
     good = []
-    for row, statistics in enumerate(many.statistics):
-        if beyond or statistics.within_validity:
+    for row, statistics in enumerate(simulated.statistics):
+        if accept_invalid or statistics.within_validity:
             try:
-                require_finite(many.recording(row))
+                require_finite(simulated.recording(row))
                 good.append(row)
             except SimulationError as error:
-                found[row] = _failed(error)
+                results[row] = _failed(error)
     if good:
-        for row, result in zip(good, _measured(cars, many, good, measure), strict=True):
-            found[row] = result
-    return found
+        for row, result in zip(good, _measured(cars, simulated, good, measure), strict=True):
+            results[row] = result
+    return results
 
 
-def _measured(cars: Sequence[Car], many: ManyRuns, rows: list[int], measure: BatchMeasure) -> list[Result]:
-    """Numbers of some of many runs."""
+def _measured(cars: Sequence[Car], simulated: ManyRuns, rows: list[int], measure: BatchMeasure) -> list[Result]:
+    """Return the values of selected rows of a simulated batch."""
     whole = len(rows) == len(cars)
     runs = Runs(
-        time=many.time,
-        channels={name: table if whole else table[rows] for name, table in many.channels.items()},
+        time=simulated.time,
+        channels={name: table if whole else table[rows] for name, table in simulated.channels.items()},
         vehicles=tuple(cars[row].vehicle for row in rows),
         tyre_load={
             wheel: np.array([cars[row].static.tyre_load[wheel] for row in rows]) for wheel in cars[0].vehicle.wheels
@@ -196,41 +203,41 @@ def _measured(cars: Sequence[Car], many: ManyRuns, rows: list[int], measure: Bat
     try:
         columns = measure.of(runs)
     except OF_A_RUN as error:
-        return _each(rows, error, lambda row: _measured(cars, many, [row], measure)[0])
-    found = []
-    for place, row in enumerate(rows):
+        return _retry_each(rows, error, lambda row: _measured(cars, simulated, [row], measure)[0])
+    results = []
+    for index, row in enumerate(rows):
         try:
-            values = _checked({name: float(column[place]) for name, column in columns.items()})
-            found.append(Result(values=values, engine=many.statistics[row].engine))
+            values = _checked({name: float(column[index]) for name, column in columns.items()})
+            results.append(Result(values=values, engine=simulated.statistics[row].engine))
         except SimulationError as error:
-            found.append(_failed(error))
-    return found
+            results.append(_failed(error))
+    return results
 
 
-def _each(items: Sequence[T], error: Exception, one: Callable[[T], R]) -> list[R | Result]:
-    """Each of several by itself after an error of all together, so that only what has it fails."""
-    return [one(item) for item in items] if len(items) > 1 else [_failed(error)]
+def _retry_each(items: Sequence[T], error: Exception, retry: Callable[[T], R]) -> list[R | Result]:
+    """Retry the items of a failed batch one at a time, so that only the faulty item fails."""
+    return [retry(item) for item in items] if len(items) > 1 else [_failed(error)]
 
 
 def recordings_of(cases: Sequence[Case], channels: Sequence[str]) -> list[Recording]:
-    """Time histories of cars of one kind on one input with the reduced engine, marched side by side as in a sweep.
+    """Return time histories of cars on one input, simulated as a batch with the reduced engine as in a sweep.
 
     Args:
-        cases: the runs; their engine is not looked at.
+        cases: runs on one input of cars with equal `batch_key`; the engine of a case is ignored.
         channels: names of the recorded channels.
 
     Raises:
-        VehicleError: as of `Car.run`.
+        VehicleError: see `Car.run`.
     """
     cars, signal = [_car_of(case) for case in cases], signal_of(cases[0].source)
-    many = _marched(cars, signal, channels, COARSE_STEP)
-    for row in range(len(many)):
-        require_finite(many.recording(row))
-    return [many.recording(row) for row in range(len(many))]
+    simulated = _simulated(cars, signal, channels, COARSE_STEP)
+    for row in range(len(simulated)):
+        require_finite(simulated.recording(row))
+    return [simulated.recording(row) for row in range(len(simulated))]
 
 
-def _marched(cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float) -> ManyRuns:
-    """Cars of one kind on a signal."""
+def _simulated(cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float) -> ManyRuns:
+    """Simulate a batch of cars on a signal with the reduced engine."""
     return simulate_many(
         [car.poles for car in cars],
         signal,
@@ -243,15 +250,15 @@ def _marched(cars: Sequence[Car], signal: Signal, channels: Sequence[str], step:
 
 
 def _checked(values: dict[str, float]) -> dict[str, float]:
-    """The numbers of a run, none of them infinite."""
-    # NaN is a number that does not exist, as the first slip of a damper that never slips.
-    endless = [name for name, value in values.items() if math.isinf(value)]
-    if endless:
-        raise SimulationError(f"{', '.join(endless)}: infinite; the run left the range of numbers")
+    """Check that no value of a run is infinite, and return the values."""
+    # NaN is an undefined value, as the first slip of a damper that never slips.
+    infinite = [name for name, value in values.items() if math.isinf(value)]
+    if infinite:
+        raise SimulationError(f"{', '.join(infinite)}: infinite; the run overflowed")
     return values
 
 
 def _failed(error: Exception, started: float | None = None) -> Result:
-    """The reason of a run that failed."""
+    """Return the result of a failed run with its error message."""
     seconds = 0.0 if started is None else clock.perf_counter() - started
     return Result(reason=f"{type(error).__name__}: {error}", seconds=seconds)

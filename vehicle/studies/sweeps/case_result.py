@@ -1,4 +1,4 @@
-"""What is kept of a case: its numbers, or why there are none."""
+"""Result of a case of a sweep."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Result:
-    """Numbers of a run, or why there are none.
+    """Values of a run, or the error message of a failed run.
 
     Attributes:
-        values: name to number; empty where the run failed.
-        engine: engine that answered; empty where the run failed.
-        reason: why it failed; empty where it did not.
-        seconds: computing time, building the car included; of runs that are computed together an equal share each [s].
+        values: name to value; empty for a failed run.
+        engine: engine of the run; empty for a failed run.
+        reason: error message of a failed run; else empty.
+        seconds: computing time including the building of the car [s]; runs of a batch share the time equally.
     """
 
     values: dict[str, float] = field(default_factory=dict)

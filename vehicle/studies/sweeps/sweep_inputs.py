@@ -1,4 +1,4 @@
-"""Inputs of many runs from what a user names: files, roads, signals."""
+"""Inputs of a sweep from files, names of shipped files, roads and signals."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
 
 Source = Input | Road | Path | str
-"""An input of a run: a file or the name of a shipped one, a road, a signal, or an input of your own."""
+"""Input of a run: a file, the name of a shipped file, a road, a signal, or a user-defined input."""
 
 START_S = 2.0
 """Default start of the evaluation on plate signals [s]: the car starts at rest."""
@@ -27,70 +27,70 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
     """Return the inputs of the runs of a car.
 
     Args:
-        car: the car, which says where its wheels are on a road.
-        sources: one or several.
+        car: the car, with the positions of its wheels on a road.
+        sources: one or several sources.
 
     Returns:
-        Inputs in the order of the sources; the name of a road contains its seed where another seed is among them.
+        Inputs in the order of the sources; the name of a road contains the seed if the road appears with several seeds.
 
     Raises:
-        ConfigurationError: no input, no such file, or a road that the car cannot drive over.
+        ConfigurationError: no input, a missing file, or a road that the car cannot drive on.
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
     listed = list(sources) if isinstance(sources, Sequence) and not isinstance(sources, str) else [sources]
     if not listed:
-        raise ConfigurationError("inputs: none is given; give a file, or a road, as Road('C', speed=80)")
-    found: list[Input] = []
+        raise ConfigurationError("inputs: no input; pass a file, or a road, as Road('C', speed=80)")
+    inputs: list[Input] = []
     for source in listed:
         if isinstance(source, Road):
-            found.append(source.under(car.vehicle, car.overrides))
+            inputs.append(source.under(car.vehicle, car.overrides))
         elif isinstance(source, str | Path):
-            found.append(SignalFile(path=find_input(source).resolve(), wheel=car.vehicle.shaker_wheel))
+            inputs.append(SignalFile(path=find_input(source).resolve(), wheel=car.vehicle.shaker_wheel))
         else:
-            found.append(source)
-    for one in found:
-        if isinstance(one, SignalFile | Signal) and (highest := signal_of(one).highest) is not None:
+            inputs.append(source)
+    for entry in inputs:
+        if isinstance(entry, SignalFile | Signal) and (highest := signal_of(entry).highest) is not None:
             raise DataError(
-                f"{one.name}: holds vibration up to {highest:g} Hz alone, comfort in 2 to 50 Hz needs a record "
-                "of at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
+                f"{entry.name}: contains vibration only up to {highest:g} Hz, comfort in 2 to 50 Hz needs a record of "
+                "at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
             )
-    return [_tagged(one, found) for one in found]
+    return [_tagged(entry, inputs) for entry in inputs]
 
 
-def _tagged(one: Input, others: Sequence[Input]) -> Input:
-    """Return a road with its seed in its name, where the same road has another seed too."""
-    if not isinstance(one, RoadDrive):
-        return one
-    seeds = {other.seed for other in others if isinstance(other, RoadDrive) and other.name == one.name}
-    return replace(one, tagged=True) if len(seeds) > 1 else one
+def _tagged(source: Input, others: Sequence[Input]) -> Input:
+    """Return an input; add the seed to the name of a road if the same road appears with several seeds."""
+    if not isinstance(source, RoadDrive):
+        return source
+    seeds = {other.seed for other in others if isinstance(other, RoadDrive) and other.name == source.name}
+    return replace(source, tagged=True) if len(seeds) > 1 else source
 
 
 def common_start(inputs: Sequence[Input], skip: float | None) -> float:
-    """Return the start of the evaluation, the same for all inputs [s].
+    """Return the common start of the evaluation for all inputs [s].
 
     Args:
         inputs: the inputs.
-        skip: requested start [s]; None for the latest default of the roads, or `START_S` without a road.
+        skip: requested start [s]; None for the latest default start of the roads, or `START_S` without a road.
 
     Raises:
-        ConfigurationError: negative, not finite, or not shorter than an input.
+        ConfigurationError: the start is negative, not finite, or not before the end of every input.
         DataError: an input cannot be read.
     """
-    defaults = [float(start) for one in inputs if (start := getattr(one, "skip", None)) is not None]
-    durations = {one.name: signal_of(one).duration for one in inputs}
+    defaults = [float(start) for source in inputs if (start := getattr(source, "skip", None)) is not None]
+    durations = {source.name: signal_of(source).duration for source in inputs}
     return evaluation_start(durations, skip, max(defaults, default=START_S))
 
 
 def file_of(car: Car) -> Path | None:
-    """Return the vehicle file of a car, for workers that load it again; None for that of the Focus.
+    """Return the vehicle file of a car, which workers load again; None for the Focus.
 
     Raises:
-        ConfigurationError: the car was not loaded from a file, or changed since.
+        ConfigurationError: the car was not loaded from a file, or modified after loading.
     """
     file = car.origin["file"]
     path = None if file is None else Path(str(file))
     if load_vehicle(path, car.overrides).table != car.vehicle.table:
         raise ConfigurationError(
-            f"{car.vehicle.name}: many runs need a car that was loaded from a file; load it by Car.load(FILE)"
+            f"{car.vehicle.name}: a sweep needs a car loaded from a file; load the car with Car.load(FILE)"
         )
     return path
