@@ -1,4 +1,4 @@
-"""Runs of the complete car that scenarios share: each computed once, independent ones in several processes."""
+"""Runs of the complete car shared by studies: each case runs once, independent cases in parallel processes."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ class CarRuns:
         self._done: dict[str, Run] = {}
 
     def case(self, source: Input, overrides: Sequence[str] = (), *, engine: str | None = None) -> Case:
-        """A signal on the car with some parameters changed.
+        """Return the case of a signal on the car with modified parameters.
 
         Args:
             source: the signal, or another input.
-            overrides: texts like "damper.coulomb_friction=75"; they win over those of all cars.
-            engine: another one than that of the other runs; a film needs "mujoco".
+            overrides: texts like "damper.coulomb_friction=75"; applied after the overrides of all cars.
+            engine: engine of this case, by default that of the other runs; a film needs "mujoco".
         """
         changes = (*self.overrides, *overrides)
         return Case(
@@ -48,7 +48,7 @@ class CarRuns:
 
     @property
     def wheel(self) -> str:
-        """Wheel on the shaker."""
+        """Return the wheel on the shaker."""
         return self.car().vehicle.shaker_wheel
 
     def car(self, overrides: Sequence[str] = ()) -> Car:
@@ -56,7 +56,7 @@ class CarRuns:
         return self.car_of((*self.overrides, *overrides))
 
     def car_of(self, changes: tuple[str, ...]) -> Car:
-        """The car with all the overrides of a case; built once."""
+        """Return the car with all overrides of a case, cached."""
         if changes not in self._cars:
             self._cars[changes] = Car.load(self.vehicle, changes)
         return self._cars[changes]
@@ -79,5 +79,5 @@ class CarRuns:
 
 
 def recording_of(case: Case) -> Recording:
-    """What a worker process sends back of a run."""
+    """Run a case in a worker process and return its recording."""
     return run_of(case).recording

@@ -1,4 +1,4 @@
-"""Rows whose published interval, place and status stand in `scenarios.evidence`."""
+"""Rows with published interval, place and status from `scenarios.evidence`."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ def evidence_claim(
 
 
 def reason(interval: Interval, trials: Mapping[str, float]) -> str:
-    """What experiments say about a row that disagrees: ours with each change, those that reach the interval first.
+    """Return a text on experiments for a disagreement: our value with each modification, first those in the interval.
 
     Args:
-        interval: the published one.
-        trials: label of a change of the model to ours with it.
+        interval: published interval.
+        trials: label of a modification of the model to our value with it.
     """
     low, high = interval
     texts = {label: f"{label} {value:.3g}" for label, value in trials.items()}
@@ -60,18 +60,18 @@ def reason(interval: Interval, trials: Mapping[str, float]) -> str:
     outside = [text for text in texts.values() if text not in inside]
     if not inside:
         return f"experiments: reached with none of the changes tried ({', '.join(outside)})"
-    rest = f"; not with {', '.join(outside)}" if outside else ""
-    return f"experiments: reached with {', '.join(inside)}{rest}"
+    others = f"; not with {', '.join(outside)}" if outside else ""
+    return f"experiments: reached with {', '.join(inside)}{others}"
 
 
 def _words(evidence: Evidence) -> str:
     error = f" with a model error of {evidence.error:.3g} {evidence.unit}" if evidence.error else ""
     unit = "" if evidence.unit == "-" else f" {evidence.unit}"
     low, high = evidence.interval
-    words = (
+    text = (
         f"at most {high:g}" if math.isinf(low) else f"at least {low:g}" if math.isinf(high) else f"{low:g} to {high:g}"
     )
-    return f"{words}{unit}{error}"
+    return f"{text}{unit}{error}"
 
 
 def _source(evidence: Evidence, printed: float | None) -> Source:

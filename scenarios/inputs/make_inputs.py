@@ -111,7 +111,7 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
 
 
 def main() -> None:
-    """Write all files and say what was written."""
+    """Write all files and print their names."""
     parser = argparse.ArgumentParser(
         prog="python -m scenarios.inputs.make_inputs", description="Write the shipped inputs."
     )

@@ -164,7 +164,7 @@ def quantile(repetitions: int) -> Rows:
             ]
             for name, response in responses.items():
                 reference = np.sort(response(rng.uniform(-1.0, 1.0, (100_000, count))))
-                stated = [float(one.worth(response(one.bands)[None])[0]) for one in spreads]
+                stated = [float(one.statistic_of(response(one.bands)[None])[0]) for one in spreads]
                 reached = np.searchsorted(reference, stated) / reference.size
                 rows.append(
                     {
