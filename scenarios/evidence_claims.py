@@ -43,7 +43,9 @@ def evidence_claim(
     elif not evidence.error:
         return row
     probability = interval_probability(values, evidence.interval, error=evidence.error)
-    rule = f"{100.0 * probability:.3g} % is the probability of {_words(evidence)}, needed {100.0 * AGREES_ABOVE:g} %"
+    rule = (
+        f"{100.0 * probability:.3g} % is the probability of {_words(evidence)}, must exceed {100.0 * AGREES_ABOVE:g} %"
+    )
     return replace(row, within=probability > AGREES_ABOVE, probability=probability, why=f"{rule}; {why}")
 
 
@@ -59,7 +61,7 @@ def reason(interval: Interval, trials: Mapping[str, float]) -> str:
     inside = [texts[label] for label, value in trials.items() if low <= value <= high]
     outside = [text for text in texts.values() if text not in inside]
     if not inside:
-        return f"experiments: reached with none of the changes tried ({', '.join(outside)})"
+        return f"experiments: no modification reaches the interval ({', '.join(outside)})"
     others = f"; not with {', '.join(outside)}" if outside else ""
     return f"experiments: reached with {', '.join(inside)}{others}"
 

@@ -144,13 +144,13 @@ def peak_claims(
         counts: law to the number of extra peaks of each further seed of the noise.
     """
     rule = (
-        f"an extremum of the relative acceleration 5 to {1e3 * SEARCHED:g} ms after the end of stick that stands out "
-        f"by at least {100 * STANDING_OUT:g} % of the largest break-away jump of its run"
+        f"an extremum of the relative acceleration 5 to {1e3 * SEARCHED:g} ms after the end of stick with a prominence "
+        f"of at least {100 * STANDING_OUT:g} % of the largest break-away jump of its run"
     )
     claims = []
     for name, published in (("Stribeck", "present"), ("Coulomb", "absent")):
         count, top = len(extra_peaks(phases[name])), most_prominent(phases[name])
-        text = "no extremum" if top is None else f"the largest stands out by {top.prominence:.2f} m/s2"
+        text = "no extremum" if top is None else f"the largest has a prominence of {top.prominence:.2f} m/s2"
         as_printed = [(peaks > 0) == (published == "present") for peaks in (count, *counts[name])]
         seeds = f"{published} with {sum(as_printed)} of {len(as_printed)} seeds of the noise"
         claims.append(

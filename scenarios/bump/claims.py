@@ -102,7 +102,7 @@ def picture_of(point: str) -> str:
 SHOWN_POINTS = {
     "seat_rail": ("figure 3.13", "where it is not said"),
     "seat": ("figure 3.14", "where it is not said"),
-    "engine": ("figure 3.17", "where the source says so"),
+    "engine": ("figure 3.17", "as the thesis states"),
     "roof_right_rear": ("figure 3.18", "where it is not said"),
 }
 """Points whose vertical histories the source shows for both bumps, and the figure."""

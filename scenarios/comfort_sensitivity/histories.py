@@ -267,7 +267,7 @@ def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
     peaks = {road: wheel_peak(level) for road, level in levels.items()}
     sizes = {road: _rms(level) for road, level in levels.items()}
     unknown = (
-        "neither the car nor its roads nor the speed are told; ours stands on one plate, and its road falls as 1/f2"
+        "neither the car nor its roads nor the speed are described; our car is on one plate, and its road falls as 1/f2"
     )
     rows = [
         NOT_TESTABLE.number(

@@ -154,8 +154,8 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
             direction,
             change[parameter, limb],
             factors,
-            reasons[parameter] if row_maker is PREDICTED else "the text on the figures says the same",
-            kind=row_maker,
+            reasons[parameter] if row_maker is PREDICTED else "the text on the figures agrees",
+            row_maker=row_maker,
             place="section 4",
             picture=_picture(parameter),
         )
@@ -248,7 +248,7 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
     share = car.front.tyre_damping * hop / car.front.tyre_stiffness
     rigid = _with_seat(car, RIGID_SEAT)
     below = (
-        f"the limbs answer below 6 Hz, where a wheel on a tyre {ratio:.0f} times stiffer than its suspension follows "
+        f"the limbs respond below 6 Hz, where a wheel on a tyre {ratio:.0f} times stiffer than its suspension follows "
         f"the road; what happens near the wheel hop ({hop / (2.0 * np.pi):.1f} Hz) reaches them weakly"
     )
     return {
@@ -259,8 +259,8 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
         f"one of {RIGID_SEAT:.0f} N/m the upper body has {_percent(_upper_changes(rigid, 'tyre_stiffness', SPEEDS))} %",
         "tyre_damping": f"at the wheel hop the tyre damper gives {share:.0%} of the force of the tyre spring",
         "suspension_damping": "the damper passes the quick motion of the wheel to the body; the text of the "
-        "source says little and its conclusions say that the discomfort rises. The damper helps only where the bump is "
-        f"a pulse of the body's own frequency: {_percent(_upper_changes(car, 'suspension_damping', (CRAWL,)))} % for "
+        "paper states little effect and its conclusions state that the discomfort rises. The "
+        f"damper helps only where the bump is a pulse of the body's own frequency: {_percent(_upper_changes(car, 'suspension_damping', (CRAWL,)))} % for "
         f"the upper body at {CRAWL:.0f} km/h",
     }
 

@@ -53,7 +53,7 @@ def _time(history: History, point: str, quantity: Motion, printed: float, limit:
     ours = float(history.time[-1]) if settling is None else settling
     others = ", ".join(f"{100.0 * b:g} %: {_seconds(settling_time(history.time, motion, b))}" for b in BANDS[1:])
     why = (
-        f"the band is not told: {100.0 * SETTLING_BAND:g} % of the peak is the one of {len(BANDS)} that comes nearest "
+        f"the band is not printed: {100.0 * SETTLING_BAND:g} % of the peak is the nearest of {len(BANDS)} bands "
         f"to all printed times; {others}. The printed time needs a band of {_needed(history.time, motion, printed)}; "
         f"t = 0 when the front wheel meets the bump; tolerance {READING} s, read from a figure"
     )
@@ -80,7 +80,7 @@ def _order(history: History, delay: float, late: str, early: str, quantity: Moti
     pairs = "; ".join(f"{100.0 * band:g} %: {_seconds(a)}, {_seconds(b)}" for band, (a, b) in times.items())
     holds = all(_later(a, b) for a, b in times.values())
     count = sum(_later(a, b) for a, b in times.values())
-    why = f"rule: at each of {len(BANDS)} bands, for the source tells none; it holds at {count} of them"
+    why = f"rule: at each of {len(BANDS)} bands, as the paper prints none; it holds at {count} of them"
     if "rear_wheel" in (late, early):
         other_bands = "; ".join(f"{100.0 * band:g} %: {_seconds(_less(b, delay))}" for band, (_, b) in times.items())
         why += (

@@ -79,7 +79,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             "larger",
             f"{stuck[0]:.1f} against {stuck[1]:.1f} % of the time",
             stuck[0] > stuck[1],
-            f"sticks: below 100 / eps = {1e3 * SLIPS:g} mm/s; the source does not say what it counts: {slow}; {roads}",
+            f"sticks: below 100 / eps = {1e3 * SLIPS:g} mm/s; the thesis does not define the count: {slow}; {roads}",
             place=figure,
             picture=picture,
         ),
@@ -88,8 +88,8 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             f"below {slow_share:g} m/s",
             f"largest {largest[1].max():.4f} m/s with constant damping",
             bool(largest[1].max() < slow_share),
-            f"an assumption of the source; the level in 1 to 50 Hz hangs on the band of the road, which is not told: "
-            f"velocities go with the square root of its lower edge, here 1/30 Hz; {roads}",
+            f"an assumption of the source; the level in 1 to 50 Hz depends on the band of the road, which is not "
+            f"printed: velocities go with the square root of its lower edge, here 1/30 Hz; {roads}",
             place=figure,
             picture=picture,
         ),

@@ -133,7 +133,10 @@ def steepness_claims(runs: Runs) -> list[Claim]:
     }
     sizes = ", ".join(f"{name} {value:.3g}" for name, value in [*sines.items(), *((n, v[0]) for n, v in roads.items())])
     lost = [", ".join(f"{name} {100.0 * (1.0 - v[i] / v[0]):.1f}" for name, v in roads.items()) for i in range(3)]
-    why = "the input is not told, and none of four candidates gives the printed size: no row of the table can be tested"
+    why = (
+        "the input is not printed, and none of four candidates gives the printed size: no row of the table can be "
+        "tested"
+    )
     published = ((1e6, 0.0175, None), (1e5, 0.0169, 3.0), (1e4, 0.0165, 5.6))
     claims = []
     for index, (eps, size, error) in enumerate(published):

@@ -49,7 +49,7 @@ def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim
     held = next((parameter for parameter in result.unidentified if parameter.path == path), None)
     if held is not None:
         return OWN_CHECK.statement(
-            name, f"hidden {true:g}", f"not told by the data, held at {held.held_at:g}", True, held.message()
+            name, f"hidden {true:g}", f"not identified by the data, held at {held.held_at:g}", True, held.message()
         )
     away = result.deviation(path, true)
     start = next(parameter.start for parameter in result.parameters if parameter.path == path)
@@ -85,7 +85,7 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
     lines = []
     for parameter in result.parameters:
         error, start = result.standard_errors.get(parameter.path, math.nan), f"started at {parameter.start:g}"
-        spread = f"+- {error:.2g}" if math.isfinite(error) else "not told by the data, held"
+        spread = f"+- {error:.2g}" if math.isfinite(error) else "not identified by the data, held"
         lines.append(
             f"{parameter.path:<{width}}  {result.values[parameter.path]:.6g} {spread} "
             f"{unit_of(vehicle, parameter.path)}, {start}"

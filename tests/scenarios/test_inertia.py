@@ -84,9 +84,9 @@ def exact_response(car):
 
 
 def test_the_peak_nearest_to_the_mode_is_taken(car):
-    found, roll = exact_response(car), roll_mode(car)
-    assert roll_peak(found, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
-    assert roll_peak(found, 3.6) < 4.5
+    response, roll = exact_response(car), roll_mode(car)
+    assert roll_peak(response, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
+    assert roll_peak(response, 3.6) < 4.5
     # One line without an estimate, 0.2 Hz below the top, must not hide it.
-    found.response[0, np.argmin(np.abs(found.frequency - roll.frequency + 0.2))] = np.nan
-    assert roll_peak(found, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
+    response.response[0, np.argmin(np.abs(response.frequency - roll.frequency + 0.2))] = np.nan
+    assert roll_peak(response, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)

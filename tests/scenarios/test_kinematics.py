@@ -26,11 +26,11 @@ def test_the_study(tmp_path, capsys):
     arguments = ["--output", str(folder), "--quick", "--vehicle", "focus", "--vehicle", "sedan"]
     assert main(arguments) == 0
     assert "6 own check (6 agree)" in capsys.readouterr().out
-    found = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    assert list(found["axles"]) == ["focus, front", "sedan, front", "sedan, rear"]
+    content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert list(content["axles"]) == ["focus, front", "sedan, front", "sedan, rear"]
     # The source of the sedan says that its tie rod was changed: it steers by 2 deg over 100 mm.
-    assert found["axles"]["sedan, front"]["equal"]["toe_deg_per_m"] == pytest.approx(-21.7, abs=0.1)
-    assert found["moved"]["sedan"]["neutral_m"] == pytest.approx(0.031, abs=1e-3)
+    assert content["axles"]["sedan, front"]["equal"]["toe_deg_per_m"] == pytest.approx(-21.7, abs=0.1)
+    assert content["moved"]["sedan"]["neutral_m"] == pytest.approx(0.031, abs=1e-3)
     text = (folder / "results.md").read_text(encoding="utf-8")
     assert "| sedan, rear | twist_beam | 0 | 0 |" in text and "moved by +31 mm" in text
     for name in ("travel", "compliance", "point_moved"):

@@ -77,9 +77,9 @@ QUOTES: dict[str, Callable[[], list[str]]] = {
 
 @pytest.mark.parametrize("sentence", QUOTES)
 def test_a_number_of_the_readme_is_that_of_the_table(sentence):
-    found = re.search(sentence, README)
-    assert found, f"README.md has no sentence like {sentence}; change QUOTES with it"
-    assert list(found.groups()) == QUOTES[sentence]()
+    match = re.search(sentence, README)
+    assert match, f"README.md has no sentence like {sentence}; change QUOTES with it"
+    assert list(match.groups()) == QUOTES[sentence]()
 
 
 def test_the_page_is_that_of_the_table():

@@ -28,13 +28,17 @@ def test_settings_cover_laws_roads_delays_and_the_passive_range():
 
 def made_up(runs, chosen, duration, engine):
     """Skyhook comfortable, groundhook light on the tyres, both worse by delay."""
-    found = {}
-    for one in chosen:
-        comfort = {"skyhook": 0.8, "groundhook": 1.2}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay) * one.factor**0.2
-        tyre = {"skyhook": 1.1, "groundhook": 0.9}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay)
-        found[one] = {"weighted": comfort, "unfiltered": 2.0 * comfort, "tyre": 0.2 * tyre, "hop": 0.1 * tyre}
-        found[one]["lowest"] = 0.3
-    return found
+    points = {}
+    for setting in chosen:
+        comfort = (
+            {"skyhook": 0.8, "groundhook": 1.2}.get(setting.law, 1.0)
+            * (1.0 + 0.01 * setting.delay)
+            * setting.factor**0.2
+        )
+        tyre = {"skyhook": 1.1, "groundhook": 0.9}.get(setting.law, 1.0) * (1.0 + 0.01 * setting.delay)
+        points[setting] = {"weighted": comfort, "unfiltered": 2.0 * comfort, "tyre": 0.2 * tyre, "hop": 0.1 * tyre}
+        points[setting]["lowest"] = 0.3
+    return points
 
 
 def test_it_says_what_its_numbers_show(tmp_path, monkeypatch, capsys):
