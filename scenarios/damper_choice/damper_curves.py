@@ -175,7 +175,8 @@ def curve_claims(comparison: Compared) -> list[Claim]:
             "damper curve: more damping at low velocity, where the body moves, than at high",
             "typical",
             f"twice as much below {comparison.velocity:.2f} m/s: RMS tyre force {_change(low, comparison_case)}; "
-            f"below 3 Hz, where the body moves, is {comparison.slow_share:.0%} of the mean square of the damper velocity",
+            f"below 3 Hz, where the body moves, is {comparison.slow_share:.0%} of the mean square of the damper "
+            "velocity",
             False,
             why,
         ),

@@ -260,7 +260,8 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
         "tyre_damping": f"at the wheel hop the tyre damper gives {share:.0%} of the force of the tyre spring",
         "suspension_damping": "the damper passes the quick motion of the wheel to the body; the text of the "
         "paper states little effect and its conclusions state that the discomfort rises. The "
-        f"damper helps only where the bump is a pulse of the body's own frequency: {_percent(_upper_changes(car, 'suspension_damping', (CRAWL,)))} % for "
+        "damper helps only where the bump is a pulse of the body's own frequency: "
+        f"{_percent(_upper_changes(car, 'suspension_damping', (CRAWL,)))} % for "
         f"the upper body at {CRAWL:.0f} km/h",
     }
 
