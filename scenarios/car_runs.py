@@ -52,7 +52,7 @@ class CarRuns:
         return self.car().vehicle.shaker_wheel
 
     def car(self, overrides: Sequence[str] = ()) -> Car:
-        """The car with some parameters changed; built once."""
+        """Return the car with modified parameters, cached."""
         return self.car_of((*self.overrides, *overrides))
 
     def car_of(self, changes: tuple[str, ...]) -> Car:
@@ -62,7 +62,7 @@ class CarRuns:
         return self._cars[changes]
 
     def __call__(self, cases: Sequence[Case]) -> list[Run]:
-        """Runs of cases of this car, in their order; what was computed before is not computed again."""
+        """Return the runs of cases in their order; finished cases are not run again."""
         keys = [digest([case.overrides, case.engine, case.source.identity()]) for case in cases]
         missing = {key: case for key, case in zip(keys, cases, strict=True) if key not in self._done}
         recordings: list[Recording | None] = [None] * len(missing)

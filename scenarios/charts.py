@@ -44,7 +44,7 @@ class FrfCurve:
 
 
 def measured_curve(response: FrequencyResponse, row: int, label: str, colour: str, style: str = "-") -> FrfCurve:
-    """Curve of one row of an estimated FRF."""
+    """Return the curve of one row of an estimated FRF."""
     return FrfCurve(
         label=label,
         frequency=response.frequency,

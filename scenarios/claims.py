@@ -197,7 +197,7 @@ def _verdict(status: Status, holds: object) -> bool | None:
 
 
 def _interval_deviation(interval: Interval, ours: float) -> float | None:
-    """(ours - nearer end) / |nearer end|, 0 inside; None where that end is 0."""
+    """Return (ours - nearer end) / |nearer end|, 0 inside; None if that end is 0."""
     low, high = interval
     nearest = min(max(ours, low), high)
     if low <= ours <= high:

@@ -84,7 +84,7 @@ class Records:
     lead: float = LEAD_S
 
     def text(self) -> str:
-        """For captions."""
+        """Return a text on the records for captions."""
         records = f"{self.count} records" if self.count > 1 else "1 record"
         return f"{records} of {self.duration:g} s (seeds 0 to {self.count - 1}) after {self.lead:g} s left out"
 
@@ -164,7 +164,7 @@ class ComfortRuns:
 
     @property
     def computed(self) -> int:
-        """Number of runs so far."""
+        """Return the number of finished runs."""
         return len(self._done)
 
     @property
@@ -265,7 +265,7 @@ class ComfortRuns:
         return point(value, numbers, base)
 
     def nominal(self) -> dict[str, Point]:
-        """The unchanged car on both roads."""
+        """Return the point of the unmodified car on both roads."""
         return {road: self.point(0.0, (), road, ()) for road in ROAD_RMS}
 
     def curves(self, variation: Variation, base: Changes = ()) -> Curves:

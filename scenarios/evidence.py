@@ -287,7 +287,7 @@ HALF_SEED = 2006
 
 
 def _half() -> frozenset[str]:
-    """Keys of the rows that the choice uses: shuffled, put together by topic, and every second one taken."""
+    """Return the keys of the rows used for the choice: shuffled, sorted by topic, every second row."""
     drawn = [EVIDENCE[number] for number in np.random.default_rng(HALF_SEED).permutation(len(EVIDENCE))]
     topics = list(dict.fromkeys(row.topic for row in EVIDENCE))
     drawn.sort(key=lambda row: topics.index(row.topic))

@@ -103,7 +103,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def points_of(method: str, runs: int, seed: int) -> Matrix:
-    """Points of a method with at most about `runs` runs; (points, parameters)."""
+    """Return the points of a method with at most about `runs` runs; (points, parameters)."""
     size = len(RANGES)
     if method == "sobol":
         base = 2 ** int(np.log2(max(runs // (size + 2), 2)))
@@ -228,7 +228,7 @@ def _sobol(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: in
 
 
 def _morris(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Scatter of the elementary effects over their mean size."""
+    """Draw the scatter of the elementary effects over their mean size; return entries and table."""
     morris = morris_effects(RANGES, points, comfort, seed=seed)
     with figure_file(folder / "effects.png", (9.0, 5.6), "", caption + WHISKERS) as figure:
         axes = figure.add_subplot()
@@ -254,7 +254,7 @@ def _morris(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: i
 
 
 def _hypercube(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Comfort value of every run over each parameter; failed runs leave holes."""
+    """Draw the comfort value of every run over each parameter; return entries and table."""
     with figure_file(folder / "scatter.png", (13.0, 2.8 * -(-len(RANGES) // 5) + 0.6), "", caption) as figure:
         panels = figure.subplots(-(-len(RANGES) // 5), 5, sharey=True, squeeze=False)
         for axes, parameter, values in zip(panels.flat, RANGES, points.T, strict=True):

@@ -169,7 +169,7 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
 
 
 def roll_peak(response: FrequencyResponse, roll: float) -> float:
-    """Frequency [Hz] of the resonance peak of the first channel that is nearest to the roll mode; NaN without peaks.
+    """Return the frequency [Hz] of the resonance peak of the first channel nearest to the roll mode; NaN without peaks.
 
     A line without an estimate is stepped over: on the flank of a peak it would hide the peak.
     """
@@ -183,7 +183,7 @@ def roll_peak(response: FrequencyResponse, roll: float) -> float:
 def roll_claims(
     peaks: Sequence[float], modes: Sequence[float], moments: Sequence[float], between: Mapping[float, float]
 ) -> list[Claim]:
-    """Rows about roll where the source shows it: at the peak of the FRF of the seat rail, figures 3.3 and 3.37.
+    """Return the rows on roll, at the peak of the FRF of the seat rail (figures 3.3 and 3.37).
 
     Args:
         peaks: frequencies of the peaks with Ixx 1000 and with Ixx 1200 [Hz].

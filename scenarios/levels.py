@@ -82,7 +82,7 @@ DAMPER_BAND = (10.0, 50.0)
 
 
 def rigid_lines(runs: CarRuns) -> Vector:
-    """|H| of `CHANNELS` at 1 Hz, body rigid and dampers stuck [(m/s2)/m]."""
+    """Return |H| of `CHANNELS` at 1 Hz, body rigid and dampers stuck [(m/s2)/m]."""
     car = runs.car(("body.flexible=false",))
     return np.abs(car.matrix_frf(channels_of(runs.wheel), [1.0], wheel=runs.wheel))[:, 0]
 
@@ -176,7 +176,7 @@ def frequency_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
 
 
 def order_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
-    """Damping from level to level, and the two ends of the damper."""
+    """Return the rows on damping over the level, and on the two ends of the damper."""
     low, mid, high = (levels[level] for level in ("low", "mid", "high"))
     return [
         PREDICTED.statement(

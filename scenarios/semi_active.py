@@ -88,11 +88,11 @@ class RideMeasure:
 
     wheels: tuple[str, ...]
     timestep: float = 5e-4
-    """longest step of the reduced engine [s]"""
+    """maximum step of the reduced engine [s]"""
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels that are needed."""
+        """Return the required channels."""
         return (*RAIL, *(f"tyre_{wheel}_force_z" for wheel in self.wheels))
 
     @property
@@ -101,11 +101,11 @@ class RideMeasure:
         return {"weighted": "m/s2", "unfiltered": "m/s2", "tyre": "-", "hop": "-", "lowest": "-"}
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """The numbers of a run."""
+        """Return the values of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """The numbers of several runs."""
+        """Return the values of r runs; (r,) each."""
         step = runs.timestep
         kept = slice(round(LEAD_S / step), None)
         xyz = runs.stacked(*RAIL)
@@ -124,7 +124,7 @@ Points = Mapping[Setting, Numbers]
 
 
 def settings(quick: bool) -> list[Setting]:
-    """Everything that is run: the laws over speeds and roads, passive settings, delays."""
+    """Return all settings of the study: laws over speeds and roads, passive settings, delays."""
     roads, speeds = ((SHOWN[0],), (SHOWN[1],)) if quick else (("A", "B", "C"), (50.0, 80.0, 120.0))
     laws = (PASSIVE, *LAWS)
     points = [Setting(law=law, road=road, speed=speed) for road in roads for speed in speeds for law in laws]
@@ -251,7 +251,7 @@ def words(points: Points) -> list[str]:
 
 
 def table_of(points: Points) -> str:
-    """Every run."""
+    """Return a table of all runs."""
     rows = [
         (
             setting.road,

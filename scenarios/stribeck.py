@@ -77,7 +77,7 @@ main = car_study("stribeck", study)
 
 
 def phases_of(run: Run, begin: float) -> list[SlipPhase]:
-    """Slides of the damper over the plate, from the start of the bump on.
+    """Return the slip phases of the damper over the plate, from the start of the bump.
 
     Args:
         run: on the bump.
@@ -94,7 +94,7 @@ def phases_of(run: Run, begin: float) -> list[SlipPhase]:
 
 
 def counts_of_seeds(runs: CarRuns, count: int) -> dict[str, list[int]]:
-    """Number of extra peaks with each law for seeds of the noise, which is not published; a compiler is needed.
+    """Return the number of extra peaks with each law for seeds of the unpublished noise; a compiler is needed.
 
     Args:
         runs: the car.
@@ -124,7 +124,7 @@ def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64
 
 
 def force_error(run: Run) -> float:
-    """Largest |simulated force - law| over the largest force, above 1 mm/s of the driven damper [-]."""
+    """Return the largest |simulated force - law| over the largest force, above 1 mm/s of the driven damper [-]."""
     velocity, force = damper_velocity(run), run[f"damper_{run.wheel}_force"]
     fast = np.abs(velocity) > SATURATED_VELOCITY
     if not fast.any():
@@ -136,7 +136,7 @@ def force_error(run: Run) -> float:
 def peak_claims(
     runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]], counts: Mapping[str, Sequence[int]]
 ) -> list[Claim]:
-    """Rows: the extra peak with each law, and the simulated force against the law.
+    """Return the rows on the extra peak with each law, and on the simulated force against the law.
 
     Args:
         runs: law to the pictured run.

@@ -124,13 +124,13 @@ class Bar:
     at_high: Mapping[str, Point]
 
     def swing(self, road: str) -> float:
-        """Largest minus smallest relative comfort value, the nominal car included [-]."""
+        """Return largest minus smallest relative comfort value, including the nominal car [-]."""
         values = (self.at_low[road].relative, self.at_high[road].relative, 1.0)
         return max(values) - min(values)
 
 
 def ends(comfort: ComfortRuns, parameter: Parameter) -> dict[float, Changes]:
-    """The two cars of a parameter by its value, low end first."""
+    """Return value to overrides of the two cars of a parameter, low end first."""
     vehicle = comfort.runs.car().vehicle
     factors = ((1.0 - SHARE) ** parameter.power, (1.0 + SHARE) ** parameter.power)
     pair = parameter.ends or tuple(value_of(vehicle, parameter.path) * factor for factor in factors)
@@ -161,7 +161,7 @@ WAYS = (
 
 
 def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
-    """The conclusions of section 4.4 at the ends of the bars."""
+    """Return the rows on the conclusions of section 4.4 at the ends of the bars."""
     claims = []
     for name, statement, rising in WAYS:
         bar = next(bar for bar in bars if bar.label.startswith(name))

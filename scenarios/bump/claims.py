@@ -26,7 +26,7 @@ RATIO = 2.0
 
 
 def slip_claims(bumps: Bumps, seeds: BumpSeeds) -> list[Claim]:
-    """Rows about the end of sticking of both bumps, over the seeds of the noise."""
+    """Return the rows about the end of sticking of both bumps, over the seeds of the noise."""
     ends, low = seeds.stick_end, seeds.fastest[SIZES[0]]
     ordered = np.array([ends[friction] for friction in sorted(ends)])
     rising = bool(np.all(np.isfinite(ordered)) and np.all(np.diff(ordered, axis=0) > 0.0))
@@ -68,7 +68,7 @@ PANELS = {SIZES[1]: HIGH_PANELS, SIZES[0]: LOW_PANELS}
 
 
 def extreme_claims(seeds: BumpSeeds, trials: Mapping[str, Mapping[str, float]]) -> list[Claim]:
-    """A row for each readable end of each axis, over the seeds of the noise.
+    """Return a row for each readable end of each axis, over the seeds of the noise.
 
     Args:
         seeds: ours.
@@ -93,7 +93,7 @@ AXIS = "3 s from the bump; the axis holds model and measurement, either of which
 
 
 def picture_of(point: str) -> str:
-    """File name of the figure that shows a point."""
+    """Return the file name of the figure that shows a point."""
     if point == "relative":
         return "relative_acceleration.png"
     return "histories_horizontal.png" if point[-2:] in ("_x", "_y") else "histories_vertical.png"

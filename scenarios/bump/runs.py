@@ -20,7 +20,7 @@ Vector = npt.NDArray[np.float64]
 
 
 def relative_acceleration(run: Run) -> Vector:
-    """Acceleration of the damper top less that of the knuckle over the plate, along the strut axis [m/s2], (n,).
+    """Return the acceleration of damper top minus knuckle over the plate, along the strut axis [m/s2], (n,).
 
     a = n (a_top - a_knuckle), n from the damper bottom to the strut top in the design position. In the vertical alone
     the rotation of the strut would show while it sticks.
@@ -58,11 +58,11 @@ class Record:
 
     @property
     def end(self) -> float:
-        """End of the bump [s]."""
+        """Return the end of the bump [s]."""
         return self.start + BUMP_DURATION_S
 
     def signal(self, size: float, reading: Reading, wheel: str, *, noise: bool = True) -> Signal:
-        """Bump of an amplitude A [m], with or without the random noise of the source.
+        """Return a bump of amplitude A [m], with or without the noise of the thesis.
 
         Args:
             size: A [m].
@@ -115,7 +115,7 @@ class Bumps:
         return {friction: slip_after(run, self.record.start, velocity) for friction, run in self.by_friction.items()}
 
     def data(self) -> dict[str, Any]:
-        """For `results.json`."""
+        """Return the entries of `results.json`."""
         low = fastest(self.noisy[0])
         times = {"first_slip_s": self.slip_velocity, "first_saturated_s": SATURATED_VELOCITY}
         return {
@@ -153,22 +153,22 @@ def run_bumps(runs: CarRuns, record: Record, reading: Reading, frictions: Sequen
 
 
 def damper_velocity(run: Run) -> Vector:
-    """Velocity of the damper over the plate [m/s], (n,)."""
+    """Return the velocity of the damper over the plate [m/s], (n,)."""
     return np.asarray(run[f"damper_{run.wheel}_velocity"])
 
 
 def fastest(run: Run) -> float:
-    """Largest velocity of the damper over the plate [m/s]."""
+    """Return the largest velocity of the damper over the plate [m/s]."""
     return float(np.max(np.abs(damper_velocity(run))))
 
 
 def saturated_time(run: Run) -> float:
-    """Time with the damper over the plate above 1 mm/s, where the friction is saturated [s]."""
+    """Return the time with the damper over the plate above 1 mm/s, where the friction is saturated [s]."""
     return run.slip_share(run.wheel, SATURATED_VELOCITY) * run.signal.duration
 
 
 def slip_after(run: Run, start: float, velocity: float) -> float | None:
-    """First time [s] of the damper over the plate above a velocity after the bump begins, as if that were at 5 s."""
+    """Return the first time of the damper over the plate above a velocity, for a bump that begins at 5 s [s]."""
     speed = np.abs(damper_velocity(run))
     at = np.flatnonzero((speed > velocity) & (run.time >= start))
     return None if not at.size else float(run.time[at[0]]) - start + BUMP_START_S
@@ -193,7 +193,7 @@ POINTS = (*BODY, "suspension_mount_fr", "suspension_mount_fl", "engine")
 
 
 def ring_down_time(time: Vector, motion: Vector, end: float, share: float = RUNG_DOWN) -> float:
-    """Time from the end of a bump until |motion| last exceeds a share of its largest value after the bump.
+    """Return the time from the end of a bump until |motion| last exceeds a share of its largest value after the bump.
 
     Args:
         time: [s], (n,).

@@ -62,7 +62,7 @@ class BumpSeeds:
         return len(self.fastest[SIZES[0]])
 
     def data(self) -> dict[str, Any]:
-        """For `results.json`."""
+        """Return the entries of `results.json`."""
         return {
             "extremes_over_seeds": {
                 row_key(size, point, word): values[:, column].tolist()
@@ -109,7 +109,7 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
 
 
 def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeeds) -> dict[str, Mapping[str, float]]:
-    """Means of the extremes with a part of the model changed: label to "A in mm, key of the point, word" to value.
+    """Return label of a modification to means of the extremes by "A in mm, key of the point, word".
 
     Args:
         runs: the car.
@@ -139,7 +139,7 @@ def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeed
 
 
 def row_key(size: float, point: str, word: str) -> str:
-    """Key of `scenarios.evidence` of an end of a panel.
+    """Return the key of `scenarios.evidence` of an end of a panel.
 
     Args:
         size: A of the bump [m].
@@ -150,7 +150,7 @@ def row_key(size: float, point: str, word: str) -> str:
 
 
 def motions(car: Car, signal: Signal, engine: str) -> dict[str, Vector]:
-    """Accelerations [m/s2] by key of the point and the velocity of the damper over the plate [m/s], 3 s from the bump.
+    """Return accelerations [m/s2] by key of the point, and damper velocity over the plate [m/s], 3 s from the bump.
 
     Args:
         car: the car.

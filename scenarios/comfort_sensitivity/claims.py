@@ -90,7 +90,7 @@ Trials = Mapping[str, Mapping[tuple[str, str, float], float]]
 
 
 def size_claims(curves: Mapping[str, Curves], trials: Trials | None = None) -> list[Claim]:
-    """Relative comfort at the ends of the curves.
+    """Return the rows on relative comfort at the ends of the curves.
 
     Args:
         curves: variation to its points.

@@ -26,7 +26,7 @@ COUNT = 2
 
 
 def trials_of(comfort: ComfortRuns) -> dict[str, tuple[Changes, float]]:
-    """Label of a trial to the changes of all its cars and the band edge of its roads [Hz]."""
+    """Return label of a trial to the overrides of all its cars and the band edge of its roads [Hz]."""
     modes = range(1, len(comfort.runs.car().trimmed_body.frequencies) + 1)
     damped = tuple(f"body.modes.{number}.damping_ratio={DAMPING!r}" for number in modes)
     return {
@@ -38,7 +38,7 @@ def trials_of(comfort: ComfortRuns) -> dict[str, tuple[Changes, float]]:
 
 
 def end_trials(comfort: ComfortRuns) -> dict[str, dict[tuple[str, str, float], float]]:
-    """Relative comfort value [%] at the ends of the curves, by label of the trial, parameter, road and value."""
+    """Return relative comfort [%] at the ends of the curves, by trial, and (parameter, road, value)."""
     comfort_values: dict[str, dict[tuple[str, str, float], float]] = {}
     for label, (base, edge) in trials_of(comfort).items():
         for name, road, value, car in _ends(comfort, base):
@@ -48,7 +48,7 @@ def end_trials(comfort: ComfortRuns) -> dict[str, dict[tuple[str, str, float], f
 
 
 def trial_cases(comfort: ComfortRuns) -> list[Case]:
-    """All runs of the trials, to be computed together."""
+    """Return all cases of the trials, to be run as a batch."""
     return [
         case
         for base, edge in trials_of(comfort).values()
@@ -59,7 +59,7 @@ def trial_cases(comfort: ComfortRuns) -> list[Case]:
 
 
 def level_trials(comfort: ComfortRuns) -> dict[str, dict[str, float]]:
-    """Mean of the largest |seat rail, vertical| of the figures [m/s2], by label of the trial and figure; one record."""
+    """Return the mean of the largest |seat rail, vertical| of the figures [m/s2], by trial and figure; one record."""
     record = slice(round(comfort.records.lead * RATE_HZ) + 1, None)
     by_trial: dict[str, dict[str, float]] = {}
     for label, (base, edge) in trials_of(comfort).items():

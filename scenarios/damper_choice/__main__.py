@@ -220,7 +220,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def load(options: argparse.Namespace) -> DamperChoiceParameters:
-    """The parameters."""
+    """Return the parameters."""
     return damper_choice_parameters(options.parameters or FITTED)
 
 

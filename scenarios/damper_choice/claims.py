@@ -108,7 +108,7 @@ def quarter_response_claims(
 
 
 def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
-    """Row on the height of the second maximum of the wheel."""
+    """Return the row on the height of the second maximum of the wheel."""
     dampings, maxima = (4000.0, 3000.0, 2500.0), []
     for c in dampings:
         curve = np.abs(quarter_car_model(parameters.quarter_car, c).response(lines))[0]
@@ -174,7 +174,7 @@ def half_response_claims(
 
 
 def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: RoadHolding, measure: str) -> list[Claim]:
-    """Rows on figure 9 for one measure."""
+    """Return the rows on figure 9 for one measure."""
     best = road_holding.quarter_optimum
     below, above = (
         float(np.interp(best.damping + shift, road_holding.damping, road_holding.quarter)) - best.value
@@ -221,7 +221,7 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: Roa
 
 
 def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
-    """Rows on figures 10 to 13 for one measure; the values of R only for the printed one."""
+    """Return the rows on figures 10 to 13 for a measure; values of R only for the printed measure."""
     front, rear = road_holding.equal_optima
     first, second, third = road_holding.read_off[:3]
     row_maker = FITTED if measure == "printed" else COMPARED
@@ -293,7 +293,7 @@ def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
 def rate_claims(
     parameters: DamperChoiceParameters, road_holding: RoadHolding, at_front: Array, at_rear: Array
 ) -> list[Claim]:
-    """Rows on the values of R of the printed measure.
+    """Return the rows on the values of R of the printed measure.
 
     Args:
         parameters: vehicle, road, bands.

@@ -96,7 +96,7 @@ def iteration_figure(folder: Path, road_holding: RoadHolding, measure: Fluctuati
 
 
 def trade_off_figure(path: Path, trade_off: TradeOff, name: str) -> None:
-    """One figure: the three measures over damping, and comfort against road holding."""
+    """Draw the three measures over damping, and comfort against road holding."""
     from matplotlib import colormaps
 
     caption = (

@@ -57,7 +57,7 @@ _READING = 125.0  # half of the 250 N s/m to which the source reads its optima [
 
 
 def root_stiffness_mass(ratios: dict[float, float]) -> float:
-    """sqrt(k m) = mean of c / (2 zeta) over printed pairs [N s/m]."""
+    """Return sqrt(k m) = mean of c / (2 zeta) over printed pairs [N s/m]."""
     return float(np.mean([damping / (2.0 * ratio) for damping, ratio in ratios.items()]))
 
 
@@ -209,7 +209,7 @@ def _outside(value: float, low: float, high: float) -> float:
 
 
 def _last_peak(lines: Array, magnitude: Array) -> float:
-    """Frequency of the highest-lying local maximum [Hz]."""
+    """Return the frequency of the local maximum with the highest frequency [Hz]."""
     inner = magnitude[1:-1]
     peaks = np.flatnonzero((inner > magnitude[:-2]) & (inner > magnitude[2:])) + 1
     return float(lines[peaks[-1]]) if peaks.size else 0.0

@@ -48,7 +48,7 @@ class Step:
 
     @property
     def damping(self) -> float:
-        """Coefficient of the damper that was optimised [N s/m]."""
+        """Return the coefficient of the optimised damper [N s/m]."""
         return self.front if self.changed == "front" else self.rear
 
 
@@ -109,7 +109,7 @@ def iterate(measure: Fluctuation, *, rear: float, grid: npt.ArrayLike | None = N
 
 
 def joint_optimum(measure: Fluctuation, *, start: tuple[float, float]) -> tuple[float, float, Array]:
-    """Front and rear coefficient of the least sum of both measures.
+    """Return the front and rear coefficient of the minimum sum of both measures.
 
     Args:
         measure: fluctuation of both tyres.

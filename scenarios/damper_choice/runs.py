@@ -72,14 +72,14 @@ class RoadHolding:
 
 
 def quarter_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[float, Array]:
-    """|response| of wheel and body for the damping of figures 2 and 3; damping -> (2, m)."""
+    """Return damping of figures 2 and 3 to |response| of wheel and body, (2, m)."""
     return {c: np.abs(quarter_car_model(parameters.quarter_car, c).response(lines)) for c in QUARTER_DAMPING}
 
 
 def half_responses(
     parameters: DamperChoiceParameters, lines: Array, dampings: Sequence[float] = HALF_DAMPING
 ) -> dict[float, Array]:
-    """|response| of front wheel, rear wheel, heave, pitch with equal dampers.
+    """Return |response| of front wheel, rear wheel, heave, pitch with equal dampers.
 
     Args:
         parameters: the half car.
@@ -190,12 +190,12 @@ class TradeOff:
     """Damping of the car itself [N s/m]."""
 
     def best(self, name: str) -> float:
-        """Damping of the least value of a measure: the same for every class, for all densities are proportional."""
+        """Return the damping of the minimum of a measure, equal for all classes, as their PSDs are proportional."""
         return float(self.damping[np.argmin([getattr(measure, name) for measure in self.measures["A"]])])
 
 
 def trade_off(car: RoadHoldingQuarterCar, damping: npt.ArrayLike) -> TradeOff:
-    """Measures of a quarter car over damping on all classes of ISO 8608.
+    """Return the measures of a quarter car over damping on all classes of ISO 8608.
 
     Args:
         car: quarter car.

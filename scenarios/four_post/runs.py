@@ -90,7 +90,7 @@ class Matched:
 
     @property
     def deviation(self) -> float | None:
-        """Frequency of the run over that of the matrices, less 1."""
+        """Return the frequency of the run over that of the matrices, minus 1."""
         return None if self.found is None else self.found.frequency_hz / self.peak.frequency_hz - 1.0
 
 
@@ -148,12 +148,12 @@ def matrix_response(car: Car, motion: str, state: str) -> npt.NDArray[np.complex
 
 
 def transmissibility(frequency: Vector, response: npt.NDArray[np.complex128]) -> Vector:
-    """|displacement of the place over that of the plates| = |H| / (2 pi f)^2 [-]."""
+    """Return |displacement of the point over that of the plates| = |H| / (2 pi f)^2 [-]."""
     return np.asarray(np.abs(response) / (2.0 * np.pi * frequency) ** 2)
 
 
 def distance_db(response: FrequencyResponse, exact: npt.NDArray[np.complex128]) -> float:
-    """RMS over lines and channels of 20 lg of |H| of a run over |H| of the matrices [dB]."""
+    """Return the RMS over lines and channels of 20 lg of |H| of a run over |H| of the matrices [dB]."""
     frequency = response.frequency
     finite = np.isfinite(response.response).all(axis=0) & (frequency <= HIGHEST_PEAK_HZ)
     level = [np.interp(np.log(frequency[finite]), np.log(LINES), np.log10(row)) for row in np.abs(exact)]

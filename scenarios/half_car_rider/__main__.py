@@ -119,7 +119,7 @@ def _row(outcome: Outcome) -> dict[str, Any]:
 
 
 def load(options: argparse.Namespace) -> HalfCarRiderParameters:
-    """The parameters."""
+    """Return the parameters."""
     return half_car_rider_parameters(options.parameters or PUBLISHED)
 
 

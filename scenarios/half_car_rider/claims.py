@@ -218,7 +218,7 @@ def _direction(
     place: str,
     picture: str,
 ) -> Claim:
-    """Row on what a parameter does at every speed; "little" is below the effects given."""
+    """Return the row on the effect of a parameter at every speed; "little" is below given effects."""
     agrees = {"little": np.abs(change) < little, "rises": change > 0.0, "falls": change < 0.0}[direction]
     rule = f"less than {LITTLE:.0%} of the effect of the sprung mass" if direction == "little" else direction
     speeds = ", ".join(f"{speed:.0f}" for speed in SPEEDS)
@@ -236,7 +236,7 @@ def _changes(table: Sequence[Sequence[Outcome]], name: str) -> Array:
 
 
 def relative_changes(values: Sequence[Sequence[float]]) -> Array:
-    """Change from the first to the last factor over the middle of the range, one for each speed [-]."""
+    """Return the change from the first to the last factor over the middle of the range, one for each speed [-]."""
     table = np.asarray(values, dtype=float)
     return np.asarray((table[:, -1] - table[:, 0]) / table.mean(axis=1))
 
@@ -267,7 +267,7 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
 
 
 def _upper_changes(car: HalfCarRiderParameters, parameter: str, speeds: Sequence[float]) -> Array:
-    """Change of the dose value of the upper body from 80 to 120 % of a parameter, one for each speed [km/h]."""
+    """Return the change of the dose value of the upper body from 80 to 120 % of a parameter at each speed [km/h]."""
     cars = [varied(car, parameter, factor) for factor in (0.8, 1.0, 1.2)]
     return relative_changes(
         [[outcome(car_variant, passive(car_variant, speed)).upper_vdv for car_variant in cars] for speed in speeds]
@@ -275,7 +275,7 @@ def _upper_changes(car: HalfCarRiderParameters, parameter: str, speeds: Sequence
 
 
 def _why_travel(car: HalfCarRiderParameters, parameter: str, factors: Sequence[float]) -> str:
-    """Peaks of the parts of the travel, wheel minus body, at the base speed."""
+    """Return a text on the peaks of the parts of the travel, wheel minus body, at the base speed."""
     ends = [passive(varied(car, parameter, factor), SPEEDS[0]) for factor in (factors[0], factors[-1])]
     wheel, body = (
         [1e3 * peak(car_variant.displacement(f"front_{name}")) for car_variant in ends] for name in ("wheel", "body")
@@ -294,7 +294,7 @@ def _why_travel(car: HalfCarRiderParameters, parameter: str, factors: Sequence[f
 def speed_claims(
     car: HalfCarRiderParameters, scan: Mapping[str, Sequence[float]], upper: Sequence[float], one_sided: Sequence[float]
 ) -> list[Claim]:
-    """Rows on the dose value over speed.
+    """Return the rows on the dose value over speed.
 
     Args:
         car: base case.
@@ -330,7 +330,7 @@ def speed_claims(
 
 
 def matrix_claim(car: HalfCarRiderParameters) -> Claim:
-    """Row on the printed matrices."""
+    """Return the row on the printed matrices."""
     printed, ours = growth_rate(printed_system(car)), growth_rate(half_car_rider(car))
     return COMPARED.statement(
         "matrices [C] and [K] below equation 16",

@@ -84,7 +84,7 @@ def study_figures(folder: Path, factors: Sequence[float], passive: Study, skyhoo
 def speed_figure(
     folder: Path, scan: Mapping[str, Sequence[float]], laws: Mapping[str, Sequence[Outcome]], speeds: Sequence[float]
 ) -> None:
-    """Dose value of the upper body over speed: exact passive response, and every law at the source's speeds."""
+    """Draw the dose value of the upper body over speed: exact passive response, and every law at printed speeds."""
     caption = (
         f"{BUMP}. Left: exact passive response from 1 to 60 km/h; the grey band is the range of the source. Right: "
         "passive and semi-active dampers at the source's speeds, tyres glued to the road."
@@ -102,7 +102,7 @@ def speed_figure(
 
 
 def lift_off_figure(folder: Path, car: HalfCarRiderParameters, glued: History, free: History, speed: float) -> None:
-    """Tyre loads of the base case: linear tyre that pulls, and one-sided tyre."""
+    """Draw the tyre loads of the base case: linear tyre that pulls, and one-sided tyre."""
     caption = (
         f"{BUMP}, {speed:.0f} km/h, passive dampers. The linear tyre pulls on the road where its load is below zero "
         "(shaded); the one-sided tyre leaves the road and lands again."

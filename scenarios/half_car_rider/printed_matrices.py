@@ -16,7 +16,7 @@ from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
 
 
 def printed_system(parameters: HalfCarRiderParameters) -> LinearSystem:
-    """The derived system with [C] and [K] as printed; they differ in the entries named here, and are not symmetric.
+    """Return the derived system with the printed [C] and [K], which differ in the entries below and are asymmetric.
 
     Coordinates upper limb, lower limb, seat, heave, front wheel, rear wheel, pitch.
     """

@@ -67,7 +67,7 @@ class Outcome:
 
 
 def passive(car: HalfCarRiderParameters, speed: float) -> History:
-    """Exact passive response at a speed [km/h]."""
+    """Return the exact passive response at a speed [km/h]."""
     passage = bump_passage(car.bump, speed * KMH, car.body.front_arm + car.body.rear_arm)
     return bump_response(half_car_rider(car), passage, time_step=TIME_STEP, duration=DURATION)
 
@@ -103,7 +103,7 @@ def varied(car: HalfCarRiderParameters, parameter: str, factor: float) -> HalfCa
 def parameter_study(
     car: HalfCarRiderParameters, factors: Sequence[float], law: str = PASSIVE
 ) -> Mapping[str, list[list[Outcome]]]:
-    """Outcomes over every varied parameter, speed and factor.
+    """Return the outcomes over every varied parameter, speed and factor.
 
     Args:
         car: base case.
@@ -141,7 +141,7 @@ def driven(car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, on
 
 
 def peak(signal: Array) -> float:
-    """Largest magnitude."""
+    """Return the largest magnitude."""
     return float(np.abs(signal).max())
 
 

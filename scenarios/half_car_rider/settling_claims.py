@@ -67,7 +67,7 @@ def _time(history: History, point: str, quantity: Motion, printed: float, limit:
 
 
 def _needed(time: Array, motion: Array, printed: float) -> str:
-    """Band in which the motion has settled at a time: the largest magnitude from then on over the peak."""
+    """Return the band in which the motion has settled at a time: largest later magnitude over the peak."""
     magnitude = np.abs(motion)
     return f"{100.0 * float(magnitude[time >= printed].max() / magnitude.max()):.2g} %"
 

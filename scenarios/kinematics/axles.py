@@ -105,12 +105,12 @@ class Moved:
 
     @property
     def gain(self) -> float:
-        """Change of the toe slope with the shift [deg/m2]."""
+        """Return the change of the toe slope with the shift [deg/m2]."""
         return (self.toe_slopes[-1] - self.toe_slopes[0]) / (self.shifts[-1] - self.shifts[0])
 
     @property
     def neutral(self) -> float:
-        """Shift with which toe does not change over small travel [m]; nan where the point does not steer."""
+        """Return the shift for constant toe over small travel [m]; nan for a point without effect on toe."""
         steers = abs(self.gain) > LEAST_GAIN
         return -self.toe_slopes[len(self.shifts) // 2] / self.gain if steers else math.nan
 

@@ -146,7 +146,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
 
 
 def _influence(runs: Runs, level: float, variant: int) -> float:
-    """Mean change of the PSD from constant to degressive damping [dB]."""
+    """Return the mean change of the PSD from constant to degressive damping [dB]."""
     _, bent = runs.spectrum(DEGRESSIVE[0], level, variant)
     _, straight = runs.spectrum(CONSTANT[0], level, CONSTANT[1])
     return float(np.mean(np.abs(10.0 * np.log10(bent / straight))))
@@ -200,7 +200,7 @@ def strut_claims(runs: Runs) -> list[Claim]:
 
 
 def _change(density: Array, against: Array, frequency: Array, band: tuple[float, float]) -> float:
-    """Change of the RMS in a band [%]."""
+    """Return the change of the RMS in a band [%]."""
     inside = (frequency >= band[0]) & (frequency <= band[1])
     return 100.0 * (float(np.sqrt(density[inside].sum() / against[inside].sum())) - 1.0)
 

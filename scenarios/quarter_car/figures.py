@@ -239,7 +239,7 @@ def figure_2_20(runs: Runs, path: Path) -> None:
 
 
 def figure_b_1(runs: Runs, path: Path) -> None:
-    """The smooth law for three steepnesses, with the velocities met in the runs of table B.1."""
+    """Draw the smooth law for three steepnesses, with the velocities in the runs of table B.1."""
     caption = "Smooth friction law for three steepnesses eps; dots: samples of the runs of table B.1 (road RMS 0.5 mm)."
     velocity = np.linspace(-0.015, 0.015, 4001)
     with chart(path, caption, columns=2) as axes:

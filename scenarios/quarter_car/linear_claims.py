@@ -34,7 +34,7 @@ def mode_claims(runs: Runs) -> list[Claim]:
 
 
 def phase_claims(runs: Runs) -> list[Claim]:
-    """Phases and relative size of body and wheel at the four frequencies of the text."""
+    """Return the rows on phases and relative size of body and wheel at the four frequencies of the text."""
     reading = f"read from an axis with labels 100 deg apart: {PHASE_READING:g} deg"
     slow, hop = _pair(runs, "slip", 2.0), _pair(runs, "slip", 12.5)
     heave, wheel = _pair(runs, "stick", 4.8), _pair(runs, "stick", 25.0)

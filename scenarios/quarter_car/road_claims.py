@@ -71,7 +71,7 @@ def _inside(frequency: float) -> str:
 
 
 def response(runs: Runs, family: str, variant: int, level: float) -> tuple[Array, Array]:
-    """Spectrum per road velocity where resonances are looked for."""
+    """Return the spectrum per road velocity for the search of resonances."""
     return runs.spectrum(family, level, variant, resolution=runs.resolution, per_road=True)
 
 

@@ -124,7 +124,7 @@ class Runs:
 
     @property
     def resolution(self) -> float:
-        """Distance of the lines [Hz] where resonances are looked for: three windows fit the record."""
+        """Return the distance of the lines for the search of resonances: three windows per record [Hz]."""
         return 3.0 / self.duration
 
     def model(self, vary: Mapping[str, Any] | None = None, **parts: Any) -> FirstOrder:
@@ -132,7 +132,7 @@ class Runs:
         return quarter_car(self.car, vary=vary, **parts).first_order()
 
     def road_signal(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Signal:
-        """Random road at uniform steps [s] whose lowest line fits the record once.
+        """Return a random road at uniform steps [s], periodic in the record.
 
         Args:
             rms: of the displacement in 30 s [m]. A shorter road has the same velocity PSD, and so a smaller RMS: that
@@ -168,7 +168,7 @@ class Runs:
 
     @property
     def march_step(self) -> float:
-        """Step of the vectorised integration [s].
+        """Return the step of the vectorised integration [s].
 
         With 0.5 ms it is within 5 % of the stiff solver at every instant on roads from 1.3 mm RMS on, within 6 % on
         roads of 0.26 mm.
@@ -177,7 +177,7 @@ class Runs:
 
     @property
     def roads(self) -> int:
-        """Number of random roads whose spectra are averaged."""
+        """Return the number of random roads of an averaged spectrum."""
         return 3 if self.quick else 8
 
     def spectrum(
@@ -268,7 +268,7 @@ class Runs:
         return self._once("mass switch", lambda: switch_solution(model, law, times, force=drive))
 
     def starts(self) -> tuple[Array, Array]:
-        """Sine of 1 mm from many starts: the road at eight phases, the body with eight velocities up to 0.1 m/s.
+        """Run a sine of 1 mm from 64 starts: eight phases of the road, eight body velocities up to 0.1 m/s.
 
         With the steep smoothing of appendix C: a damper that creeps below the limit of the friction is no stuck one.
 

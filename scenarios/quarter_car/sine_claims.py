@@ -22,7 +22,7 @@ START = 3.0
 
 
 def stuck_bound(car: QuarterCar) -> float:
-    """Largest acceleration that a stuck strut can give the body in steady motion [m/s2].
+    """Return the maximum acceleration of the body by a stuck strut in steady motion [m/s2].
 
     With u = xb - xt and a stuck damper, Kd (u - s) is the force of the friction, at most Fd, and
     Mb xb'' = -Km u - Kd (u - s). A steady motion has no mean acceleration, so an offset s only uses up part of Fd: the

@@ -18,7 +18,7 @@ STYLES = ("-", "--", ":")
 
 
 def draw_classes(path: Path, runs: RideRuns, roads: Sequence[str], speeds: Sequence[float]) -> None:
-    """Comfort at rail and seat and tyre load over the speed, a colour for each class, a style for each car."""
+    """Draw comfort at rail and seat and tyre load over speed, a colour for each class, a style for each car."""
     axles = [axle for axle, _ in runs.measure.by_axle]
     panels = [("rail_weighted", "seat rail, ISO 2631-1 [m/s²]", 1.0), ("seat_weighted", "seat, ISO 2631-1 [m/s²]", 1.0)]
     panels += [(f"load_{axle}", f"dynamic over static tyre load, {axle} [%]", 100.0) for axle in axles]
@@ -48,7 +48,7 @@ def draw_classes(path: Path, runs: RideRuns, roads: Sequence[str], speeds: Seque
 
 
 def draw_friction(path: Path, runs: RideRuns, roads: Sequence[str], speed: float, frictions: Sequence[float]) -> None:
-    """Comfort at rail and seat and tyre load over the friction of all dampers, relative to none."""
+    """Draw comfort at rail and seat and tyre load over the friction of all dampers, relative to no friction."""
     load = f"load_{runs.measure.by_axle[0][0]}"
     panels = [
         ("rail", "seat rail, unweighted, 2 to 50 Hz [%]"),

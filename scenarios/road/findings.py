@@ -118,7 +118,7 @@ def ratio(runs: RideRuns, ride: Ride, name: str) -> tuple[float, float]:
 def friction_claims(
     runs: RideRuns, car: str, roads: Sequence[str], speed: float, frictions: Sequence[float]
 ) -> list[Claim]:
-    """Whether friction makes a smooth road uncomfortable, a rough one less so, for a car on four wheels.
+    """Return the rows on friction: less comfort on a smooth road, less effect on a rough road, on four wheels.
 
     Args:
         runs: what is computed.

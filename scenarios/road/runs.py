@@ -54,7 +54,7 @@ class RideMeasure:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels that are needed."""
+        """Return the required channels."""
         points = ("seat_rail", "seat") if self.seat else ("seat_rail",)
         motion = (f"{point}_acc_{axis}" for point in points for axis in AXES)
         return (
@@ -78,17 +78,17 @@ class RideMeasure:
         return tuple((axle, tuple(wheel for wheel, its in self.wheels if its == axle)) for axle in axles)
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """The numbers of a run."""
+        """Return the values of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """The numbers of several runs."""
+        """Return the values of r runs; (r,) each."""
         step = runs.timestep
         kept = slice(round(LEAD_S / step), None)
         rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
         values = {
             "rail": comfort_values(step, rail[:, :, kept]).overall,
-            "rail_weighted": np.array([weighted_rms_of(step, damper, skip=LEAD_S)[3] for damper in rail]),
+            "rail_weighted": np.array([weighted_rms_of(step, xyz, skip=LEAD_S)[3] for xyz in rail]),
             "seat_weighted": np.full(len(rail), np.nan),
             "seat_value": np.full(len(rail), np.nan),
         }
@@ -102,7 +102,7 @@ class RideMeasure:
         }
         for axle, wheels in self.by_axle:
             values[f"load_{axle}"] = np.sqrt(
-                np.mean([np.mean((loads[damper] - 1.0) ** 2, axis=1) for damper in wheels], axis=0)
+                np.mean([np.mean((loads[wheel] - 1.0) ** 2, axis=1) for wheel in wheels], axis=0)
             )
         values["lowest_load"] = np.min([np.min(load, axis=1) for load in loads.values()], axis=0)
         values["pulling"] = np.max([np.mean(load < 0.0, axis=1) for load in loads.values()], axis=0)
@@ -178,7 +178,7 @@ class RideRuns:
 
     @property
     def computed(self) -> int:
-        """Number of runs so far."""
+        """Return the number of finished runs."""
         return self.records * len(self._done)
 
     def tyres(self, speed: float | None = None) -> str:
@@ -256,7 +256,7 @@ class RideRuns:
 
 
 def all_friction(vehicle: Vehicle, friction: float) -> tuple[str, ...]:
-    """Overrides that give every damper of a car this Coulomb friction [N]."""
+    """Return the overrides that set the Coulomb friction [N] of every damper of a car."""
     paths = dict.fromkeys(damper.path for damper in vehicle.composition.dampers)
     return tuple(f"{path}.coulomb_friction={friction!r}" for path in paths)
 

@@ -69,7 +69,7 @@ class Judged:
     held: Mapping[Rig, Vector]
 
     def of(self, candidate: Candidate) -> Readings:
-        """Readings of a candidate."""
+        """Return the readings of a candidate."""
         return self.found[replace(candidate.rig, roof="-y")]
 
     def numbers(self, candidate: Candidate) -> tuple[float, float, float, float]:
@@ -122,7 +122,7 @@ def judged(plan: Plan, groups: Sequence[Sequence[Rig]], folder: Path, jobs: int)
 
 
 def joined(first: Judged, second: Judged) -> Judged:
-    """Candidates of two runs together."""
+    """Join the candidates of two runs."""
     return Judged(
         plan=first.plan,
         found={**first.found, **second.found},
@@ -144,7 +144,7 @@ def before(plan: Plan) -> Candidate:
 
 
 def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
-    """Judge all candidates, draw the likelihoods by side into the folder, and compare the winner with what was."""
+    """Compute the likelihoods of all candidates, draw them by side, and compare the winner with the car before."""
     plan = QUICK if options.quick else FULL
     judgement = judged(plan, rigs(options.quick), folder / "cars", options.jobs)
     if not options.quick:
@@ -192,7 +192,7 @@ def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
 
 
 def chosen(ranking: Sequence[tuple[float, Candidate]]) -> Candidate:
-    """The candidate to ship: of those that are not worth more than a bare mention apart, that with the fewest changes.
+    """Return the candidate to ship: of candidates with nearly the best likelihood the one with the fewest changes.
 
     Args:
         ranking: the best of every rig, the most likely first.
@@ -242,7 +242,7 @@ def half_claims(judgement: Judged, winner: Candidate) -> list[Claim]:
 
 
 def side_claims(winner: Candidate, other: Mapping[str, tuple[float, Candidate]]) -> list[Claim]:
-    """Whether other rows choose the same side of the plate."""
+    """Return the rows on the side of the plate by other rows."""
     return [
         OWN_CHECK.statement(
             f"side of the plate chosen on {name} rows",
@@ -256,7 +256,7 @@ def side_claims(winner: Candidate, other: Mapping[str, tuple[float, Candidate]])
 
 
 def side_table(judgement: Judged) -> str:
-    """Best candidate of every combination of sides, with the body as designed."""
+    """Return a table of the best candidate of every combination of sides, with the designed body."""
     plain = {rig: candidate for rig, candidate in judgement.used.items() if rig.body() == TODAY.body()}
     return rank_table(judgement, best(plain), "Evidence by side (seat at -y), body as designed, best numbers of each:")
 

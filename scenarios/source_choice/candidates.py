@@ -69,7 +69,7 @@ class Rig:
         return f"Ixx {self.ixx:g}, damping {100 * self.damping:g} %, brackets {self.brackets}"
 
     def overrides(self) -> tuple[str, ...]:
-        """Changes of the car of `vehicle_file`."""
+        """Return the overrides of the car of `vehicle_file`."""
         return (
             f"body.inertia.ixx={self.ixx!r}",
             f"body.inertia.ixy={self.products * 82.03!r}",
@@ -130,7 +130,7 @@ def _with_mounts(text: str, hydromount: str) -> str:
 
 
 def _with_brackets(text: str, factor: float) -> str:
-    """A body design with other stiffnesses of attachment where they are assumed."""
+    """Return a body design with other assumed stiffnesses of attachment."""
     lines = []
     for line in text.split("\n"):
         if line.startswith("attachment = [") and "fitted" not in line:

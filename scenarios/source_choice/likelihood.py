@@ -44,7 +44,7 @@ class Candidate:
     road: int
 
     def text(self, plan: Plan) -> tuple[str, ...]:
-        """Slip velocity, edges of shaker, bump and road, noise of the low bump, as cells."""
+        """Return slip velocity, edges of shaker, bump and road, and noise of the low bump as cells of a table."""
         return (
             f"{1e3 * SLIP_VELOCITIES[self.velocity]:g}",
             f"{plan.shaker_edges[self.shaker]:g}",
@@ -65,7 +65,7 @@ def probability(row: Evidence, values: npt.ArrayLike) -> float:
 
 
 def log_likelihood(row: Evidence, values: npt.ArrayLike) -> float:
-    """Weighted ln(m + (1 - m) P) of a row, m the chance of a misreading."""
+    """Return the weighted ln(m + (1 - m) P) of a row, m the probability of a misreading."""
     return row.weight * float(np.log(MISREADING + (1.0 - MISREADING) * probability(row, values)))
 
 
@@ -162,7 +162,7 @@ NUMBERS = ("velocity", "shaker", "noise", "level", "road")
 
 
 def table(readings: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED) -> Vector:
-    """Log-likelihood of every candidate with a rig, axes as `NUMBERS`.
+    """Return the log-likelihood of every candidate with a rig, axes as `NUMBERS`.
 
     Args:
         found: what was read off the runs of the rig.
@@ -201,7 +201,7 @@ def table(readings: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED)
 
 
 def best(tables: Mapping[Rig, Vector], *, own_noise: bool = False) -> list[tuple[float, Candidate]]:
-    """The best candidate of each rig, the most likely first.
+    """Return the best candidate of each rig, the most likely first.
 
     Args:
         tables: rig to log-likelihoods, axes as `NUMBERS`.

@@ -168,7 +168,7 @@ def readings(rigs: Sequence[Rig], plan: Plan, folder: Path) -> list[Readings]:
 # The plate and the roof point are no part of the car; building one costs as much as minutes on the road.
 @lru_cache(maxsize=64)
 def _cars(folder: Path, hydromount: str, brackets: str, changes: tuple[str, ...]) -> tuple[Car, ...]:
-    """A car, and those at the ends of its comfort curves."""
+    """Return a car, and the cars at the ends of its comfort curves."""
     car = Car.load(vehicle_file(folder, hydromount, brackets), changes)
     return car, *(car.varied([f"{PATHS[name]}={value!r}"]) for name, value in ENDS)
 
@@ -225,7 +225,7 @@ def _above(velocity: Vector) -> Vector:
 
 
 def _shares(cars: Sequence[Car], signal: Signal, wheel: str) -> Vector:
-    """Slip shares (cars, [plate, other], velocities)."""
+    """Return slip shares, (cars, [plate, other], velocities)."""
     channels = _velocities(wheel)
     return np.concatenate(
         [
@@ -258,7 +258,7 @@ def _bump_signals(plan: Plan) -> list[list[list[Signal]]]:
 
 
 def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str) -> tuple[Vector, Vector, Vector]:
-    """Extremes (seeds, bumps, cars, points, 2), end of sticking and largest velocity (seeds, bumps, cars)."""
+    """Return extremes (seeds, bumps, cars, points, 2), end of sticking and largest velocity (seeds, bumps, cars)."""
     strut = [f"{point}_{wheel}_acc_{axis}" for point in ("damper_top", "knuckle") for axis in AXES]
     body = ["seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z", "seat_acc_z"]
     others = ["engine_acc_z", "roof_left_rear_acc_z", "roof_right_rear_acc_z"]
@@ -293,7 +293,7 @@ def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str)
 
 
 def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[Vector, Vector, Vector]:
-    """Comfort (roads, seeds, cars, ends), slip (roads, seeds, cars, velocities), levels (figures, cars, windows).
+    """Return comfort (roads, seeds, cars, ends), slip (.., velocities) and levels (figures, cars, windows).
 
     Args:
         every: each car followed by those at the ends of its comfort curves.
@@ -327,7 +327,7 @@ def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[V
 
 
 def swings(edge: float, plan: Plan) -> Vector:
-    """Highest less lowest displacement of 30 s of a road of 50 mm RMS [m], for each seed and stretch."""
+    """Return highest minus lowest displacement of 30 s of a road of 50 mm RMS [m], for each seed and window."""
     record = slice(round(LEAD_S * RATE_HZ) + 1, None)
     largest = []
     for seed in range(plan.seeds):

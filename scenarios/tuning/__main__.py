@@ -199,7 +199,7 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
 def _draw(
     folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequence[MeasuredTarget], source: str
 ) -> None:
-    """Data, start and fit of every target, and the correlations."""
+    """Draw data, start and fit of every target, and the correlations."""
     start = tuning.build({measurement.path: measurement.start for measurement in result.parameters})
     end = tuning.build(result.values)
     for index, measurement in enumerate(measurements):

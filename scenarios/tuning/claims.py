@@ -21,7 +21,7 @@ WITHIN = 3.0
 
 
 def demonstration_claims(final: FullSteps, from_records: FullSteps | None, true: Mapping[str, float]) -> list[Claim]:
-    """Rows: every hidden value, the damper from the bump records, the final check."""
+    """Return the rows on every hidden value, on the damper from the bump records, and on the final check."""
     claims = [_recovered(f"{path}, all levels in one fit", final.result, path, value) for path, value in true.items()]
     claims.append(_checked("all levels in one fit", final))
     if from_records is not None:
@@ -31,7 +31,7 @@ def demonstration_claims(final: FullSteps, from_records: FullSteps | None, true:
 
 
 def own_claims(result: TuningResult, final: FullSteps | None) -> list[Claim]:
-    """Rows: whether the fit ended at a minimum inside its bounds, the final check."""
+    """Return the rows on a minimum inside the bounds, and on the final check."""
     claims = [
         OWN_CHECK.statement(
             "the fit ends at a minimum within its bounds",
@@ -188,7 +188,7 @@ def _rows(result: TuningResult) -> str:
 
 
 def fit_numbers(result: TuningResult) -> dict[str, Any]:
-    """A fit for `results.json`."""
+    """Return a fit as plain data for `results.json`."""
     plain = ("values", "standard_errors", "free", "at_bound", "condition", "evaluations", "converged")
     return {
         **{name: getattr(result, name) for name in plain},

@@ -97,7 +97,7 @@ def make_measurements(
 
 
 def _noisy(clean: FrequencyResponse, noise: np.random.Generator) -> FrequencyResponse:
-    """H (1 + e (a + j b)) with e = NOISE and the coherence that belongs to it: 1 / gamma^2 times 1 + 2 n e^2."""
+    """Return H (1 + e (a + j b)) with e = NOISE and its coherence: 1 / gamma^2 times 1 + 2 n e^2."""
     real, imaginary = noise.standard_normal((2, *clean.response.shape))
     return dataclasses.replace(
         clean,
@@ -119,7 +119,7 @@ def driven_channels(channels: Sequence[str], wheel: str) -> tuple[str, ...]:
 
 
 def _record(name: str, run: Run, noise: np.random.Generator) -> RecordTarget:
-    """Time histories with white noise of NOISE times their RMS in the window."""
+    """Return time histories with white noise of NOISE times their RMS in the window."""
     inside = (run.time >= BUMP_WINDOW[0]) & (run.time <= BUMP_WINDOW[1])
     histories, recorded = {}, driven_channels(RECORDED, run.car.vehicle.shaker_wheel)
     for channel in recorded:
@@ -173,7 +173,7 @@ TEXT = "PATH=LOWER:UPPER or PATH=LOWER:UPPER:START"
 
 
 def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...]:
-    """Parameters of the option --fit; without a start they begin at the value of the vehicle.
+    """Parse the parameters of the option --fit; the default start is the value of the vehicle.
 
     Raises:
         ConfigurationError: a text, a path or a bound is wrong.

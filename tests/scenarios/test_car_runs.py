@@ -79,7 +79,7 @@ def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, cap
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "message"),
     [
         (["--jobs", "0"], "--jobs 0"),
         (["--set", "damper.viscuos=1"], "viscous"),

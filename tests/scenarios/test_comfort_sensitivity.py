@@ -1,4 +1,4 @@
-"""`python -m scenarios.comfort_sensitivity` as a user runs it, its statistics, and the physics behind it."""
+"""`python -m scenarios.comfort_sensitivity` as a user runs it, its statistics, and its physics."""
 
 import dataclasses
 import json

@@ -27,7 +27,7 @@ def test_settings_cover_laws_roads_delays_and_the_passive_range():
 
 
 def made_up(runs, chosen, duration, engine):
-    """Skyhook comfortable, groundhook light on the tyres, both worse by delay."""
+    """Return made-up values: skyhook improves comfort, groundhook reduces tyre loads, and delay worsens both."""
     points = {}
     for setting in chosen:
         comfort = (

@@ -52,14 +52,14 @@ def test_the_halves_hold_every_topic_and_every_row_once():
     topics = {row.topic for row in EVIDENCE}
     assert {row.topic for row in EVIDENCE if row.key in USED} == topics
     assert {row.topic for row in EVIDENCE if row.key not in USED} == topics
-    # What the body's frame was fitted to is no prediction, although the choice did not use it.
+    # A row to which the body's frame was fitted is not a prediction, even in the held-out half.
     assert "engine_highest" not in USED and status_of("engine_highest") == "fitted"
     assert "bump_1p5_roof_z_lowest" not in USED and status_of("bump_1p5_roof_z_lowest") == "predicted"
     with pytest.raises(KeyError):
         status_of("slip_right_middle")
 
 
-def test_a_hundred_to_one_is_the_most_that_one_row_says():
+def test_a_row_changes_the_likelihood_by_at_most_a_factor_of_a_hundred():
     row = evidence_of("wheel_mode")
     far, near = log_likelihood(row, [40.0]), log_likelihood(row, [28.0])
     assert far == pytest.approx(np.log(MISREADING), abs=1e-9) and near > -0.6

@@ -45,7 +45,7 @@ class FoundDrive:
 
     @property
     def signal(self) -> Signal:
-        """Plate signals [m], as `Car.run` takes them."""
+        """Return the plate signals [m], as `Car.run` takes them."""
         return self.plant.signal(self.replication.drive)
 
     @property
@@ -55,7 +55,7 @@ class FoundDrive:
 
     @property
     def run(self) -> Run:
-        """Last run of the iteration."""
+        """Return the last run of the iteration."""
         assert self.plant.last is not None
         return self.plant.last
 

@@ -46,7 +46,7 @@ class RowStatistics:
 
     @property
     def scale(self) -> float:
-        """Factor on the assumed standard deviation that weights the row by the number of its independent values [-]."""
+        """Return the factor on the assumed standard deviation that weights a row by its independent values [-]."""
         return float(self.rms * np.sqrt(self.inflation))
 
 
