@@ -1,4 +1,4 @@
-"""`python -m scenarios.four_post`: what sticks on a smooth input and slides on a rough one, beside the matrices."""
+"""`python -m scenarios.four_post`: what sticks on a smooth input and slides on a rough one, against the matrices."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def test_the_roll_mode_is_where_the_roof_swings_sideways(ixx):
     mode = roll_mode(car)
     assert "roll" in mode.description
     # Another way to the same mode: the largest lateral FRF of the roof above the lateral and yaw modes (which end at
-    # 4 Hz). Its peak lies within the half-power width of the mode.
+    # 4 Hz). Its peak is within the half-power width of the mode.
     lines = np.arange(4.2, 9.0, 0.01)
     lateral = np.abs(car.matrix_frf(["roof_left_rear_acc_y"], lines))[0] / lines**2
     assert lines[np.argmax(lateral)] == pytest.approx(mode.frequency, rel=2 * mode.damping_ratio)

@@ -61,7 +61,7 @@ def test_the_delay_that_was_forgotten_is_named(files):
     (measurement,) = own_measurements(parser.parse_args(options), Car.load())
     (late,) = (text for text in measurement.notices if "--delay" in text)
     advice = re.search(r"--delay (\S+)", late)
-    # The other law of friction moves the answer by 2.4 ms.
+    # The other friction law shifts the response by 2.4 ms.
     assert advice is not None and float(advice[1]) == pytest.approx(0.2, abs=5e-3)
     assert any(text.endswith("give --turn damper_fr_velocity") for text in measurement.notices)
 

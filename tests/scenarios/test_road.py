@@ -1,4 +1,4 @@
-"""`python -m scenarios.road` as a user runs it; the scaling of a linear car with friction; what the rows ask."""
+"""`python -m scenarios.road` as a user runs it; the scaling of a linear car with friction; and its rows."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_short_study(car, tmp_path):
 
 @needs_reduced
 def test_twice_the_road_and_twice_the_friction_are_the_same(car, tmp_path):
-    """u = a U(F / a): the reduced engine is linear but for its dampers, which it solves by turns to 1e-9 N."""
+    """u = a U(F / a): the reduced engine is linear except for the dampers, solved iteratively to 1e-9 N."""
     runs = RideRuns({"rigid": car}, records=1, duration=2.0, folder=tmp_path)
     pairs = [Ride(car="rigid", road=road, speed=80.0, friction=force) for road, force in (("A", 30.0), ("C", 120.0))]
     for name in ("rail", "seat_weighted", "load_front"):

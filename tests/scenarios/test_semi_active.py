@@ -1,4 +1,4 @@
-"""The study of semi-active dampers: its settings, what it says of numbers, and its measure on a run."""
+"""The study of semi-active dampers: settings, sentences on values, and the measure on a run."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ def test_the_table_is_the_sum_over_the_rows_of_each_candidate():
         values = values_of(readings, candidate, PLAN)
         rows = [log_likelihood(row, values[row.key]) for row in EVIDENCE if row.key in USED]
         assert whole[at] == pytest.approx(sum(rows), abs=1e-9)
-    # The same shaker makes the noise of the bump; its own edge can only do better.
+    # The same shaker makes the noise of the bump; a separate edge cannot be less likely.
     (tied, candidate), (free, _) = best({rig: whole})[0], best({rig: whole}, own_noise=True)[0]
     assert candidate.noise == candidate.shaker and free == pytest.approx(np.max(whole)) and tied <= free
     by_row = probabilities(readings, candidate, PLAN)

@@ -19,7 +19,7 @@ def test_a_short_study_ranks_the_parameters(tmp_path):
     assert (folder / "tornado.png").exists()
     labels = [bar["label"] for bar in content["bars"]]
     assert len(labels) == len(PARAMETERS) == 8
-    # The whole input comes through the tyre, and a fifth of the main spring is 2 % of the stiffness beside a stuck
+    # The whole input comes through the tyre, and a fifth of the main spring is 2 % of the stiffness with a stuck
     # damper: no length of record moves one from the top or the other from the last three.
     assert labels[0].startswith("tyre stiffness")
     assert any(label.startswith("main spring") for label in labels[-3:])
