@@ -41,17 +41,17 @@ if TYPE_CHECKING:
     from vehicle.signals.records.record_comfort import RecordComfort as RecordComfort
     from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
     from vehicle.studies.optimisation.car_search import optimise_car as optimise_car
-    from vehicle.studies.optimisation.found_cars import FoundCars as FoundCars
+    from vehicle.studies.optimisation.search_result import FoundCars as FoundCars
     from vehicle.studies.replication.drive_files import save_drive as save_drive
-    from vehicle.studies.replication.found_drive import FoundDrive as FoundDrive
-    from vehicle.studies.replication.found_drive import replicate_drive as replicate_drive
+    from vehicle.studies.replication.drive_search import FoundDrive as FoundDrive
+    from vehicle.studies.replication.drive_search import replicate_drive as replicate_drive
     from vehicle.studies.sweeps.measure import ComfortMeasure as ComfortMeasure
     from vehicle.studies.sweeps.plan import run_sweep as run_sweep
-    from vehicle.studies.sweeps.table import SweepTable as SweepTable
+    from vehicle.studies.sweeps.sweep_table import SweepTable as SweepTable
     from vehicle.studies.tuning.car_fit import tune_car as tune_car
+    from vehicle.studies.tuning.fit_result import TuningResult as TuningResult
     from vehicle.studies.tuning.measured_targets import measured_histories as measured_histories
     from vehicle.studies.tuning.measured_targets import measured_responses as measured_responses
-    from vehicle.studies.tuning.result import TuningResult as TuningResult
 
 _MODULES = {
     "Car": "vehicle.runs.car.car",
@@ -60,8 +60,8 @@ _MODULES = {
     "Comparison": "vehicle.runs.comparison.comparison",
     "ConfigurationError": "vehicle.errors",
     "DataError": "vehicle.errors",
-    "FoundCars": "vehicle.studies.optimisation.found_cars",
-    "FoundDrive": "vehicle.studies.replication.found_drive",
+    "FoundCars": "vehicle.studies.optimisation.search_result",
+    "FoundDrive": "vehicle.studies.replication.drive_search",
     "MissingPartError": "vehicle.errors",
     "OutputError": "vehicle.errors",
     "RecordComfort": "vehicle.signals.records.record_comfort",
@@ -69,8 +69,8 @@ _MODULES = {
     "Run": "vehicle.runs.car.run",
     "Signal": "vehicle.signals.excitation.signal",
     "SimulationError": "vehicle.errors",
-    "SweepTable": "vehicle.studies.sweeps.table",
-    "TuningResult": "vehicle.studies.tuning.result",
+    "SweepTable": "vehicle.studies.sweeps.sweep_table",
+    "TuningResult": "vehicle.studies.tuning.fit_result",
     "VehicleError": "vehicle.errors",
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
     "compare_run": "vehicle.runs.comparison.compared_run",
@@ -81,7 +81,7 @@ _MODULES = {
     "read_measured": "vehicle.signals.records.measured",
     "read_record": "vehicle.signals.records.reader",
     "read_signal": "vehicle.signals.excitation.signal_file",
-    "replicate_drive": "vehicle.studies.replication.found_drive",
+    "replicate_drive": "vehicle.studies.replication.drive_search",
     "run_sweep": "vehicle.studies.sweeps.plan",
     "save_comparison": "vehicle.runs.output.comparison_files",
     "save_drive": "vehicle.studies.replication.drive_files",

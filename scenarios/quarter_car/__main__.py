@@ -25,13 +25,13 @@ def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | s
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Options of this study alone."""
+    """Add the options of this study."""
     names = f"one of {', '.join(FIGURES)}; no table"
     parser.add_argument("--figure", choices=list(FIGURES), metavar="NAME", help=names)
 
 
 def load(options: argparse.Namespace) -> Runs:
-    """The parameters and what was computed with them."""
+    """Return the runs of the parameters in a file."""
     return Runs(car=load_quarter_car(options.parameters or PUBLISHED), quick=options.quick)
 
 

@@ -86,7 +86,7 @@ def test_every_row_has_its_place_and_a_picture_that_is_there(results):
     assert [row["name"] for row in rows if not row["picture"]] == ["matrices [C] and [K] below equation 16"]
 
 
-def test_base_case_is_tabled_for_every_place(results):
+def test_base_case_is_tabled_for_every_point(results):
     table = json.loads((results / "results.json").read_text(encoding="utf-8"))["base_case"]
     history = passive(CAR, SPEEDS[0])
     assert set(table) == set(places(CAR))

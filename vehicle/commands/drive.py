@@ -77,7 +77,7 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
     from vehicle.studies.replication.drive_files import save_drive
-    from vehicle.studies.replication.found_drive import replicate_drive, require_iteration
+    from vehicle.studies.replication.drive_search import replicate_drive, require_iteration
 
     inputs = tuple(path for path in (options.target, options.vehicle) if path is not None)
     band, target_error = _band(options.band), 0.01 * options.target_error
@@ -135,7 +135,7 @@ def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
         ConfigurationError: no channel, or a channel twice.
     """
     from vehicle.signals.records.choice import Choice
-    from vehicle.studies.replication.found_drive import named_channels
+    from vehicle.studies.replication.drive_search import named_channels
 
     unnamed = [text.strip() for text in options.picks if "=" not in text]
     options.picks = [f"{text}={text}" if "=" not in text else text for text in options.picks]

@@ -117,7 +117,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.optimisation.car_search import plan_search, require_counts
     from vehicle.studies.optimisation.car_table import CARS
     from vehicle.studies.optimisation.problem import parsed_range, parsed_tolerance
-    from vehicle.studies.optimisation.search_files import read_beside
+    from vehicle.studies.optimisation.search_files import read_other_front
     from vehicle.studies.sweeps.executors import executor_factory
 
     require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
@@ -136,7 +136,7 @@ def _job(options: argparse.Namespace) -> None:
         skip=options.skip,
         seed=options.search_seed,
     )
-    beside = None if options.beside is None else read_beside(options.beside, plan.trials.problem)
+    beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=CARS)
     try:

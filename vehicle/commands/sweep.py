@@ -64,7 +64,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.executors import executor_factory
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.store import ROWS
-    from vehicle.studies.sweeps.table import read_variations
+    from vehicle.studies.sweeps.sweep_table import read_variations
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")

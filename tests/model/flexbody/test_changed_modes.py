@@ -13,7 +13,7 @@ from vehicle.model.parameters.toml_file import write_text
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
-from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.least_squares import fit
 
 FACTOR, RATIO = "body.modes.2.frequency_factor", "body.modes.2.damping_ratio"
 CHANGED = {FACTOR: 1.12, RATIO: 0.06}

@@ -1,4 +1,4 @@
-"""Records of road as inputs of a sweep, and what is read off a run on one."""
+"""Periodic road records as inputs of a sweep, and the measure of runs on them."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from vehicle.signals.analysis.slip import slip_shares
 from vehicle.signals.excitation.exact_road import RATE_HZ, road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs, Vector
 
 SEAT_RAIL = ("seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadInput:
-    """A record of road as the input of a sweep; `wheel` drives on it, the other arguments are those of `road`."""
+    """Road record as input of a sweep under one wheel; the other attributes are the arguments of `road`."""
 
     name: str
     rms: float
@@ -34,31 +34,31 @@ class RoadInput:
 
     def signal(self) -> Signal:
         """Generate the road."""
-        made = road(
+        record = road(
             rms=self.rms, seed=self.seed, duration=self.duration, lead=self.lead, lower_band_edge=self.lower_band_edge
         )
-        (plate,) = made.displacement.values()
-        return replace(made, displacement={self.wheel: plate})
+        (plate,) = record.displacement.values()
+        return replace(record, displacement={self.wheel: plate})
 
     def identity(self) -> dict[str, object]:
-        """What the runs depend on."""
+        """Return digest of the samples and all attributes: the data that the runs depend on."""
         return {"sha256": hashlib.sha256(self.signal().displacement[self.wheel].tobytes()).hexdigest(), **asdict(self)}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadMeasure:
-    """Turns a run on a road into numbers.
+    """Measure of runs on a road.
 
     `comfort` is sqrt(RMSx^2 + RMSy^2 + RMSz^2) of the seat rail, unfiltered, 2 to 50 Hz; `gaussian_error` its standard
     error over Gaussian roads of this spectrum, see `vehicle.signals.analysis.comfort_error`; `slip` and `slip_left` are
-    shares of the time above the slip velocity, damper over the shaker and its counterpart; `saturated` is the share
-    above 1 mm/s over the shaker; `lowest_load` that of the tyre on it; `pulling` the share of the time with a negative
-    load.
+    shares of the time above the slip velocity, for the damper of `wheel` and the damper of the opposite wheel;
+    `saturated` is the share above 1 mm/s for the damper of `wheel`; `lowest_load` is the minimum load of its tyre;
+    `pulling` is the share of the time with a negative load.
 
     Attributes:
-        lead: seconds at the beginning that are left out.
-        wheel: that the road drives.
-        timestep: longest step of the reduced engine [s].
+        lead: excluded time at the beginning [s].
+        wheel: wheel on the road.
+        timestep: maximum step of the reduced engine [s].
     """
 
     lead: float
@@ -67,7 +67,7 @@ class RoadMeasure:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels that are needed."""
+        """Return the required channels."""
         return (*SEAT_RAIL, *self._dampers, f"tyre_{self.wheel}_force_z")
 
     @property
@@ -76,7 +76,7 @@ class RoadMeasure:
 
     @property
     def units(self) -> Mapping[str, str]:
-        """Name of each number to its unit."""
+        """Return name to unit of each value."""
         return {
             "comfort": "m/s2",
             "gaussian_error": "m/s2",
@@ -88,20 +88,20 @@ class RoadMeasure:
         }
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """The numbers of a run."""
+        """Return the values of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """The numbers of several runs."""
-        # The record ends with the sample that begins its next period.
+        """Return the values of r runs; (r,) each."""
+        # The last sample of the record is the first sample of the next period.
         record = slice(round(self.lead * RATE_HZ) + 1, None)
-        found = comfort_values(runs.timestep, runs.stacked(*SEAT_RAIL)[:, :, record])
+        comfort = comfort_values(runs.timestep, runs.stacked(*SEAT_RAIL)[:, :, record])
         right, left = (runs[name][:, record] for name in self._dampers)
         load = runs[f"tyre_{self.wheel}_force_z"][:, record]
         limit = runs.slip_velocity
         return {
-            "comfort": found.overall,
-            "gaussian_error": found.error * found.overall,
+            "comfort": comfort.overall,
+            "gaussian_error": comfort.error * comfort.overall,
             "slip": slip_shares(right, limit),
             "slip_left": slip_shares(left, limit),
             "saturated": slip_shares(right, np.full_like(limit, SATURATED_VELOCITY)),

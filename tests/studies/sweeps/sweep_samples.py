@@ -1,4 +1,4 @@
-"""Pieces that worker processes import: cheap measures, deadly inputs, an executor of one's own."""
+"""Objects that worker processes import: a cheap measure, inputs that kill a worker, a user-defined executor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from vehicle.studies.sweeps.case import table_cases
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ShortRoad:
-    """A road of a second or so; with a file name it waits, or kills its worker, once or always."""
+    """Road of about a second; `wait` delays its generation, `kill` (a flag file) kills its worker, once or always."""
 
     name: str = "short"
     seed: int = 1
@@ -27,7 +27,7 @@ class ShortRoad:
 
     def signal(self):
         if self.kill:
-            # The file says that the worker has died before.
+            # The file exists after the first death of a worker.
             flag = Path(self.kill)
             if flag.suffix == ".always" or not flag.exists():
                 flag.touch()
@@ -40,13 +40,13 @@ class ShortRoad:
 
 
 def grid(variations, inputs, **options):
-    """Every combination of parameter values on every input."""
+    """Return cases for every combination of parameter values on every input."""
     return table_cases(list(variations), product(*variations.values()), inputs, **options)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Peak:
-    """Largest acceleration of the seat rail."""
+    """Measure: maximum vertical acceleration of the seat rail."""
 
     channels: tuple[str, ...] = ("seat_rail_acc_z",)
 
@@ -59,10 +59,10 @@ class Peak:
 
 
 def threads():
-    """An executor of one's own."""
+    """Return a user-defined executor."""
     return ThreadPoolExecutor(2)
 
 
 def no_executor():
-    """Returns something else."""
+    """Return an object that is not an executor."""
     return "threads"

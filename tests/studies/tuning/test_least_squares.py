@@ -7,7 +7,7 @@ from tests.studies.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMass
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range
-from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.least_squares import fit
 
 PARAMETERS = (
     Range(path="lower", low=5e4, high=1e6, start=1.6e5),
@@ -43,10 +43,10 @@ def test_covariance_is_that_of_the_linearised_problem():
     expected = np.sqrt(np.diag(np.linalg.inv(np.array(columns) @ np.array(columns).T)))
     # The noise is estimated from 60 values in each row: its standard deviation is known to 9 % there, 5 % overall;
     # a row whose neighbours happen to be correlated beyond 3 sigma would add more.
-    for one, path in zip(expected, TRUE, strict=True):
+    for deviation, path in zip(expected, TRUE, strict=True):
         validated(
             "Statistics and intervals", f"relative standard error of the fitted {path}",
-            result.standard_errors[path] / result.values[path], one, rel=0.15,
+            result.standard_errors[path] / result.values[path], deviation, rel=0.15,
             source="second derivation: normal matrix of analytic perturbations",
         )  # fmt: skip
 
@@ -65,10 +65,10 @@ def test_standard_errors_are_those_of_repeated_measurements():
             np.mean(away), 0.0, abs=0.39, source="second derivation: repeated measurements",
         )  # fmt: skip
     upper, damping = (np.array([result.values[path] for result in results]) for path in ("upper", "damping"))
-    seen = np.corrcoef(np.log(upper), np.log(damping))[0, 1]
-    told = np.mean([result.correlation[1, 2] for result in results])
+    observed = np.corrcoef(np.log(upper), np.log(damping))[0, 1]
+    predicted = np.mean([result.correlation[1, 2] for result in results])
     # Standard error of a correlation from 60 pairs: 0.13 at most.
-    assert seen == pytest.approx(told, abs=0.39)
+    assert observed == pytest.approx(predicted, abs=0.39)
 
 
 def test_noise_that_all_channels_share_counts_once():
@@ -79,7 +79,7 @@ def test_noise_that_all_channels_share_counts_once():
             self.data = self.data * np.exp(SIGMA * (real + 1j * imaginary))
 
     results = [fitted(Shared(seed)) for seed in range(60)]
-    # As if the channels had noise of their own, the errors of this one would be 1.4 times too small.
+    # With the assumption of independent noise in the channels the standard errors would be 1.4 times too small.
     away = np.array([result.deviation("lower", TRUE["lower"]) for result in results])
     assert 0.73 < np.std(away) < 1.27  # as above
 
@@ -93,7 +93,7 @@ def test_noise_is_found_from_the_residuals_whatever_was_assumed():
         assert wrong.values[path] == pytest.approx(right.values[path], rel=1e-4)
 
 
-def test_residuals_that_know_their_neighbours_count_less():
+def test_correlated_residuals_weigh_less():
     class Smeared(MeasuredMasses):
         def __init__(self):
             super().__init__(sigma=0.0)
@@ -109,28 +109,31 @@ def test_residuals_that_know_their_neighbours_count_less():
     assert all(smeared.standard_errors[path] > 1.7 * plain.standard_errors[path] for path in TRUE)
 
 
-def test_a_pair_that_acts_as_one_is_named_and_one_of_it_held():
+def test_of_a_pair_with_one_common_effect_one_parameter_is_held():
     rim = Range(path="rim", low=2e5, high=5e6, start=5e5)
     target = MeasuredMasses({**TRUE, "rim": 5e5, "lower": 5e5}, seed=2)
     tyre = Range(path="lower", low=5e4, high=2e6, start=4e5)
     result = fitted(target, (tyre, *PARAMETERS[1:], rim))
     assert len(result.unidentified) == 1
-    found = result.unidentified[0]
-    assert {found.path, *found.partners} == {"lower", "rim"}
+    held = result.unidentified[0]
+    assert {held.path, *held.partners} == {"lower", "rim"}
     # Exactly singular but for the second order of the forward differences, a thousandth of the first.
-    assert found.spread > 10.0
-    assert result.values[found.path] == found.held_at
-    assert np.isnan(result.standard_errors[found.path])
-    assert found.path not in result.free and result.correlation.shape == (3, 3)
-    assert f"{found.path}: the data cannot tell it apart from {found.partners[0]}" in found.sentence()
-    # What can be told is told: the springs in series.
+    assert held.spread > 10.0
+    assert result.values[held.path] == held.held_at
+    assert np.isnan(result.standard_errors[held.path])
+    assert held.path not in result.free and result.correlation.shape == (3, 3)
+    assert (
+        f"{held.path}: the data do not identify this parameter apart from {held.partners[0]} (standard"
+        in held.message()
+    )
+    # The springs in series are identifiable.
     total = 1.0 / (1.0 / result.values["lower"] + 1.0 / result.values["rim"])
     assert total == pytest.approx(2.5e5, rel=0.02)  # about three standard errors
 
 
 def test_a_parameter_without_influence_is_held_alone():
     result = fitted(MeasuredMasses(seed=2), (*PARAMETERS, Range(path="colour", low=1.0, high=9.0, start=2.0)))
-    assert [(one.path, one.partners, one.spread) for one in result.unidentified] == [("colour", (), np.inf)]
+    assert [(held.path, held.partners, held.spread) for held in result.unidentified] == [("colour", (), np.inf)]
     assert result.values["colour"] == 2.0
 
 
@@ -146,34 +149,34 @@ def test_a_bound_in_the_way_is_named():
 def test_two_targets_weigh_as_their_residuals_say():
     good, bad = MeasuredMasses(seed=6), MeasuredMasses(seed=7, sigma=1.0 / 3.0, assumed=SIGMA)
     both = fit(PARAMETERS, [good, bad], dict)
-    alone = fitted(good)
+    only_good = fitted(good)
     for path in TRUE:
         # A measurement with eleven times the noise adds 1/120 of the information: half a percent of the error.
-        assert both.standard_errors[path] == pytest.approx(alone.standard_errors[path], rel=0.03)
-        assert abs(both.values[path] - alone.values[path]) < 0.5 * alone.standard_errors[path]
+        assert both.standard_errors[path] == pytest.approx(only_good.standard_errors[path], rel=0.03)
+        assert abs(both.values[path] - only_good.values[path]) < 0.5 * only_good.standard_errors[path]
 
 
-def test_progress_is_told():
-    told = []
-    fit(PARAMETERS, [MeasuredMasses()], dict, progress=lambda count, rms: told.append((count, rms)))
-    assert [count for count, _ in told] == sorted(count for count, _ in told)
-    assert told[0][1] > 3.0 * told[-1][1]
+def test_progress_is_called():
+    calls = []
+    fit(PARAMETERS, [MeasuredMasses()], dict, progress=lambda count, rms: calls.append((count, rms)))
+    assert [count for count, _ in calls] == sorted(count for count, _ in calls)
+    assert calls[0][1] > 3.0 * calls[-1][1]
 
 
-def test_what_cannot_be_fitted_is_refused():
+def test_invalid_parameters_and_targets_are_rejected():
     with pytest.raises(ConfigurationError, match="none to fit"):
         fit([], [MeasuredMasses()], dict)
-    with pytest.raises(ConfigurationError, match="targets: none"):
+    with pytest.raises(ConfigurationError, match="targets: no measurement"):
         fit(PARAMETERS, [], dict)
     with pytest.raises(ConfigurationError, match="lower: given 2 times"):
         fitted(MeasuredMasses(), (*PARAMETERS, PARAMETERS[0]))
     with pytest.raises(ConfigurationError, match="colour: has no start"):
         fitted(MeasuredMasses(), (*PARAMETERS, Range(path="colour", low=1.0, high=9.0)))
-    with pytest.raises(ConfigurationError, match="can tell none of the parameters: colour"):
+    with pytest.raises(ConfigurationError, match="the data identify no parameter: colour"):
         fit([Range(path="colour", low=1.0, high=9.0, start=2.0)], [MeasuredMasses()], lambda _: TRUE)
 
 
-def test_a_model_that_fails_is_refused():
+def test_a_model_with_bad_residuals_is_rejected():
     class Broken(MeasuredMasses):
         def residuals(self, values):
             return np.full((4, 3), np.nan)
@@ -192,6 +195,6 @@ def test_a_model_that_fails_is_refused():
 @pytest.mark.parametrize(
     ("lower", "upper", "start"), [(0.0, 2.0, 1.0), (1.0, 2.0, 1.0), (2.0, 1.0, 1.5), (1.0, np.inf, 2.0)]
 )
-def test_bounds_that_are_none_are_refused(lower, upper, start):
+def test_invalid_bounds_are_rejected(lower, upper, start):
     with pytest.raises(ConfigurationError, match=r"parameter a: found bounds .*0 < lower < start < upper"):
         Range(path="a", low=lower, high=upper, start=start)

@@ -1,4 +1,4 @@
-"""Runs of several cars on one signal, side by side: what a measure looks at."""
+"""Batch of runs of several cars on one signal, the argument of a measure."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class Runs:
     """Time histories of r runs.
 
     Attributes:
-        time: of the samples [s]; (n,).
-        channels: name to the samples of all runs, those of a run contiguous; (r, n).
+        time: sampling times [s]; (n,).
+        channels: name to samples of all runs, contiguous for each run; (r, n).
         vehicles: parameters of each car.
-        tyre_load: wheel to the static loads [N]; (r,).
+        tyre_load: wheel to static tyre loads [N]; (r,).
     """
 
     time: Vector
@@ -31,26 +31,26 @@ class Runs:
     tyre_load: Mapping[str, Vector]
 
     def __getitem__(self, channel: str) -> Vector:
-        """Samples of a channel; (r, n)."""
+        """Return the samples of a channel; (r, n)."""
         return self.channels[channel]
 
     def stacked(self, *channels: str) -> Vector:
-        """Samples of several channels; (r, channels, n)."""
+        """Return the samples of several channels; (r, channels, n)."""
         return np.stack([self.channels[name] for name in channels], axis=1)
 
     @property
     def timestep(self) -> float:
-        """Sampling interval [s]."""
+        """Return the sampling interval [s]."""
         return float(self.time[1] - self.time[0])
 
     @property
     def slip_velocity(self) -> Vector:
-        """Velocity that counts as slip of each car [m/s]; (r,)."""
+        """Return the minimum velocity of slip of each car [m/s]; (r,)."""
         return np.array([vehicle.damper.slip_velocity for vehicle in self.vehicles])
 
 
 def single(run: Run) -> Runs:
-    """A run alone."""
+    """Return a batch of a single run."""
     recording = run.recording
     return Runs(
         time=recording.time,

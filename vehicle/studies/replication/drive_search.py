@@ -45,17 +45,17 @@ class FoundDrive:
 
     @property
     def signal(self) -> Signal:
-        """Plate signals [m], as `Car.run` takes them."""
+        """Return the plate signals [m], as `Car.run` takes them."""
         return self.plant.signal(self.replication.drive)
 
     @property
     def error(self) -> float:
-        """RMS of target minus response over RMS of the target, in the band [-]."""
+        """Return RMS of target minus response over RMS of the target, in the band [-]."""
         return self.replication.error
 
     @property
     def run(self) -> Run:
-        """Last run of the iteration."""
+        """Return the last run of the iteration."""
         assert self.plant.last is not None
         return self.plant.last
 
@@ -79,12 +79,12 @@ def replicate_drive(
     Args:
         car: the car.
         target: measured accelerations, of any format.
-        channels: channel of the car to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}; or channels of the
-            car that the file has under their own names, or that are its only one. At least as many as plates.
+        channels: channel of the car to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}; or a list of channels
+            of the car if the file uses the same names or has a single channel. At least as many channels as plates.
         choice: units, rate and excerpt of the file.
-        wheels: wheels whose plates are driven, as ("fr",); by default those in the names of the channels, or
-            that of the shaker.
-        band: frequencies in which the response is replicated [Hz]; begin above the noise of the sensor.
+        wheels: wheels whose plates are driven, as ("fr",); by default the wheels in the names of the channels, or the
+            wheel on the shaker.
+        band: frequency band in which the response is replicated [Hz]; begin above the noise of the sensor.
         iterations: maximum number of runs.
         gain: share of the correction that a step makes [-], above 0 and up to 1.
         target_error: relative RMS error at which the iteration ends [-].
@@ -100,12 +100,12 @@ def replicate_drive(
         SimulationError: no drive responds better than plates at rest.
     """
     require_iteration(band, iterations, gain, target_error)
-    path, asked = Path(target), choice or Choice()
-    names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, asked)
+    path, options = Path(target), choice or Choice()
+    names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, options)
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
-    wanted = read_target(path, names, asked, band, car.vehicle.solver.record_rate)
+    wanted = read_target(path, names, options, band, car.vehicle.solver.record_rate)
     plant = DrivenCar(car, driven_wheels(wheels, wanted, car.vehicle.shaker_wheel), wanted, engine)
-    found = replicate(
+    replication = replicate(
         plant,
         wanted.values,
         wanted.lines,
@@ -114,11 +114,11 @@ def replicate_drive(
         tolerance=target_error,
         possible=plant.possible,
         settled=plant.settled,
-        said=progress,
+        progress=progress,
     )
-    if not any(step.kept for step in found.steps):
-        raise SimulationError(f"{path}: no drive found that answers better than plates at rest; {found.outcome}")
-    return FoundDrive(replication=found, plant=plant)
+    if not any(step.kept for step in replication.steps):
+        raise SimulationError(f"{path}: no drive has a smaller error than plates at rest; {replication.outcome}")
+    return FoundDrive(replication=replication, plant=plant)
 
 
 def require_iteration(band: tuple[float, float], iterations: int, gain: float, target_error: float) -> None:
@@ -131,11 +131,11 @@ def require_iteration(band: tuple[float, float], iterations: int, gain: float, t
         target_error: relative error at which the iteration ends [-].
 
     Raises:
-        ConfigurationError: one is out of range.
+        ConfigurationError: a setting is out of range.
     """
     if not 0.0 < band[0] < band[1]:
         raise ConfigurationError(
-            f"--band {band[0]:g}:{band[1]:g}: needed are two frequencies [Hz], the lower one first: 1:50"
+            f"--band {band[0]:g}:{band[1]:g}: must be two frequencies above 0 Hz, the lower one first: 1:50"
         )
     if not 1 <= iterations <= MOST_ITERATIONS:
         raise ConfigurationError(f"--iterations {iterations}: must be 1 to {MOST_ITERATIONS}")
@@ -146,12 +146,12 @@ def require_iteration(band: tuple[float, float], iterations: int, gain: float, t
 
 
 def named_channels(file: Path, names: Sequence[str], choice: Choice) -> dict[str, str]:
-    """Return channels of the car to those of the file that have the same names, or to the only one of the file.
+    """Return channel of the car to channel of the file: of the same name, or the only channel of the file.
 
     Args:
         file: measurement file of any format.
         names: channels of the car.
-        choice: its databases decode the log of a CAN bus.
+        choice: databases to decode the log of a CAN bus.
     """
     if isinstance(names, str):
         names = (names,)
@@ -164,18 +164,18 @@ def driven_wheels(asked: Sequence[str] | None, target: Target, shaker_wheel: str
     """Return the wheels whose plates are driven.
 
     Args:
-        asked: names of wheels; None for those in the names of the channels, or that of the shaker.
-        target: what is to be replicated.
+        asked: names of wheels; None for the wheels in the names of the channels, or else the wheel on the shaker.
+        target: accelerations to be replicated.
         shaker_wheel: wheel on the shaker of the car.
 
     Raises:
         ConfigurationError: more plates than channels.
     """
     named = {part for name in target.channels for part in name.split("_") if part in CORNERS.values()}
-    found = in_order(set(asked) if asked else named or {shaker_wheel})
-    if len(found) > len(target.channels):
+    driven = in_order(set(asked) if asked else named or {shaker_wheel})
+    if len(driven) > len(target.channels):
         raise ConfigurationError(
-            f"{len(found)} plates ({', '.join(found)}) and {len(target.channels)} channel: give at least as many "
+            f"{len(driven)} plates ({', '.join(driven)}) and {len(target.channels)} channel: use at least as many "
             "channels as plates"
         )
-    return found
+    return driven

@@ -1,4 +1,4 @@
-"""Cases side by side: no row depends on its neighbours, and each fails or leaves the reduced engine by itself."""
+"""Batches of cases: values independent of the other cases of a batch, single failures, and reruns with MuJoCo."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
 
 MEASURE = ComfortMeasure(skip=0.2)
@@ -27,28 +27,28 @@ def numbers(results):
 
 @pytest.fixture(scope="module")
 def cases():
-    """Nine cars, more than fill a vector unit, and five of them on another road too."""
+    """Return nine cars, more than a SIMD vector holds, on a road, and five of the cars on another road."""
     cars = grid({"damper.coulomb_friction": [62.5, 125.0, 250.0], "damper.viscous": [900.0, 2250.0, 4000.0]}, ROADS)
     return cars[:14]
 
 
 @pytest.fixture(scope="module")
-def together(cases):
+def batch_results(cases):
     return evaluate(cases, MEASURE)
 
 
-def test_a_row_does_not_depend_on_its_neighbours(cases, together):
-    # To the last digit: alone, in another order, and one among few.
-    assert not any(result.reason for result in together)
-    for some in ([3], [13], [12, 0, 5], list(reversed(range(14)))):
-        assert numbers(evaluate([cases[i] for i in some], MEASURE)) == numbers([together[i] for i in some])
+def test_a_row_is_independent_of_the_batch(cases, batch_results):
+    # Bitwise equal as a single case, in another order, and in a small batch.
+    assert not any(result.reason for result in batch_results)
+    for subset in ([3], [13], [12, 0, 5], list(reversed(range(14)))):
+        assert numbers(evaluate([cases[i] for i in subset], MEASURE)) == numbers([batch_results[i] for i in subset])
 
 
-def test_rows_are_those_of_the_runs_by_themselves(cases, together):
-    for case, result in list(zip(cases, together, strict=True))[::5]:
+def test_rows_are_those_of_single_runs(cases, batch_results):
+    for case, result in list(zip(cases, batch_results, strict=True))[::5]:
         run = Car.load(None, case.overrides).run(case.source.signal(), engine="reduced", channels=MEASURE.channels)
         for name, value in MEASURE(run).items():
-            # What the longer step costs. A second of road has 800 samples behind the lead: a share moves by one.
+            # Error of the longer step. A second of road has 800 samples after the lead: a share changes by one sample.
             slack = {"rel": 2e-3} if "comfort" in name or "weighted" in name else {"abs": 1.5 / 800}
             if name in WAVE_NAMES:  # parts of a complex number, which may be near zero
                 slack = {"abs": 2e-3 * result.values["comfort_overall"]}
@@ -64,26 +64,26 @@ def test_rows_are_those_of_the_runs_by_themselves(cases, together):
 
 @dataclass(frozen=True)
 class Picky(ComfortMeasure):
-    """Refuses runs that slip much, and finds no number in those that slip little."""
+    """Measure that raises an error for runs with much slip, and returns infinity for runs with little slip."""
 
     def of(self, runs):
-        found = super().of(runs)
-        if (found["slip_share_fr"] > 0.25).any():
+        values = super().of(runs)
+        if (values["slip_share_fr"] > 0.25).any():
             raise ValueError("slips too much")
-        return found | {"comfort_x": np.where(found["slip_share_fr"] < 0.1, math.inf, found["comfort_x"])}
+        return values | {"comfort_x": np.where(values["slip_share_fr"] < 0.1, math.inf, values["comfort_x"])}
 
 
-def test_only_the_run_that_fails_fails(cases, together):
-    shares = [result.values["slip_share_fr"] for result in together]
+def test_only_the_run_that_fails_fails(cases, batch_results):
+    shares = [result.values["slip_share_fr"] for result in batch_results]
     assert min(shares) < 0.1 and max(shares) > 0.25
     bad = [
         Case(source=ROADS[0], overrides=("damper.viscous=-1",)),
         Case(source=ROADS[0], overrides=("damper.viscosity=1",)),
         Case(source=Signal(time=uniform_time(samples=501, timestep=1e-3), displacement={"rr": np.zeros(501)})),
     ]
-    found = evaluate([*bad, *cases], Picky(skip=0.2))
-    assert "viscous: found -1.0" in found[0].reason and "viscosity" in found[1].reason
-    for share, result, before in zip(shares, found[3:], together, strict=True):
+    results = evaluate([*bad, *cases], Picky(skip=0.2))
+    assert "viscous: found -1.0" in results[0].reason and "viscosity" in results[1].reason
+    for share, result, before in zip(shares, results[3:], batch_results, strict=True):
         if share > 0.25:
             assert result.reason == "ValueError: slips too much" and not result.values
         elif share < 0.1:
@@ -92,19 +92,19 @@ def test_only_the_run_that_fails_fails(cases, together):
             assert numbers([result]) == numbers([before])
 
 
-def test_a_car_beyond_the_matrices_goes_to_mujoco_alone():
-    # A bump of 40 mm turns the stabilizer beyond the limit; one of 5 mm does not.
+def test_only_a_car_outside_the_valid_range_runs_in_mujoco():
+    # A bump of 40 mm rotates the stabilizer beyond the limit; a bump of 5 mm does not.
     time = uniform_time(samples=601, timestep=1e-3)
     bumps = [Signal(time=time, displacement={"fr": bump_shape(time, amplitude=a, start=0.1)}) for a in (0.04, 0.005)]
-    found = evaluate([Case(source=one, engine=engine) for one in bumps for engine in ("auto", "reduced")], MEASURE)
-    assert [result.engine for result in found] == ["mujoco", "reduced", "reduced", "reduced"]
+    results = evaluate([Case(source=bump, engine=engine) for bump in bumps for engine in ("auto", "reduced")], MEASURE)
+    assert [result.engine for result in results] == ["mujoco", "reduced", "reduced", "reduced"]
     run = Car.load().run(bumps[0], engine="auto", channels=MEASURE.channels)
     assert run.recording.statistics.engine == "mujoco"
-    assert found[0].values == pytest.approx(MEASURE(run), rel=1e-12, nan_ok=True)
-    assert found[2].values == found[3].values
+    assert results[0].values == pytest.approx(MEASURE(run), rel=1e-12, nan_ok=True)
+    assert results[2].values == results[3].values
 
 
-def test_a_measure_of_single_runs_still_does(cases):
+def test_a_measure_of_single_runs(cases):
     (result,) = evaluate(cases[:1], Peak())
     run = Car.load(None, cases[0].overrides).run(cases[0].source.signal(), engine="reduced")
     assert result.values["peak"] == pytest.approx(float(abs(run["seat_rail_acc_z"]).max()), rel=1e-9)

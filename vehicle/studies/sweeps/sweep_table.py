@@ -1,4 +1,4 @@
-"""The result of a sweep: a row for each case, in the order of the cases."""
+"""Table of a sweep: a row for each case, in the order of the cases."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from vehicle.signals.records.formats import recognised_format
 from vehicle.signals.records.sheet_format import read_sheet_texts
 from vehicle.signals.records.text_format import read_texts
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.result import Result
+from vehicle.studies.sweeps.case_result import Result
 
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
-"""Columns beside the parameters and the numbers, whose heads have units."""
+"""Heads of the columns without unit."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class SweepTable:
-    """Table of a sweep: a row of values for each run, and what they depend on.
+    """Table of a sweep: a row of values for each run.
 
     Attributes:
-        cases: in the order they were given.
-        results: one for each case.
-        units: name of each number to its unit.
-        made: what the rows depend on, for `sweep.json`.
+        cases: cases in the order of the rows.
+        results: result of each case.
+        units: name of each value to its unit.
+        made: data that the rows depend on, for `sweep.json`.
     """
 
     cases: Sequence[Case]
@@ -43,23 +43,23 @@ class SweepTable:
     made: Mapping[str, Any]
 
     def column(self, name: str) -> npt.NDArray[np.float64]:
-        """Numbers of a column, NaN where a run failed; (cases,)."""
+        """Return the values of a column, NaN for a failed run; (cases,)."""
         if name not in self.units:
-            raise ConfigurationError(f"no column {name!r}; the table has {', '.join(self.units)}")
+            raise ConfigurationError(f"no column {name!r}; choose from {', '.join(self.units)}")
         return np.array([result.values.get(name, math.nan) for result in self.results])
 
     @property
     def failed(self) -> list[tuple[Case, str]]:
-        """Cases that failed, with their reasons."""
+        """Return the failed cases with their error messages."""
         pairs = zip(self.cases, self.results, strict=True)
         return [(case, result.reason) for case, result in pairs if result.reason]
 
     def paths(self) -> list[str]:
-        """All parameter paths that are changed in some case, in the order of their first use."""
+        """Return all modified parameter paths, in the order of first occurrence."""
         return list(dict.fromkeys(path for case in self.cases for path in changes(case)))
 
     def text(self) -> str:
-        """The table as CSV, units in the header; the same bytes for the same cases, whoever computed them."""
+        """Return the table as CSV, units in the header; bitwise identical for equal cases."""
         paths, file = self.paths(), io.StringIO()
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([INPUT, *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), ENGINE, REASON])
@@ -72,7 +72,7 @@ class SweepTable:
         return file.getvalue()
 
     def __repr__(self) -> str:
-        """Return the number of runs and of failed ones in a line."""
+        """Return the numbers of runs and of failed runs, and the columns, in a line."""
         return f"SweepTable({len(self.cases)} runs, {len(self.failed)} failed: {', '.join(self.units)})"
 
     def to_dataframe(self) -> Any:
@@ -87,8 +87,8 @@ class SweepTable:
         """Write `table.csv`, `sweep.json` and `timing.csv`.
 
         Args:
-            folder: where to.
-            computed: last line of `timing.csv`, where there is one.
+            folder: folder of the files.
+            computed: last line of `timing.csv`; empty for none.
         """
         text = self.text()
         write_text(folder / "table.csv", text)
@@ -98,15 +98,17 @@ class SweepTable:
 
 
 def changes(case: Case) -> dict[str, str]:
-    """Return parameter path to value text; of a path that is changed twice the last."""
+    """Return parameter path to value text; the last value of a repeated path."""
     return {path: value for path, _, value in (text.partition("=") for text in case.overrides)}
 
 
 def read_variations(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
-    """Parameter paths and rows of a table of variations; of the table of a sweep, the parameters, each row once.
+    """Read parameter paths and rows of values from a table of variations.
+
+    In the table of a sweep only the columns of parameters are read, and repeated rows only once.
 
     Raises:
-        DataError: it cannot be read, has no rows, a column twice, or a row has another number of cells than the header.
+        DataError: the file cannot be read, has no rows, has a repeated column, or a row with missing cells.
     """
     if not path.is_file():
         raise DataError(f"--table {path}: cannot be read: no such file, or not a file")
@@ -115,17 +117,17 @@ def read_variations(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     except DataError as error:
         raise DataError(f"--table {error}") from None
     if not rows:
-        raise DataError(f"--table {path}: needed are a header of parameter paths and at least one row of values")
+        raise DataError(f"--table {path}: must have a header of parameter paths and at least one row of values")
     twice = sorted({cell for cell in header if header.count(cell) > 1})
     if twice:
-        raise DataError(f"--table {path}: column {', '.join(twice)} stands there more than once; keep one of them")
-    # Of a sweep's own table the columns that no parameter has.
+        raise DataError(f"--table {path}: repeated column {', '.join(twice)}; remove the repetition")
+    # The table of a sweep has further columns, which are not parameters.
     kept = [index for index, cell in enumerate(header) if cell not in (INPUT, ENGINE, REASON) and "[" not in cell]
     for number, row in enumerate(rows, start=1):
         if len(row) != len(header) or not all(row[index] for index in kept):
             raise DataError(
-                f"--table {path}, row {number}: {len(row)} cells, the header has {len(header)}; none is empty"
+                f"--table {path}, row {number}: found {len(row)} cells, must be {len(header)} without empty cells"
             )
-    found = [tuple(row[index] for index in kept) for row in rows]
-    # A sweep has each of them on every input.
-    return [header[index] for index in kept], list(dict.fromkeys(found)) if INPUT in header else found
+    values = [tuple(row[index] for index in kept) for row in rows]
+    # The table of a sweep repeats every row on each input.
+    return [header[index] for index in kept], list(dict.fromkeys(values)) if INPUT in header else values

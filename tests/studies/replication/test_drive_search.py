@@ -1,4 +1,4 @@
-"""A known plate signal is found again from the response of the car alone; the linearisation behind it."""
+"""Replication of a known plate signal from the response of the car, and the linearisation it uses."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ def target_of(car: Car, signal: Signal, path) -> Target:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "iterations", "asked"), [("low", 5, 0.01), ("high", 7, 0.05)])
-def test_a_known_plate_is_found_from_the_knuckle_alone(car, tmp_path, name, iterations, asked):
-    """Where the dampers stick, and where they slip."""
-    # From 6 Hz on: below, a plate moves the knuckle too little for its displacement to be found within a percent.
+@pytest.mark.parametrize(("name", "iterations", "tolerance"), [("low", 5, 0.01), ("high", 7, 0.05)])
+def test_a_known_plate_is_replicated_from_one_knuckle_channel(car, tmp_path, name, iterations, tolerance):
+    """Replicate a level with stuck dampers and a level with slipping dampers."""
+    # From 6 Hz on: below, a plate moves the knuckle too little to replicate its displacement within a percent.
     signal = random_road(rms=LEVELS[name], seed=SEED, lower_band_edge=6.0, roll_off_order=2)
     target = target_of(car, signal, tmp_path)
     plant = DrivenCar(car, ("fr",), target, "reduced")
-    found = replicate(
+    replication = replicate(
         plant, target.values, target.lines, iterations=iterations, gain=0.8, tolerance=1e-3, possible=plant.possible,
         settled=plant.settled,
     )  # fmt: skip
-    known = signal.displacement["fr"]
-    error = np.std(target.lines.in_band(found.drive[0] - known)) / np.std(target.lines.in_band(known))
-    assert error < asked and found.error < asked
+    exact = signal.displacement["fr"]
+    error = np.std(target.lines.in_band(replication.drive[0] - exact)) / np.std(target.lines.in_band(exact))
+    assert error < tolerance and replication.error < tolerance
 
 
 def test_coulomb_friction_under_a_sine_is_the_textbook_dashpot():
-    """c = D + 4 Fd / (pi V): Den Hartog, Mechanical Vibrations, for a velocity of the amplitude V."""
+    """Compare with c = D + 4 Fd / (pi V), Den Hartog, Mechanical Vibrations, for a velocity of amplitude V."""
     law = Car.load(overrides=["damper.coulomb_friction=100", "damper.viscous=2000"]).vehicle.damper
     phase = 2.0 * np.pi * (np.arange(20000) + 0.5) / 20000
     velocity = 0.25 * np.sin(phase)
@@ -58,9 +58,9 @@ def test_coulomb_friction_under_a_sine_is_the_textbook_dashpot():
 
 
 def test_linearised_dampers_lie_between_the_stuck_and_the_sliding_car(car):
-    """As stiff as friction at rest they are stuck; with their viscous part alone they slide; between, by the matrices.
+    """Compare the linearised FRFs with those of the matrices for stuck, sliding and intermediate damping.
 
-    The stuck car of the matrices has no slip at all, the law at rest 8e6 N s/m.
+    The stuck car of the matrices has no slip; the friction law at rest has 8e6 N s/m.
     """
     lines, wheels, system = np.array([1.5, 12.0, 30.0]), car.vehicle.wheels, car.matrices.system
     still = np.full(2, equivalent_damping(car.vehicle.damper, np.zeros(4), np.zeros(4)))
@@ -75,5 +75,5 @@ def test_linearised_dampers_lie_between_the_stuck_and_the_sliding_car(car):
             (middle, between, 1e-8),
             (car.matrices.viscous, car.matrix_frf(CHANNELS, lines, damper="sliding", wheel=wheel), 1e-8),
         ):
-            found = linearised_response(car.poles, damping, CHANNELS, wheels, lines)[:, number]
-            assert found == pytest.approx(expected, rel=tolerance)
+            response = linearised_response(car.poles, damping, CHANNELS, wheels, lines)[:, number]
+            assert response == pytest.approx(expected, rel=tolerance)

@@ -1,12 +1,12 @@
-"""Least squares over any number of measurements, with what the data say about the answer.
+"""Weighted least squares over any number of measurements, with standard errors and identifiability.
 
     minimise  sum over rows of  (r / scale)^2,   r = residuals over their assumed deviation,  u = ln(value / start)
 
-A first, coarse iteration takes the assumed deviations. Then the scale of each row is found from its own residuals
-(their RMS, and how much neighbours know of each other), and the fit repeated with it: assumed deviations only have to
-be right within a row. The covariance of u is (J' J)^-1 C (J' J)^-1 with the residuals over their scale and
-C = sum rho_ij J_i' J_j, rho_ij the correlation of rows i and j of a measurement, of the parameters that the data can
-tell; the others are held at their start.
+A first, coarse iteration uses the assumed deviations. Then the scale of each row is estimated from the residuals of the
+row (RMS, and correlation of neighbouring samples) and the fit is repeated with these scales: assumed deviations only
+have to be right within a row. The covariance of u is (J' J)^-1 C (J' J)^-1 with the residuals over their scale and
+C = sum rho_ij J_i' J_j, where rho_ij is the correlation of rows i and j of a measurement. It covers the identifiable
+parameters; the other parameters are held at their start.
 
 Source of the covariance: Zellner, Journal of the American Statistical Association 57 (1962): equations whose errors are
 correlated.
@@ -23,43 +23,43 @@ import scipy
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range, checked_ranges
+from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, target_statistics
 from vehicle.studies.tuning.identifiability import Unidentified, covariance, worst_direction
-from vehicle.studies.tuning.result import RowStatistics, TuningResult, target_statistics
 
 Vector = npt.NDArray[np.float64]
 
 COARSE_STEP, STEP = 0.1, 1e-3
-"""Step of ln(value) for the difference quotients: a wide one far away, where slips that come and go make the sum of
-squares rough, and one that leaves a thousandth of second order at the end."""
+"""Steps of ln(value) for difference quotients. The coarse step is for values far from the minimum, where slips that
+appear and vanish make the sum of squares rough. The fine step leaves a second-order error of a thousandth."""
 
 COARSE, FINE = 1e-2, 1e-5
-"""Relative change of the sum of squares at which an iteration ends: the first only finds the sizes of the residuals; in
-the others it is far below one, the change that one standard error brings, for the thousands of values of a measurement.
-"""
+"""Relative changes of the sum of squares at which an iteration ends. The coarse iteration only estimates the sizes of
+the residuals. In a fine iteration the sum of squares then changes by far less than 1, the change due to one standard
+error, for the thousands of values of a measurement."""
 
 STEADY = 1.3
-"""Factor within which the scales of the rows must stay from one iteration to the next for the fit to be done."""
+"""Maximum factor by which the scales of the rows may change in the last iteration."""
 
 MOST_ROUNDS = 8
-"""Iterations with new scales at most."""
+"""Maximum number of iterations with new scales."""
 
-LEASH = 1e-3
-"""Weight of |u| in half widths of the bounds during the iterations: it moves a value that the data tell by a
-millionth of its standard error, and keeps one that they do not tell from running away."""
+REGULARISATION = 1e-3
+"""Weight of |u| in half widths of the bounds during the iterations. It moves an identifiable value by a millionth of
+the standard error, and keeps an unidentifiable value from running away."""
 
 AT_BOUND = 1e-4
-"""Distance from a bound, in half widths, that counts as being there."""
+"""Distance from a bound, in half widths, below which a value counts as at the bound."""
 
 
 class Target(Protocol):
-    """A measurement that a model is compared with."""
+    """Measurement that a model is compared with."""
 
     @property
     def rows(self) -> tuple[str, ...]:
-        """What each row of the residuals is."""
+        """Return the names of the rows of the residuals."""
 
     def residuals(self, model: Any, /) -> Vector:
-        """Residuals over their assumed standard deviation, (rows, samples); 0 where a value does not count."""
+        """Return residuals over their assumed standard deviation, (rows, samples); 0 where a value is excluded."""
 
 
 def fit(
@@ -70,18 +70,18 @@ def fit(
     most_iterations: int = 40,
     progress: Callable[[int, float], None] | None = None,
 ) -> TuningResult:
-    """Fit parameters to measurements.
+    """Fit parameters to measurements by weighted least squares.
 
     Args:
-        parameters: with bounds and start.
-        targets: measurements; each weighs as its own residuals say.
-        build: path to value -> the model that the targets ask for its residuals.
-        most_iterations: of each iteration: one to find the sizes of the residuals, one with them, and more where
-            parameters have to be held.
+        parameters: parameters with bounds and start values.
+        targets: measurements; the weights are estimated from the residuals of each row.
+        build: function of {path: value} that returns the model for `Target.residuals`.
+        most_iterations: maximum number of iterations of each solution. There are at least two solutions: one to
+            estimate the sizes of the residuals, one with these sizes; and one more each time parameters are held.
         progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
 
     Returns:
-        The values and how far to trust them.
+        Fitted values with standard errors, correlation and residual statistics.
 
     Raises:
         ConfigurationError: no parameter or target, a parameter twice, or more parameters than values.
@@ -101,14 +101,14 @@ def fit(
         steady = rounds > 0 and bool(np.max(np.abs(np.log(problem.weights / before))) < np.log(STEADY))
         inner = problem.inside(point)
         jacobian = problem.jacobian(point, inner)
-        found = _open_directions(jacobian, [problem.parameters[index] for index in inner])
-        if (steady or rounds >= MOST_ROUNDS) and not found:
+        undetermined = _open_directions(jacobian, [problem.parameters[index] for index in inner])
+        if (steady or rounds >= MOST_ROUNDS) and not undetermined:
             break
-        held += found
-        problem.hold([one.path for one in found], point)
+        held += undetermined
+        problem.hold([parameter.path for parameter in undetermined], point)
         if not problem.free:
             raise ConfigurationError(
-                "the data can tell none of the parameters: " + "; ".join(one.sentence() for one in held)
+                "the data identify no parameter: " + "; ".join(parameter.message() for parameter in held)
             )
         point, answer = problem.solve(point, FINE, most_iterations)
         rounds += 1
@@ -116,26 +116,26 @@ def fit(
 
 
 def _open_directions(jacobian: Vector, parameters: list[Range]) -> list[Unidentified]:
-    """Parameters to hold, one after the other, until every direction that is left is known."""
-    found: list[Unidentified] = []
+    """Return parameters to hold, in the order of selection, so that all remaining directions are identifiable."""
+    held: list[Unidentified] = []
     left = list(range(len(parameters)))
     while left:
         worst = worst_direction(jacobian[:, left], [parameters[index] for index in left])
         if worst is None:
             break
-        found.append(worst)
+        held.append(worst)
         left = [index for index in left if parameters[index].path != worst.path]
-    return found
+    return held
 
 
 class _Problem:
     """Residuals and Jacobian over u = ln(value / start), with a count of the evaluations.
 
     Args:
-        parameters: all of them.
+        parameters: parameters with bounds and start values.
         targets: measurements.
-        build: of the model.
-        progress: as of `fit`.
+        build: function of {path: value} that returns a model.
+        progress: callback, see `fit`.
     """
 
     def __init__(
@@ -146,7 +146,7 @@ class _Problem:
         progress: Callable[[int, float], None] | None,
     ) -> None:
         if not targets:
-            raise ConfigurationError("targets: none to fit to; give at least one measurement")
+            raise ConfigurationError("targets: no measurement to fit to; specify at least one")
         self.parameters, self.targets, self.progress = parameters, targets, progress
         self.build = build
         self.step = COARSE_STEP
@@ -158,11 +158,11 @@ class _Problem:
         self.last: tuple[bytes, Vector] | None = None
 
     def values(self, point: Vector) -> dict[str, float]:
-        """Path to value."""
-        return {one.path: one.value(float(u)) for one, u in zip(self.parameters, point, strict=True)}
+        """Return path to value at a point u."""
+        return {parameter.path: parameter.value(float(u)) for parameter, u in zip(self.parameters, point, strict=True)}
 
     def residuals(self, point: Vector) -> Vector:
-        """All residuals without the scales, (n,)."""
+        """Return the residuals of all rows before scaling, (n,)."""
         if self.last is not None and self.last[0] == point.tobytes():
             return self.last[1]
         model = self.build(self.values(point))
@@ -172,78 +172,78 @@ class _Problem:
         joined = np.concatenate(rows)
         if not np.isfinite(joined).all():
             text = ", ".join(f"{path}={value:.5g}" for path, value in self.values(point).items())
-            raise SimulationError(f"residuals that are not finite at {text}; narrow the bounds")
+            raise SimulationError(f"residuals are not finite at {text}; narrow the bounds")
         if joined.size < len(self.parameters):
             raise ConfigurationError(
-                f"{joined.size} values for {len(self.parameters)} parameters; give more data or fewer parameters"
+                f"{joined.size} values for {len(self.parameters)} parameters; use more data or fewer parameters"
             )
         self.last = (point.tobytes(), joined)
         return joined
 
     def statistics(self, raw: Vector, parameters: int) -> tuple[RowStatistics, ...]:
-        """Of all rows, with the degrees of freedom that a number of parameters leaves."""
+        """Return the statistics of all rows, with the degrees of freedom reduced by the number of parameters."""
         freedom = max(1.0 - parameters / max(int(np.count_nonzero(raw)), parameters + 1), 1e-3)
         rows, first = np.split(raw, np.cumsum(self.lengths)[:-1]), 0
-        found: list[RowStatistics] = []
+        row_statistics: list[RowStatistics] = []
         for target in self.targets:
             last = first + len(target.rows)
-            found += target_statistics(target.rows, rows[first:last], freedom)
+            row_statistics += target_statistics(target.rows, rows[first:last], freedom)
             first = last
-        return tuple(found)
+        return tuple(row_statistics)
 
     def use_scales(self, statistics: tuple[RowStatistics, ...]) -> None:
-        """Weigh the rows by what was found of their residuals."""
-        scales = np.array([one.scale for one in statistics])
-        known = scales[scales > 0.0]
-        least = 1e-6 * float(np.max(known)) if known.size else 1.0
+        """Set the weights of the rows to the inverse of their estimated scales."""
+        scales = np.array([row.scale for row in statistics])
+        nonzero = scales[scales > 0.0]
+        minimum = 1e-6 * float(np.max(nonzero)) if nonzero.size else 1.0
         self.scaled = statistics
-        self.weights = np.repeat(1.0 / np.maximum(scales, least), self.lengths)
+        self.weights = np.repeat(1.0 / np.maximum(scales, minimum), self.lengths)
 
     def jacobian(self, point: Vector, columns: Sequence[int]) -> Vector:
-        """d (weighted residuals) / d u by forward differences, away from a bound that is near; (n, columns)."""
+        """Return d (weighted residuals) / d u, (n, columns), by forward differences; backward near an upper bound."""
         base = self.residuals(point)
         table = np.empty((base.size, len(columns)))
-        for place, index in enumerate(columns):
+        for column, index in enumerate(columns):
             step = self.step if point[index] + self.step < self.bounds(index)[1] else -self.step
             moved = point.copy()
             moved[index] += step
-            table[:, place] = (self.residuals(moved) - base) / step * self.weights
+            table[:, column] = (self.residuals(moved) - base) / step * self.weights
             self.last = (point.tobytes(), base)
         return table
 
     def information(self, jacobian: Vector, weighted: Vector) -> Vector:
         """Return sum over i, j of rho_ij J_i' J_j over the rows of each target, (columns, columns).
 
-        Noise at one place of a measurement, of the input for example, is in all of its rows. rho_ij is the correlation
-        of the residuals of two rows, sample by sample. With rows that know nothing of each other it is J' J.
+        Noise in one signal of a measurement, for example the input, appears in all rows of the measurement. rho_ij is
+        the correlation of the residuals of two rows, sample by sample. For uncorrelated rows the sum is J' J.
 
         Args:
-            jacobian: of the weighted residuals, (n, columns).
-            weighted: residuals, (n,).
+            jacobian: Jacobian of the weighted residuals, (n, columns).
+            weighted: weighted residuals, (n,).
         """
-        found = np.zeros((jacobian.shape[1], jacobian.shape[1]))
+        weighted_sum = np.zeros((jacobian.shape[1], jacobian.shape[1]))
         ends = np.cumsum(self.lengths)
         row = 0
         for target in self.targets:
             rows = range(row, row + len(target.rows))
             row = rows.stop
             begin, end = ends[rows.start] - self.lengths[rows.start], ends[rows[-1]]
-            # (rows, samples): the rows of a target are those of one array.
+            # (rows, samples): all rows of a target have the same number of samples.
             residuals = weighted[begin:end].reshape(len(rows), -1)
             columns = jacobian[begin:end].reshape(*residuals.shape, -1)
             sizes = np.sqrt(np.sum(residuals**2, axis=1))
             related = residuals @ residuals.T / np.maximum(np.outer(sizes, sizes), 1e-300)
             np.fill_diagonal(related, 1.0)
-            found += np.einsum("ij,isp,jsq->pq", related, columns, columns, optimize=True)
-        return found
+            weighted_sum += np.einsum("ij,isp,jsq->pq", related, columns, columns, optimize=True)
+        return weighted_sum
 
     def bounds(self, index: int) -> tuple[float, float]:
-        """Bounds of u."""
-        one = self.parameters[index]
-        return float(np.log(one.low / one.start)), float(np.log(one.high / one.start))
+        """Return lower and upper bound of u of a parameter."""
+        parameter = self.parameters[index]
+        return float(np.log(parameter.low / parameter.start)), float(np.log(parameter.high / parameter.start))
 
     def inside(self, point: Vector) -> list[int]:
-        """The free parameters that are not at a bound."""
+        """Return the indices of the free parameters that are not at a bound."""
         return [
             index
             for index in self.free
@@ -252,14 +252,14 @@ class _Problem:
         ]
 
     def hold(self, paths: Sequence[str], point: Vector) -> None:
-        """Take parameters out of the fit and set them back to their start in `point`."""
+        """Remove parameters from the fit and reset them to their start values in `point`."""
         for index, parameter in enumerate(self.parameters):
             if parameter.path in paths:
                 self.free.remove(index)
                 point[index] = 0.0
 
     def solve(self, start: Vector, tolerance: float, most_iterations: int) -> tuple[Vector, tuple[bool, str]]:
-        """Iterate from a point with the present scales; returns the end, and whether and why it ended there."""
+        """Minimise from a point with the present scales; return the final point, (converged, message)."""
 
         def whole(free: Vector) -> Vector:
             point = start.copy()
@@ -270,16 +270,16 @@ class _Problem:
             weighted = self.residuals(whole(free)) * self.weights
             if self.progress is not None:
                 self.progress(self.evaluations, float(np.sqrt(np.mean(weighted**2))))
-            return np.concatenate([weighted, leash * free])
+            return np.concatenate([weighted, regularisation * free])
 
         widths = np.array([self.parameters[index].half_width for index in self.free])
-        leash = LEASH / widths
+        regularisation = REGULARISATION / widths
         low, high = np.array([self.bounds(index) for index in self.free]).T
         margin = 1e-9 * (high - low)
         answer = scipy.optimize.least_squares(
             function,
             np.clip(start[self.free], low + margin, high - margin),
-            jac=lambda free: np.vstack([self.jacobian(whole(free), self.free), np.diag(leash)]),
+            jac=lambda free: np.vstack([self.jacobian(whole(free), self.free), np.diag(regularisation)]),
             bounds=(low, high),
             x_scale=widths,
             ftol=tolerance,
@@ -299,7 +299,7 @@ class _Problem:
         held: tuple[Unidentified, ...],
         answer: tuple[bool, str],
     ) -> TuningResult:
-        """Put together what was found."""
+        """Return the result of the fit at its final point."""
         values = self.values(point)
         errors = dict.fromkeys(values, float("nan"))
         inverse = covariance(jacobian) if inner else np.zeros((0, 0))
@@ -307,7 +307,7 @@ class _Problem:
         spread = inverse @ self.information(jacobian, weighted) @ inverse
         deviations = np.sqrt(np.diag(spread))
         free = tuple(self.parameters[index].path for index in inner)
-        errors.update({path: float(one * values[path]) for path, one in zip(free, deviations, strict=True)})
+        errors.update({path: float(deviation * values[path]) for path, deviation in zip(free, deviations, strict=True)})
         widths = np.array([self.parameters[index].half_width for index in inner])
         return TuningResult(
             parameters=self.parameters,

@@ -1,4 +1,4 @@
-"""Tasks of many cases: their size follows the pace, and of a lost one only the deadly case is blamed."""
+"""Tasks of many cases: size from the computing time, and recovery from a case that kills its worker."""
 
 from __future__ import annotations
 
@@ -7,13 +7,16 @@ from concurrent.futures.process import BrokenProcessPool
 
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
-from vehicle.studies.sweeps.crew import DIED, FILL, LARGEST, PER_WORKER, TASK_S, Crew, in_groups
-from vehicle.studies.sweeps.result import Result
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.dispatcher import DIED, FILL, LARGEST, PER_WORKER, TASK_S, Dispatcher, in_groups
 
 
 class Paced(Executor):
-    """Has every task done at once, at a pace [s a case]; dies of a case, and fails of another."""
+    """Executor that finishes tasks at submission, with a given computing time [s per case].
+
+    The case `deadly` breaks the executor, the case `wrong` raises an error.
+    """
 
     _max_workers = 2
 
@@ -39,10 +42,12 @@ def many(count, engine="auto"):
 
 
 def worked(todo, executor):
-    found: dict[str, Result] = {}
-    Crew(lambda: executor, Peak()).work(todo, lambda keys, results: found.update(zip(keys, results, strict=True)))
-    assert set(found) == set(todo)
-    return found
+    results_by_key: dict[str, Result] = {}
+    Dispatcher(lambda: executor, Peak()).work(
+        todo, lambda keys, results: results_by_key.update(zip(keys, results, strict=True))
+    )
+    assert set(results_by_key) == set(todo)
+    return results_by_key
 
 
 @pytest.mark.parametrize(
@@ -56,11 +61,11 @@ def test_tasks_take_about_a_second(pace, engine, size):
     sizes = [len(task) for task in executor.tasks]
     filled = size if engine == "mujoco" or size == 1 else -(-size // FILL) * FILL
     assert sizes[0] == FILL and sizes[2 * PER_WORKER] == min(filled, LARGEST)
-    # Towards the end they shrink, so that all workers end together.
+    # Towards the end tasks become smaller, so that all workers finish at the same time.
     assert sum(sizes) == 3000 and sizes[-1] <= FILL
 
 
-def test_tasks_fill_a_vector_unit_with_cars_that_each_bring_all_their_inputs():
+def test_tasks_contain_full_vectors_of_cars_with_all_their_inputs():
     roads = [ShortRoad(seed=seed) for seed in range(3)]
     cases = grid({"damper.viscous": range(100)}, roads, engine="reduced")
     executor = Paced(0.2 * TASK_S)
@@ -75,24 +80,24 @@ def test_few_cases_are_shared_by_all_workers():
     assert [len(task) for task in executor.tasks] == [3, 2, 1]
 
 
-def test_only_the_deadly_case_is_blamed():
+def test_only_the_deadly_case_fails():
     todo = many(40)
     deadly = list(todo)[13]
     executor = Paced(deadly=deadly)
-    found = worked(todo, executor)
-    assert {key for key, result in found.items() if result.reason} == {deadly}
-    assert found[deadly].reason == DIED
+    results = worked(todo, executor)
+    assert {key for key, result in results.items() if result.reason} == {deadly}
+    assert results[deadly].reason == DIED
     assert [deadly] in executor.tasks and max(map(len, executor.tasks)) == FILL
 
 
-def test_an_error_is_that_of_one_case():
+def test_an_error_fails_only_its_case():
     todo = many(20)
     wrong = list(todo)[3]
-    found = worked(todo, Paced(wrong=wrong))
-    assert {key: result.reason for key, result in found.items() if result.reason} == {wrong: "TypeError: no number"}
+    results = worked(todo, Paced(wrong=wrong))
+    assert {key: result.reason for key, result in results.items() if result.reason} == {wrong: "TypeError: no number"}
 
 
-def test_cases_of_a_car_stand_together():
+def test_cases_of_a_car_are_consecutive():
     roads, values = [ShortRoad(seed=1), ShortRoad(seed=2)], {"damper.viscous": [1.0, 2.0]}
     cases = [*grid(values, roads), *grid(values, roads[:1], engine="mujoco"), *grid(values, roads, fixed=["gravity=9"])]
     keys = in_groups({str(number): case for number, case in enumerate(cases)})
