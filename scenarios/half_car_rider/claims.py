@@ -21,7 +21,7 @@ from scenarios.half_car_rider.runs import (
     varied,
 )
 from scenarios.half_car_rider.settling_claims import settling_claims
-from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
 from vehicle.engines.lumped.history import Array, History
 from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
 

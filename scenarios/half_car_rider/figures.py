@@ -12,7 +12,7 @@ from scenarios.charts import chart, lines
 from scenarios.half_car_rider.claims import TRAVEL_DIRECTIONS, Study
 from scenarios.half_car_rider.runs import SPEEDS, VARIED, Motion, Outcome
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.lumped.half_car_rider import linear_tyre_load
+from vehicle.engines.lumped.half_car_rider_model import linear_tyre_load
 from vehicle.engines.lumped.history import History
 from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
 

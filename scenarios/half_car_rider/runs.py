@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import ENDS, half_car_rider, lift_off, linear_tyre_load, places
+from vehicle.engines.lumped.half_car_rider_model import ENDS, half_car_rider, lift_off, linear_tyre_load, places
 from vehicle.engines.lumped.history import Array, History
-from vehicle.engines.lumped.semi_active import simulate_bump
+from vehicle.engines.lumped.semi_active_half_car import simulate_bump
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axle import Axle
 from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters

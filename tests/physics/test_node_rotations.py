@@ -10,7 +10,7 @@ import scipy
 from tests.engines.simulation.row_model import QUARTER_TURN, Stepper, add_bushing, add_mode, element_law, empty_spec
 from tests.model.flexbody.box_body import MASSES, PAIRS, POSITIONS, SECTION, box_fields
 from vehicle.commands import body as body_command
-from vehicle.engines.linear.matrices import car_matrices
+from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.flexbody.beam import frame_stiffness
 from vehicle.model.flexbody.library import BODY_DESIGN

@@ -12,8 +12,8 @@ import pytest
 from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
 from tests.engines.simulation.row_model import poles
 from vehicle.engines.linear.natural_modes import natural_modes
-from vehicle.engines.lumped.drive import Sampled
-from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.input_signals import Sampled
+from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.quarter_car import quarter_car_spec

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from tests.physics.controlled_half_car import half_car_spec
-from vehicle.engines.linear.matrices import car_matrices
+from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.lumped.bump_response import bump_passage
-from vehicle.engines.lumped.semi_active import simulate_bump
+from vehicle.engines.lumped.semi_active_half_car import simulate_bump
 from vehicle.engines.reduced.pole_model import pole_model
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model

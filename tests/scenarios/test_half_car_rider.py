@@ -11,7 +11,7 @@ from scenarios.half_car_rider.__main__ import main
 from scenarios.half_car_rider.claims import relative_changes
 from scenarios.half_car_rider.runs import SPEEDS, TIME_STEP, VARIED, outcome, parameter_study, passive, varied
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider, places
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider, places
 from vehicle.model.parameters.half_car_rider import PUBLISHED, half_car_rider_parameters
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.analysis.exposure import vibration_dose_value

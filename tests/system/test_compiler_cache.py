@@ -18,10 +18,10 @@ SECOND_PROCESS = """
 import numpy as np
 from vehicle.model.laws.damper import RECORD
 from vehicle.model.laws.semi_active import SETTING
-from vehicle.engines.reduced.control import Control
-from vehicle.engines.reduced.march import compiled_march
-from vehicle.engines.reduced.slope import Slope
-march = compiled_march(2)
+from vehicle.engines.reduced.damper_control import Control
+from vehicle.engines.reduced.pole_stepping import compiled_stepping
+from vehicle.engines.reduced.slope_force import Slope
+march = compiled_stepping(2)
 state, force, laws, curves = np.zeros((2, 3)), np.zeros(2), np.zeros(2, dtype=RECORD), np.zeros((2, 4, 1))
 curves[:, 0], curves[:, 3] = np.inf, 1.0  # one piece without an end
 march(np.zeros((14, 3)), np.zeros((7, 2)), np.zeros((2, 2)), np.eye(2), laws, curves, np.zeros((3, 2)), state,

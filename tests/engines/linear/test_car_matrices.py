@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.linear.first_order import free_basis
-from vehicle.engines.linear.matrices import car_matrices
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows, joint_springs
 from vehicle.errors import ConfigurationError

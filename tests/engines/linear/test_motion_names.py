@@ -86,7 +86,7 @@ def test_rigid_rows_of_a_unit_against_its_bodies():
     matrices: Any = SimpleNamespace(
         body_rows={body: rng.normal(size=(6, freedom)) for body in bodies},
         body_masses=masses,
-        body_places=places,
+        body_centres=places,
         carried_by={},
         system=SimpleNamespace(inputs=("fr", "fl")),
     )

@@ -7,8 +7,8 @@ import pytest
 
 from tests.engines.linear.plain_matrices import plain_matrices
 from vehicle.engines.linear import response
+from vehicle.engines.linear.car_modes import car_modes
 from vehicle.engines.linear.first_order import first_order, free_basis
-from vehicle.engines.linear.modes import car_modes
 from vehicle.engines.linear.part_motions import group_of
 from vehicle.engines.linear.response import frequency_response
 from vehicle.errors import ConfigurationError

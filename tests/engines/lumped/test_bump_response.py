@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from vehicle.engines.linear.parts import ROAD, Network, masses_of, spring_damper
+from vehicle.engines.linear.network import ROAD, Network, masses_of, spring_damper
 from vehicle.engines.lumped.bump_response import BumpPassage, bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
 

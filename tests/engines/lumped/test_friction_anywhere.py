@@ -6,7 +6,7 @@ import pytest
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.system import Slide
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.coulomb import Coulomb

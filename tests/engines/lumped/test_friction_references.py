@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tests.engines.lumped.stick_slip import ExactStickSlip
-from vehicle.engines.lumped.drive import Sine
-from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
+from vehicle.engines.lumped.input_signals import Sine
+from vehicle.engines.lumped.quarter_car_network import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.coulomb import Coulomb

@@ -9,9 +9,9 @@ import pytest
 import sympy as sp
 
 from vehicle.engines.linear.natural_modes import natural_modes
-from vehicle.engines.linear.parts import ROAD, Link, Mass, Network
+from vehicle.engines.linear.network import ROAD, Link, Mass, Network
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.parameters.quarter_car import load_quarter_car

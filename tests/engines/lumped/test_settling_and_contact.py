@@ -5,7 +5,7 @@ import pytest
 
 from scenarios.half_car_rider.runs import settling_time
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.engines.reduced import plate_samples, run
+from vehicle.engines.reduced import plate_samples, reduced_run
 from vehicle.engines.simulation import acceleration
 from vehicle.engines.simulation.judgement import require_samples
 from vehicle.errors import ConfigurationError
@@ -31,7 +31,7 @@ def test_blocks_of_any_length_give_the_same_run(car, monkeypatch):
     road = random_road(rms=4e-3, seed=3, duration=2.0)
     names = [*car.vehicle.channels, *car.vehicle.requested_channels]
     whole = car.run(road, engine="reduced", channels=names)
-    monkeypatch.setattr(run, "BLOCK", 333)
+    monkeypatch.setattr(reduced_run, "BLOCK", 333)
     monkeypatch.setattr(acceleration, "BLOCK", 77)
     blocks = car.run(road, engine="reduced", channels=names)
     for name in names:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.periodic import multisine, periodic_response
-from vehicle.engines.reduced import march
+from vehicle.engines.reduced import pole_stepping
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -95,10 +95,10 @@ def test_a_coarser_record_is_the_same_motion(high_piece):
 
 
 def test_blocks_leave_no_seam(high_piece, monkeypatch):
-    from vehicle.engines.reduced import run
+    from vehicle.engines.reduced import reduced_run
 
     whole = Car.load().run(high_piece, engine="reduced")
-    monkeypatch.setattr(run, "BLOCK", 77)
+    monkeypatch.setattr(reduced_run, "BLOCK", 77)
     pieces = Car.load().run(high_piece, engine="reduced")
     for name in CHANNELS:
         # Products of other shapes are rounded in another order.
@@ -152,18 +152,18 @@ def test_a_tyre_that_would_lift_off_is_named(car):
 
 def test_without_numba_it_is_named_and_auto_is_mujoco(car, high_piece, monkeypatch):
     piece = Signal(time=high_piece.time[:101], displacement={"fr": high_piece.displacement["fr"][:101]})
-    monkeypatch.setattr(march, "find_spec", lambda name: None)
-    march.compiled_march.cache_clear()
+    monkeypatch.setattr(pole_stepping, "find_spec", lambda name: None)
+    pole_stepping.compiled_stepping.cache_clear()
 
     def without():
         raise ImportError("numba")
 
-    monkeypatch.setattr(march, "numba_module", without)
+    monkeypatch.setattr(pole_stepping, "numba_module", without)
     try:
         with pytest.raises(MissingPartError, match="needs numba, which is missing"):
             car.run(piece, engine="reduced")
         monkeypatch.undo()
-        monkeypatch.setattr(march, "find_spec", lambda name: None)
+        monkeypatch.setattr(pole_stepping, "find_spec", lambda name: None)
         assert car.run(piece, engine="auto").recording.statistics.engine == "mujoco"
     finally:
-        march.compiled_march.cache_clear()
+        pole_stepping.compiled_stepping.cache_clear()

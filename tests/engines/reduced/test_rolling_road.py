@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from vehicle.engines.reduced.many import simulate_many
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recording import Recording
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.iso_road import CLASSES, IsoRoad, Side, drive
@@ -95,7 +95,7 @@ def test_a_batch_takes_static_loads_on_slopes() -> None:
     signal = road(car, "B", 4.0)
     channels = [f"seat_rail_acc_{axis}" for axis in "xyz"]
     dampers = [damper.law for damper in car.vehicle.composition.dampers]
-    many = simulate_many(
+    many = simulate_batch(
         2 * [car.poles],
         signal,
         dampers=2 * [dampers],

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from vehicle.engines.linear.matrices import CarMatrices
+    from vehicle.engines.linear.car_matrices import CarMatrices
 
 Vector = npt.NDArray[np.float64]
 
@@ -64,7 +64,7 @@ def _unit_rows(matrices: CarMatrices, bodies: list[str]) -> Vector:
     """Energy coordinates of the bodies of a unit; (6, n)."""
     masses = [float(matrices.body_masses[body][0, 0]) for body in bodies]
     total = sum(masses)
-    places = [matrices.body_places[body] for body in bodies]
+    places = [matrices.body_centres[body] for body in bodies]
     centre = sum(mass * place for mass, place in zip(masses, places, strict=True)) / total
     momentum = np.zeros_like(matrices.body_rows[bodies[0]][:3])
     turning, inertia = np.zeros_like(momentum), np.zeros((3, 3))

@@ -23,9 +23,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.car_modes import require_stable
 from vehicle.engines.linear.first_order import FirstOrder, first_order
-from vehicle.engines.linear.matrices import CarMatrices
-from vehicle.engines.linear.modes import require_stable
 from vehicle.engines.linear.step_map import StepMap, StepRows, step_map, step_rows
 from vehicle.engines.linear.strained_part import holding_parameter, moving_part
 from vehicle.engines.simulation.car_model import CarModel

@@ -21,8 +21,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.linear.matrices import CarMatrices
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.rows import Rows, damping_factors, joint_dampers, joint_weights

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.matrices import CarMatrices
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.layout import numeric

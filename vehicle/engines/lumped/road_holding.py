@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.first_order import first_order
-from vehicle.engines.linear.parts import ROAD, Network, masses_of
+from vehicle.engines.linear.network import ROAD, Network, masses_of
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.lumped.half_car_rider import ENDS, GRAVITY, ROADS, axle_links
+from vehicle.engines.lumped.half_car_rider_model import ENDS, GRAVITY, ROADS, axle_links
 from vehicle.model.parameters.axle import Axle
 from vehicle.model.parameters.damper_choice import (
     ExponentialRoad,

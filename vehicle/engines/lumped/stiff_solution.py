@@ -14,8 +14,8 @@ import numpy.typing as npt
 import scipy
 
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.lumped.drive import AtRest, Drive
 from vehicle.engines.lumped.history import Array, History
+from vehicle.engines.lumped.input_signals import AtRest, Drive
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.law import ForceLaw, Parallel
 from vehicle.model.laws.switch import Switch
@@ -67,7 +67,7 @@ class Driven:
     ) -> None:
         if model.models:
             raise ConfigurationError(
-                f"stiff_solution: found a stack of {model.models} models; solve one, or use marched_solution"
+                f"stiff_solution: found a stack of {model.models} models; solve one, or use fixed_step_solution"
             )
         self.model, self.force = model, force or AtRest()
         roads = (AtRest(),) * model.input.shape[-1] if road is None else road

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import first_order
-from vehicle.engines.linear.matrices import CarMatrices
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

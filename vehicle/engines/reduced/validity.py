@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.matrices import Bend, CarMatrices
+from vehicle.engines.linear.car_matrices import CarMatrices, LinearSegment
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.readout import Readout
 from vehicle.engines.reduced.step_factors import StepFactors
@@ -34,7 +34,7 @@ LONGEST_LOOK = 0.016
 """Longest time between two looks [s]: where samples are further apart than at 1 kHz, fewer are passed over."""
 
 
-def samples_of_a_look(interval: float) -> int:
+def check_stride(interval: float) -> int:
     """From one sample that is looked at to the next, samples being `interval` [s] apart."""
     return max(min(LOOK_EVERY, int(LONGEST_LOOK / interval + 1e-9)), 1)
 
@@ -98,7 +98,7 @@ class Validity:
         return tuple(found)
 
 
-def turning_bodies(matrices: CarMatrices) -> tuple[str, ...]:
+def rotating_bodies(matrices: CarMatrices) -> tuple[str, ...]:
     """The first body of each part that turns by itself: bodies that are fixed to each other turn alike."""
     first: dict[str, str] = {}
     for body in matrices.body_rows:
@@ -113,7 +113,7 @@ def rotation_outputs(model: PoleModel, bodies: Sequence[str]) -> Outputs:
     return Outputs(poles=turns, height=none, velocity=none)
 
 
-def bend_outputs(model: PoleModel) -> Outputs:
+def segment_outputs(model: PoleModel) -> Outputs:
     """Displacements of the laws that bend; (bends, ...)."""
     bends, wheels = model.matrices.bends, len(model.matrices.system.inputs)
     stretch = np.array([bend.row @ model.modal for bend in bends], dtype=complex).reshape(-1, len(model.poles))
@@ -126,7 +126,7 @@ def tyre_outputs(model: PoleModel) -> Outputs:
     return model.outputs([f"tyre_{wheel}_force_z" for wheel in model.matrices.system.inputs])
 
 
-def left_pieces(bends: Sequence[Bend], low: Vector, high: Vector) -> dict[str, float]:
+def exceeded_segments(bends: Sequence[LinearSegment], low: Vector, high: Vector) -> dict[str, float]:
     """How far each bend left its piece [m], of those that did; low, high: extremes of the displacements; (bends,)."""
     beyond = [max(bend.low - a, b - bend.high) for bend, a, b in zip(bends, low.tolist(), high.tolist(), strict=True)]
     return {bend.name: distance for bend, distance in zip(bends, beyond, strict=True) if distance > 0.0}
@@ -151,14 +151,14 @@ class ValidityWatch:
         tyre_load: Mapping[str, float],
         interval: float,
     ) -> None:
-        self.every = samples_of_a_look(interval)
+        self.every = check_stride(interval)
         self.matrices, self.bodies = (
             model.matrices,
             tuple(body for body in model.matrices.body_rows if body not in model.matrices.spinning),
         )
         self.rotations, self.tyres, self.stretches = (
             Readout(outputs, factors, model.pairs, columns)
-            for outputs in (rotation_outputs(model, self.bodies), tyre_outputs(model), bend_outputs(model))
+            for outputs in (rotation_outputs(model, self.bodies), tyre_outputs(model), segment_outputs(model))
         )
         self.static = np.array([tyre_load[wheel] for wheel in model.matrices.system.inputs])
         self.angle, self.load = np.zeros(len(self.bodies)), self.static.copy()
@@ -181,5 +181,5 @@ class ValidityWatch:
             angles=dict(zip(self.bodies, self.angle.tolist(), strict=True)),
             loads=dict(zip(self.matrices.system.inputs, self.load.tolist(), strict=True)),
             one_sided=self.matrices.one_sided,
-            left=left_pieces(self.matrices.bends, self.low, self.high),
+            left=exceeded_segments(self.matrices.bends, self.low, self.high),
         )

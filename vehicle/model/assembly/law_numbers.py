@@ -1,7 +1,8 @@
 """What the parameters of a car become in its model beside places: numbers of laws, springs in joints, masses, by name.
 
 The model keeps those of laws in custom fields of these names, and `vehicle.engines.simulation.layout` reads them there.
-A car that differs from another one in such numbers alone needs no model of its own (`vehicle.engines.linear.varied`).
+A car that differs from another one in such numbers alone needs no model of its own: see
+`vehicle.engines.linear.variant_matrices`.
 """
 
 from __future__ import annotations

@@ -12,17 +12,17 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.notebook.cards import car_card
+from vehicle.engines.linear.car_matrices import CarMatrices, car_matrices
+from vehicle.engines.linear.car_modes import Mode, car_modes, require_stable
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.load_rows import LoadRows, load_rows
-from vehicle.engines.linear.matrices import CarMatrices, car_matrices
-from vehicle.engines.linear.modes import Mode, car_modes, require_stable
 from vehicle.engines.linear.natural_modes import grows
 from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
-from vehicle.engines.linear.varied import Terms, VariedCar
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.linear.variant_matrices import CarVariant, Terms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.pole_stepping import has_compiler
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.run import Progress, simulate
@@ -92,8 +92,8 @@ class Car:
         """This car with other values in their places, for many cars of one kind.
 
         Where the values move numbers of laws and masses alone, its matrices and static loads come from terms of this
-        car, which are read once (`vehicle.engines.linear.varied`), and its MuJoCo model is built only where it is asked
-        for. Every other car is built, as by `load`.
+        car, which are read once (`vehicle.engines.linear.variant_matrices`), and its MuJoCo model is built
+        only where it is asked for. Every other car is built, as by `load`.
 
         Args:
             overrides: as of `load`, after those of this car.
@@ -137,7 +137,7 @@ class Car:
         return Terms(self.model, self.matrices, self.trimmed_body)
 
     @cached_property
-    def _from_terms(self) -> VariedCar | None:
+    def _from_terms(self) -> CarVariant | None:
         """What the terms of another car make of this one; None where it has to be built."""
         return None if self._base is None else self._base._terms.car_of(self.vehicle)
 

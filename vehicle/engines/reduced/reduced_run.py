@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.load_rows import LoadRows
-from vehicle.engines.reduced.control import COEFFICIENT, FORCE, control_of
-from vehicle.engines.reduced.loads import direct_forces, load_outputs
-from vehicle.engines.reduced.march import March, compiled_march
+from vehicle.engines.reduced.damper_control import COEFFICIENT, FORCE, control_of
+from vehicle.engines.reduced.load_outputs import direct_forces, load_outputs
 from vehicle.engines.reduced.plate_samples import LongPlates, plate_samples
 from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.engines.reduced.pole_stepping import March, compiled_stepping
 from vehicle.engines.reduced.readout import Readout
-from vehicle.engines.reduced.slope import slope_of
+from vehicle.engines.reduced.slope_force import slope_of
 from vehicle.engines.reduced.step_factors import StepFactors, step_factors
 from vehicle.engines.reduced.validity import ValidityWatch
 from vehicle.engines.simulation.acceleration import AHEAD, acceleration
@@ -68,7 +68,7 @@ def simulate_reduced(
     system = model.matrices.system
     wheeled = wheel_channels(system.inputs, [f"damper_{wheel}" for wheel in system.inputs])
     names = (*system.outputs, *wheeled) if channels is None else tuple(channels)
-    march = compiled_march(len(dampers) + len(dampers) % 2)
+    march = compiled_stepping(len(dampers) + len(dampers) % 2)
     interval = 1.0 / record_rate
     every = int(np.ceil(interval / LONGEST_STEP - 1e-9))
     samples = int(np.floor(signal.duration / interval + 1e-6)) + 1

@@ -24,7 +24,7 @@ import numpy.typing as npt
 import scipy
 
 from vehicle.engines.linear.body_change import BodyChange, body_change, same_body
-from vehicle.engines.linear.matrices import DIFFERENCE_STEP, CarMatrices, differences, law_matrices
+from vehicle.engines.linear.car_matrices import DIFFERENCE_STEP, CarMatrices, differences, law_matrices
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.engines.simulation.standing import require_body_modes, require_standing
@@ -45,7 +45,7 @@ CORNER = 10.0 * DIFFERENCE_STEP
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class VariedCar:
+class CarVariant:
     """A car from terms: its linear form and its static loads; the residual is that of the linear car."""
 
     matrices: CarMatrices
@@ -91,7 +91,7 @@ class Terms:
 
         return dict(zip(chosen, gravity * differences(self.rows, read), strict=True))
 
-    def car_of(self, vehicle: Vehicle) -> VariedCar | None:
+    def car_of(self, vehicle: Vehicle) -> CarVariant | None:
         """The car of other parameters.
 
         Args:
@@ -147,10 +147,10 @@ class Terms:
             sensors=moved(self.matrices.sensors),
             body_rows=parts.rows,
             body_masses=parts.masses,
-            body_places={**self.matrices.body_places, "body": np.array(vehicle.body.cog)},
+            body_centres={**self.matrices.body_centres, "body": np.array(vehicle.body.cog)},
             **laws.car,
         )
-        return VariedCar(matrices=matrices, static=static)
+        return CarVariant(matrices=matrices, static=static)
 
     def _stiffness(self, rows: Rows, springs: Vector, preload: Vector, rest: AtRest, change: BodyChange) -> Vector:
         """K of laws and preloads; (n, n)."""

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from vehicle.engines.linear.parts import ROAD, Link, Mass, Network
+from vehicle.engines.linear.network import ROAD, Link, Mass, Network
 from vehicle.engines.linear.system import Row, Slide
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import FRICTION

@@ -8,13 +8,13 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.matrices import CarMatrices
-from vehicle.engines.reduced.lane_factors import CarFactors
-from vehicle.engines.reduced.lane_rows import ELEMENT, INNER, LANES, PAST, TILE, Reading, aligned
-from vehicle.engines.reduced.lane_tables import LaneTable, Table, damper_lane
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.reduced.batch_factors import CarFactors
+from vehicle.engines.reduced.batch_layout import ELEMENT, INNER, LANES, PAST, TILE, Reading, aligned
+from vehicle.engines.reduced.batch_tables import BatchTable, Table, damper_nodes
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import PoleModel
-from vehicle.engines.reduced.validity import Validity, bend_outputs, left_pieces, samples_of_a_look, turning_bodies
+from vehicle.engines.reduced.validity import Validity, check_stride, exceeded_segments, rotating_bodies, segment_outputs
 from vehicle.engines.simulation.acceleration import AHEAD, WEIGHTS
 from vehicle.model.parameters.elements import Damper
 from vehicle.signals.excitation.signal import Signal
@@ -69,8 +69,8 @@ class Group:
             What the motion of each car has shown.
         """
         system, bends = self.models[0].matrices.system, self.models[0].matrices.bends
-        bodies = turning_bodies(self.models[0].matrices)
-        lanes = LaneTable(self.factors, dampers, self.start)
+        bodies = rotating_bodies(self.models[0].matrices)
+        lanes = BatchTable(self.factors, dampers, self.start)
         count = len(dampers[0])
         # In a sample: positions, all tyre loads and bends, damper velocities, damper forces.
         moved = [name for name in channels if name in system.outputs]
@@ -86,11 +86,11 @@ class Group:
                 rest[row, : len(cars)] = [load[tyres[name]] for load in tyre_load]
             elif rows.get(name, 0) >= ends + count:
                 rest[row, : len(cars)] = [
-                    damper_lane(own[rows[name] - ends - count])[0]["rest_force"] for own in dampers
+                    damper_nodes(own[rows[name] - ends - count])[0]["rest_force"] for own in dampers
                 ]
             elif name not in rows:
                 table[row, cars] = self._plate(name, table.shape[2])
-        linear = [model.outputs([*tyres]) + bend_outputs(model) for model in self.models]
+        linear = [model.outputs([*tyres]) + segment_outputs(model) for model in self.models]
         shapes = [car.weights(model.modal) for car, model in zip(self.factors, self.models, strict=True)]
         places, turns = (
             [rows_of(model.matrices) @ shape for model, shape in zip(self.models, shapes, strict=True)]
@@ -101,7 +101,7 @@ class Group:
             levels=lanes.tiles([car.weights_of(one) for car, one in zip(self.factors, linear, strict=True)]),
             turns=lanes.tiles(turns),
             loads=len(tyres),
-            every=samples_of_a_look(self.interval),
+            every=check_stride(self.interval),
             always=bool(bends) or any(name in tyres for name in channels),
             wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
             rest=rest,
@@ -129,7 +129,7 @@ class Group:
 
     def _march(
         self,
-        lanes: LaneTable,
+        lanes: BatchTable,
         reading: Reading,
         y: Table,
         peaks: Table,
@@ -137,10 +137,10 @@ class Group:
         cars: Sequence[int],
         count: int,
     ) -> None:
-        """Block by block; arguments as of `vehicle.engines.reduced.lanes.march`."""
-        from vehicle.engines.reduced.lanes import compiled_lanes
+        """Block by block; arguments as of `vehicle.engines.reduced.batch_stepping.march`."""
+        from vehicle.engines.reduced.batch_stepping import compiled_batch_stepping
 
-        march, m, every = compiled_lanes(), lanes.plates, self.every
+        march, m, every = compiled_batch_stepping(), lanes.plates, self.every
         x, own = aligned((INNER + 1) * lanes.states), np.array(cars, dtype=np.int64)
         x[: len(lanes.begin)] = lanes.begin
         tuples = (0.0,) * (2 * (count + m)), (0.0,) * count
@@ -159,7 +159,7 @@ class Group:
 
     @staticmethod
     def _judge(seen: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]) -> Validity:
-        """What the motion of a car has shown; its peaks are those of `vehicle.engines.reduced.lanes.march`."""
+        """What the motion of a car has shown; its peaks are those of `vehicle.engines.reduced.batch_stepping.march`."""
         turned, low, high = seen[: len(bodies)], seen[len(bodies) :: 2], seen[len(bodies) + 1 :: 2]
         wheels, bends = model.matrices.system.inputs, model.matrices.bends
         own = slice(len(wheels), len(wheels) + len(bends))
@@ -167,7 +167,7 @@ class Group:
             angles=dict(zip(bodies, np.sqrt(turned).tolist(), strict=True)),
             loads={wheel: tyre_load[wheel] + load for wheel, load in zip(wheels, low.tolist(), strict=False)},
             one_sided=model.matrices.one_sided,
-            left=left_pieces(bends, low[own], high[own]),
+            left=exceeded_segments(bends, low[own], high[own]),
         )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.engines.linear.test_varied import require_same
+from tests.engines.linear.test_variant_matrices import require_same
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 

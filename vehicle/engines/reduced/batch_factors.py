@@ -94,7 +94,7 @@ class CarFactors:
         return eta[: self.pairs].view(np.float64), eta[self.pairs :].real
 
     def rows(self) -> tuple[Vector, Vector]:
-        """Rows of the pairs and of the real poles, as `vehicle.engines.reduced.lane_step.advance` takes them.
+        """Rows of the pairs and of the real poles, as `vehicle.engines.reduced.batch_step.advance` takes them.
 
         Returns:
             Decay, inputs, damper velocities: (pairs, ...) with real and imaginary parts, (reals, ...).

@@ -8,7 +8,7 @@ Small numbers alone are left of a car that rides over hills, so that single prec
 over a step, from its ends and its mean. A damper force is f_n in the mean over step n, and where the damper stuck in
 that step and in the last it is a line of the slope (f_n - f_(n-1))/h: of third order in the step. Sliding, it is
 constant but for the curve of the damper, which acts in the mean of both ends. Forces answer the velocities at the end
-of the step, by turns, each by the inverse of its own law (`vehicle.engines.reduced.lane_tables`).
+of the step, by turns, each by the inverse of its own law (`vehicle.engines.reduced.batch_tables`).
 
 This module imports numba at its head: it is loaded only by a run that compiles.
 """
@@ -19,8 +19,8 @@ from collections.abc import Callable
 from typing import Any
 
 from vehicle.compiler import OPTIONS, numba_module
-from vehicle.engines.reduced.lane_rows import ELEMENT, LANES, Rows
-from vehicle.engines.reduced.vector import alike, below, combined, larger, load, loads, smaller, spread, store
+from vehicle.engines.reduced.batch_layout import ELEMENT, LANES, Rows
+from vehicle.engines.reduced.simd_vector import alike, below, combined, larger, load, loads, smaller, spread, store
 from vehicle.model.laws.damper import friction_limit
 
 numba = numba_module()
@@ -40,7 +40,7 @@ def section(function: Callable[..., Any]) -> Any:
 
 
 TURNS = 2
-"""Turns among the dampers: `vehicle.engines.reduced.lane_factors.LOOSEST` says what they leave."""
+"""Turns among the dampers: `vehicle.engines.reduced.batch_factors.LOOSEST` says what they leave."""
 
 
 @part
@@ -108,7 +108,7 @@ def advance(
     """A step.
 
     Args:
-        t, r, rates, laws, inputs, dampers: as of `vehicle.engines.reduced.lanes.march`.
+        t, r, rates, laws, inputs, dampers: as of `vehicle.engines.reduced.batch_stepping.march`.
         x: states of samples; of the poles here.
         before, at: rows of those at the beginning and at the end of the step.
         step: number of the step.

@@ -17,7 +17,7 @@ import numpy as np
 from llvmlite import ir
 
 from vehicle.compiler import numba_module
-from vehicle.engines.reduced.lane_rows import ALIGNMENT, ELEMENT, LANES
+from vehicle.engines.reduced.batch_layout import ALIGNMENT, ELEMENT, LANES
 
 numba = numba_module()
 types, extending, cgutils = numba.types, numba.extending, numba.core.cgutils

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.reduced.lane_factors import CarFactors
-from vehicle.engines.reduced.lane_rows import LANES, TILE, Rows, aligned
+from vehicle.engines.reduced.batch_factors import CarFactors
+from vehicle.engines.reduced.batch_layout import LANES, TILE, Rows, aligned
 from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
 from vehicle.model.parameters.elements import Damper
@@ -24,7 +24,7 @@ Table = npt.NDArray[Any]
 
 
 @lru_cache(maxsize=64)
-def damper_lane(damper: Damper) -> tuple[Table, float, Vector]:
+def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
     """What a damper gives its lane.
 
     Args:
@@ -43,7 +43,7 @@ def damper_lane(damper: Damper) -> tuple[Table, float, Vector]:
     return record, full, np.column_stack([nodes, 0.5 * rising, np.clip(nodes / full, -1.0, 1.0)])
 
 
-class LaneTable:
+class BatchTable:
     """The table of a group of cars; idle lanes hold the last car again.
 
     Args:
@@ -67,7 +67,7 @@ class LaneTable:
         self.pairs, self.reals = max(car.pairs for car in cars), max(car.reals for car in cars)
         self.plates, inputs = m, 2 * (d + m)
         self.states = 2 * self.pairs + self.reals + 2 * (d + m)
-        made = [[damper_lane(damper) for damper in own] for own in laws]
+        made = [[damper_nodes(damper) for damper in own] for own in laws]
         most = max(len(nodes) for own in made for _, _, nodes in own)
         sizes = {"real": self.reals * (1 + inputs + d), "slip": d * m, "gain": d * d, "ramp": d * d}
         sizes |= {

@@ -30,7 +30,7 @@ DIFFERENCE_STEP = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Bend:
+class LinearSegment:
     """A law over displacement that is linear between two displacements from the design position.
 
     Attributes:
@@ -64,7 +64,7 @@ class CarMatrices:
         body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
         body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
-        body_places: centre of gravity of each body in the design position [m]; (3,).
+        body_centres: centre of gravity of each body in the design position [m]; (3,).
         tyre_rows: rows that turn u into the height of the tyres over their plates; (w, n).
         one_sided: wheels whose tyres do not pull.
         spinning: bodies that turn with a rolling wheel: their angle is of no importance, and not known.
@@ -78,7 +78,7 @@ class CarMatrices:
     dampers: npt.NDArray[np.intp]
     viscous: Vector
     sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))
-    bends: tuple[Bend, ...] = ()
+    bends: tuple[LinearSegment, ...] = ()
     one_sided: frozenset[str] = frozenset()
     tyre_stiffness: Vector
     tyre_damping: Vector
@@ -86,7 +86,7 @@ class CarMatrices:
     spinning: frozenset[str] = frozenset()
     body_rows: dict[str, Vector]
     body_masses: dict[str, Vector]
-    body_places: dict[str, Vector]
+    body_centres: dict[str, Vector]
     carried_by: dict[str, str]
     modal: slice
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
@@ -142,7 +142,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
         spinning=frozenset(str(model.body(i).name) for i, root in enumerate(model.body_weldid) if int(root) in turning),
         body_rows=rows_of_bodies,
         body_masses=_body_masses(model, data),
-        body_places={name: data.xipos[model.body(name).id].copy() for name in rows_of_bodies},
+        body_centres={name: data.xipos[model.body(name).id].copy() for name in rows_of_bodies},
         carried_by={
             str(model.body(i).name): str(model.body(int(root)).name) for i, root in enumerate(model.body_weldid)
         },
@@ -204,7 +204,7 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
     )
 
 
-def _bends(rows: Rows, jacobian: Vector) -> tuple[Bend, ...]:
+def _bends(rows: Rows, jacobian: Vector) -> tuple[LinearSegment, ...]:
     """Where the laws over displacement leave their tangents."""
     found, e, t = [], rows.layout, rows.layout.tables
     for index, (kind, element, axis, at) in enumerate(zip(t.kinds, t.elements, t.axes, t.at, strict=True)):
@@ -221,7 +221,7 @@ def _bends(rows: Rows, jacobian: Vector) -> tuple[Bend, ...]:
         plate = list(e.tyres).index(element) if kind == 0 and axis == 2 and element in e.tyres else -1
         steeper = float(np.max(curve.slopes) - curve.slope(at))
         low, high = edges[piece] - at, edges[piece + 1] - at
-        found.append(Bend(name=name, row=row, plate=plate, low=low, high=high, steeper=steeper))
+        found.append(LinearSegment(name=name, row=row, plate=plate, low=low, high=high, steeper=steeper))
     return tuple(found)
 
 

@@ -15,7 +15,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.parts import Link, Network, masses_of, spring_damper
+from vehicle.engines.linear.network import Link, Network, masses_of, spring_damper
 from vehicle.engines.linear.system import LinearSystem, Row
 from vehicle.engines.lumped.history import Array, History
 from vehicle.model.parameters.axle import Axle

@@ -23,9 +23,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.dynamic_stiffness import SteadyMotion, steady_motion
 from vehicle.engines.linear.load_rows import LoadRows
-from vehicle.engines.linear.matrices import CarMatrices
 from vehicle.engines.linear.motion_names import RIGID_WORDS, mode_words
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.layout import numeric

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from vehicle.engines.reduced.lane_rows import PAST, TILE, Reading
-from vehicle.engines.reduced.lane_step import part, section
-from vehicle.engines.reduced.vector import alike, larger, load, smaller, spread, store
+from vehicle.engines.reduced.batch_layout import PAST, TILE, Reading
+from vehicle.engines.reduced.batch_step import part, section
+from vehicle.engines.reduced.simd_vector import alike, larger, load, smaller, spread, store
 from vehicle.engines.simulation.acceleration import AHEAD
 
 TOGETHER = 4
@@ -163,7 +163,7 @@ def watch(
         x, states, heights, done, zero, size, y, width: as of `fill`.
         look: first sample that is looked at.
         first: first level in a sample of the outputs, which end with the next multiple of a tile.
-        peaks: as of `vehicle.engines.reduced.lanes.march`; changed in place.
+        peaks: as of `vehicle.engines.reduced.batch_stepping.march`; changed in place.
     """
     weights = (states + heights.shape[1] // 2) * TILE
     bodies, levels = reading.turns.shape[0] // weights, reading.levels.shape[0] // weights * TILE

@@ -1,4 +1,4 @@
-"""The march of eight cars at once: `vehicle.engines.reduced.march` for every lane, and its channels, block by block.
+"""Compiled time stepping of eight cars at once, and their channels, block by block; see `pole_stepping` for one car.
 
 This module imports numba at its head: it is loaded only by a run that compiles.
 """
@@ -9,10 +9,10 @@ from functools import cache
 from typing import Any
 
 from vehicle.compiler import numba_module, stamp
-from vehicle.engines.reduced.lane_reading import channels, fill, watch
-from vehicle.engines.reduced.lane_rows import ELEMENT, INNER, PAST, TILE, Reading, Rows
-from vehicle.engines.reduced.lane_step import EXACT, advance, section
-from vehicle.engines.reduced.vector import alike, load, loads, store
+from vehicle.engines.reduced.batch_layout import ELEMENT, INNER, PAST, TILE, Reading, Rows
+from vehicle.engines.reduced.batch_outputs import channels, fill, watch
+from vehicle.engines.reduced.batch_step import EXACT, advance, section
+from vehicle.engines.reduced.simd_vector import alike, load, loads, store
 from vehicle.engines.simulation.acceleration import AHEAD
 
 numba = numba_module()
@@ -111,7 +111,7 @@ def march(
 
 
 @cache
-def compiled_lanes() -> Any:
+def compiled_batch_stepping() -> Any:
     """The compiled march."""
     mark = stamp()
 

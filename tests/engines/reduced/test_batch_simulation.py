@@ -10,10 +10,10 @@ import pytest
 
 from tests.engines.linear.plain_matrices import plain_matrices
 from tests.engines.lumped.stick_slip import ExactStickSlip
-from tests.engines.reduced.test_quarter_car import damper, matrices
-from vehicle.engines.reduced.many import COARSE_STEP, simulate_many
+from tests.engines.reduced.test_reduced_quarter_car import damper, matrices
+from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.pole_model import pole_model
-from vehicle.engines.reduced.run import LONGEST_STEP, simulate_reduced
+from vehicle.engines.reduced.reduced_run import LONGEST_STEP, simulate_reduced
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
@@ -54,7 +54,7 @@ def with_idle_poles(model, pairs, reals):
 
 
 def run_many(models, laws, signal, tyre_load, channels=CHANNELS, **more):
-    return simulate_many(
+    return simulate_batch(
         models, signal, dampers=laws, record_rate=1000.0, tyre_load=tyre_load, channels=channels, **more
     )
 
@@ -88,7 +88,7 @@ def test_a_car_moves_as_it_does_alone(company, together, name, monkeypatch):
     models, laws, loads = company
     k = list(LAWS).index(name)
     # One car alone is of first order in the step where its law is not one of constants: an eighth of its step.
-    monkeypatch.setattr("vehicle.engines.reduced.run.LONGEST_STEP", LONGEST_STEP / 8.0)
+    monkeypatch.setattr("vehicle.engines.reduced.reduced_run.LONGEST_STEP", LONGEST_STEP / 8.0)
     alone = simulate_reduced(
         models[k], ROAD, dampers=laws[k], record_rate=1000.0, tyre_load=loads[k], channels=CHANNELS
     )

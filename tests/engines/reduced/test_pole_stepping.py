@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from vehicle.engines.reduced.march import damper_force, solve_damper, solve_dampers
+from vehicle.engines.reduced.pole_stepping import damper_force, solve_damper, solve_dampers
 from vehicle.model.laws.damper import RECORD
 
 SMOOTHING = 1e3

@@ -7,8 +7,8 @@ import pytest
 import sympy
 
 from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
-from vehicle.engines.linear.parts import Network, masses_of, spring_damper
-from vehicle.engines.lumped.half_car_rider import half_car_rider, places, static_tyre_load
+from vehicle.engines.linear.network import Network, masses_of, spring_damper
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider, places, static_tyre_load
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
 

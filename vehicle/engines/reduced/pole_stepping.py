@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from vehicle.compiler import OPTIONS, jitable, numba_module, stamp
-from vehicle.engines.reduced.control import Control, control, keep
-from vehicle.engines.reduced.slope import Slope, slopes
+from vehicle.engines.reduced.damper_control import Control, control, keep
+from vehicle.engines.reduced.slope_force import Slope, slopes
 from vehicle.engines.simulation.sampling import copy_row
 from vehicle.errors import MissingPartError
 from vehicle.model.laws.damper import friction_limit
@@ -250,7 +250,7 @@ def has_compiler() -> bool:
 
 
 @cache
-def compiled_march(count: int) -> March:
+def compiled_stepping(count: int) -> March:
     """The compiled march of an even number of dampers, which the compiler knows: loops over two are none.
 
     Raises:

@@ -10,12 +10,12 @@ import scipy
 
 from scenarios.quarter_car.in_mujoco import friction_of_the_rows
 from tests.engines.linear.plain_matrices import plain_matrices
-from vehicle.engines.lumped.drive import Sampled
-from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.input_signals import Sampled
+from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.engines.lumped.stiff_solution import stiff_solution
-from vehicle.engines.reduced.many import simulate_many
+from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.reduced.pole_model import pole_model
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.acceleration import acceleration
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.stribeck import Stribeck
@@ -213,7 +213,7 @@ def test_a_short_lift_off_is_seen_at_any_recording_rate(rate):
     model, signal, load = pole_model(matrices()), Signal(time=time, displacement={"fr": hole}), {"fr": 1e3, "fl": 1e6}
     channels = ["tyre_fr_force_z"]
     run = simulate_reduced(model, signal, dampers=[damper()] * 2, record_rate=rate, tyre_load=load, channels=channels)
-    many = simulate_many(
+    many = simulate_batch(
         [model], signal, dampers=[[damper()] * 2], record_rate=rate, tyre_load=[load], channels=channels
     )
     assert min(run["tyre_fr_force_z"]) < 0.0

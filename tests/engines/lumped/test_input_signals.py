@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.engines.lumped.drive import AtRest, Sampled, Sine
+from vehicle.engines.lumped.input_signals import AtRest, Sampled, Sine
 
 TIME = np.linspace(0.0, 1.0, 201)
 

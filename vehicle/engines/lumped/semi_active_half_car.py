@@ -18,7 +18,7 @@ import numpy as np
 
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.lumped.bump_response import bump_passage
-from vehicle.engines.lumped.half_car_rider import ENDS, half_car_rider, static_tyre_load
+from vehicle.engines.lumped.half_car_rider_model import ENDS, half_car_rider, static_tyre_load
 from vehicle.engines.lumped.history import Array, History
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.semi_active import PRESENT, act, at_rest, in_steps, pack

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.engines.linear.participation import REST, participation
+from vehicle.engines.linear.mode_participation import REST, participation
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
 

@@ -2,7 +2,8 @@
 
 Linear parts are exact at any step, and a stuck damper is of third order in it, so the step only places the instants of
 sticking and slipping. At `COARSE_STEP` comfort values agree with those of a single run within 0.15 % and slip shares
-within 0.1 points; instants of the first slip and peaks of damper tops need `vehicle.engines.reduced.run.LONGEST_STEP`.
+within 0.1 points; instants of the first slip and peaks of damper tops need
+`vehicle.engines.reduced.reduced_run.LONGEST_STEP`.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.reduced.lane_factors import car_factors
-from vehicle.engines.reduced.lane_group import Group
-from vehicle.engines.reduced.lane_rows import LANES
-from vehicle.engines.reduced.march import MISSING, has_compiler
+from vehicle.engines.reduced.batch_factors import car_factors
+from vehicle.engines.reduced.batch_group import Group
+from vehicle.engines.reduced.batch_layout import LANES
 from vehicle.engines.reduced.pole_model import PoleModel
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.pole_stepping import MISSING, has_compiler
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.model.parameters.elements import Damper
@@ -33,7 +34,7 @@ COARSE_STEP = 5e-4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ManyRuns:
+class BatchRuns:
     """Time histories of many cars on one signal.
 
     Attributes:
@@ -67,7 +68,7 @@ class ManyRuns:
         )
 
 
-def simulate_many(
+def simulate_batch(
     models: Sequence[PoleModel],
     signal: Signal,
     *,
@@ -76,7 +77,7 @@ def simulate_many(
     tyre_load: Sequence[Mapping[str, float]],
     channels: Sequence[str],
     step: float = COARSE_STEP,
-) -> ManyRuns:
+) -> BatchRuns:
     """Run many cars of one topology on the same plates with the reduced engine.
 
     The row of a car is the same, bit for bit, whatever the others are and however many. A car that the lanes do
@@ -101,7 +102,7 @@ def simulate_many(
     if not has_compiler():
         raise MissingPartError(MISSING)
     if not models:
-        raise ConfigurationError("simulate_many: no cars were given")
+        raise ConfigurationError("simulate_batch: no cars were given")
     interval = 1.0 / record_rate
     timestep = interval / int(np.ceil(interval / step - 1e-9))
     samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
@@ -140,7 +141,7 @@ def simulate_many(
                 within_validity=validity.held,
                 energies=None,
             )
-    return ManyRuns(
+    return BatchRuns(
         time=uniform_time(samples=samples, timestep=interval),
         channels=dict(zip(channels, table, strict=True)),
         units=channel_units(tuple(channels)),

@@ -18,7 +18,7 @@ ITERATIONS = 120
 """More than enough: of two iterations one halves the bracket or the step, and 52 halvings exhaust a double."""
 
 
-def marched_solution(
+def fixed_step_solution(
     model: FirstOrder, timestep: float, road: npt.ArrayLike, *, every: int = 1, initial: npt.ArrayLike | None = None
 ) -> History:
     """March a stack of models with one sliding pair over a road given at every step.
@@ -54,9 +54,9 @@ def marched_solution(
     """
     shape, size = model.models, model.state.shape[-1]
     if len(model.system.slides) != 1:
-        raise ConfigurationError(f"marched_solution: needed is one sliding pair, found {len(model.system.slides)}")
+        raise ConfigurationError(f"fixed_step_solution: needed is one sliding pair, found {len(model.system.slides)}")
     if model.input.shape[-1] != 1:
-        raise ConfigurationError(f"marched_solution: needed is one road, found {model.input.shape[-1]} inputs")
+        raise ConfigurationError(f"fixed_step_solution: needed is one road, found {model.input.shape[-1]} inputs")
     if not (math.isfinite(timestep) and timestep > 0.0):
         raise ConfigurationError(f"timestep: found {timestep!r} s, must be finite and greater than 0.0")
     if every < 1:
@@ -100,7 +100,7 @@ def marched_solution(
         if step % every == 0:
             states[step // every], forces[step // every] = state, _at_once(pair, speed)
     if not np.isfinite(states).all():
-        raise SimulationError("marched_solution: a state is not finite; take a smaller step or check the parameters")
+        raise SimulationError("fixed_step_solution: a state is not finite; take a smaller step or check the parameters")
     at_kept = np.minimum(np.arange(len(kept)) * every, len(rates) - 1)
     return History(
         model=model,
@@ -181,4 +181,4 @@ def _root(
         better = np.where(settled, velocity, np.where(trusted, newton, 0.5 * (low + high)))
         last = np.abs(better - velocity)
         velocity = better
-    raise SimulationError("marched_solution: the friction law has no single force for a step; take a smaller step")
+    raise SimulationError("fixed_step_solution: the friction law has no single force for a step; take a smaller step")

@@ -93,7 +93,7 @@ class Reading(NamedTuple):
 
 
 def aligned(rows: int) -> npt.NDArray[Any]:
-    """A table (rows, LANES) of zeros as `load` and `store` of `vehicle.engines.reduced.vector` take it."""
+    """A table (rows, LANES) of zeros as `load` and `store` of `vehicle.engines.reduced.simd_vector` take it."""
     size = rows * LANES * np.dtype(ELEMENT).itemsize
     room = np.zeros(size + ALIGNMENT, dtype=np.uint8)
     start = -room.ctypes.data % ALIGNMENT

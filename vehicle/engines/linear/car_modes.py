@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import first_order
-from vehicle.engines.linear.matrices import CarMatrices
 from vehicle.engines.linear.modal_scale import modal_a
 from vehicle.engines.linear.motion_names import description, motion_shares
 from vehicle.engines.linear.natural_modes import grows, natural_modes

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.engines.lumped.drive import Sampled
-from vehicle.engines.lumped.marched_solution import marched_solution
-from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
+from vehicle.engines.lumped.fixed_step_solution import fixed_step_solution
+from vehicle.engines.lumped.input_signals import Sampled
+from vehicle.engines.lumped.quarter_car_network import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.laws.coulomb import Coulomb
@@ -38,7 +38,7 @@ def test_the_march_converges_to_the_stiff_solution_with_second_order(parts, size
     fine = np.linspace(0.0, END, 6001)
     road = bumpy_road(fine, size)
     reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
-    histories = [marched_solution(model, fine[n], road[::n], every=8 // n) for n in (8, 4, 2)]  # 1, 0.5, 0.25 ms
+    histories = [fixed_step_solution(model, fine[n], road[::n], every=8 // n) for n in (8, 4, 2)]  # 1, 0.5, 0.25 ms
     errors = {name: relative_errors(histories, reference, name) for name in ("body", "wheel", "damper")}
     for name, (rough, _, finest) in errors.items():
         # The sample at which a stick begins or ends is off by the step times the jump of the friction. The light damper
@@ -62,7 +62,7 @@ def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
     fine = np.linspace(0.0, END, 6001)
     road = bumpy_road(fine, 0.02)
     reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
-    histories = [marched_solution(model, fine[n], road[::n], every=8 // n) for n in (4, 2, 1)]
+    histories = [fixed_step_solution(model, fine[n], road[::n], every=8 // n) for n in (4, 2, 1)]
     rough, _, finest = relative_errors(histories, reference, name)
     assert np.log2(rough / finest) / 2 == pytest.approx(2.0, abs=0.2)
 
@@ -70,9 +70,9 @@ def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
 def test_without_friction_the_march_is_exact_for_straight_roads():
     model = quarter_car(CAR, damper="friction", engine="elastomer", vary={"friction.limit": 0.0}).first_order()
     coarse = 0.02 * np.array([0.0, 1.0, -0.5, 0.25, 0.25, 0.0])
-    rough = marched_solution(model, 0.1, coarse)
+    rough = fixed_step_solution(model, 0.1, coarse)
     fine = np.interp(np.arange(0, 0.5 + 1e-9, 1e-3), np.arange(0, 0.6, 0.1)[:6], coarse)
-    smooth = marched_solution(model, 1e-3, fine, every=100)
+    smooth = fixed_step_solution(model, 1e-3, fine, every=100)
     # Both are exact; rounding of matrix exponentials with norms of 1e5 costs half of the digits at most.
     assert rough.state == pytest.approx(smooth.state, rel=1e-7, abs=1e-9)
 
@@ -80,7 +80,7 @@ def test_without_friction_the_march_is_exact_for_straight_roads():
 def test_laws_alone_make_a_stack_too():
     model = quarter_car(CAR, damper="friction", vary={"friction.limit": np.array([0.0, 75.0, 150.0])}).first_order()
     assert model.models == (3,)
-    history = marched_solution(model, 1e-3, bumpy_road(np.linspace(0.0, END, 751), 0.005))
+    history = fixed_step_solution(model, 1e-3, bumpy_road(np.linspace(0.0, END, 751), 0.005))
     assert history.sliding_force.shape == (751, 3, 1)
     assert np.abs(history.sliding_force[:, 0]).max() == 0.0
 
@@ -92,20 +92,20 @@ def test_a_stack_marches_as_the_single_cars():
     stack = quarter_car(
         CAR, damper="friction", vary={"mount.stiffness": mounts, "friction.limit": limits}
     ).first_order()
-    together = marched_solution(stack, fine[1], road)
-    both_roads = marched_solution(stack, fine[1], np.stack([road, 2 * road], axis=1))
+    together = fixed_step_solution(stack, fine[1], road)
+    both_roads = fixed_step_solution(stack, fine[1], np.stack([road, 2 * road], axis=1))
     assert together.acceleration("damper").shape == (751, 2)
     for i in range(2):
         alone = quarter_car(
             CAR, damper="friction", vary={"mount.stiffness": mounts[i], "friction.limit": limits[i]}
         ).first_order()
-        single = marched_solution(alone, fine[1], road)
+        single = fixed_step_solution(alone, fine[1], road)
         for output in ("body", "wheel", "damper"):
             # The same operations in the same order, but for the summation inside the matrix products.
             assert together.acceleration(output)[:, i] == pytest.approx(single.acceleration(output), rel=1e-6, abs=1e-8)
         assert together.sliding_velocity()[:, i] == pytest.approx(single.sliding_velocity(), abs=1e-10)
         assert both_roads.velocity("body")[:, i] == pytest.approx(
-            marched_solution(alone, fine[1], (1 + i) * road).velocity("body"), abs=1e-10
+            fixed_step_solution(alone, fine[1], (1 + i) * road).velocity("body"), abs=1e-10
         )
 
 
@@ -142,15 +142,15 @@ def test_refusals():
     stack = single_mass(mass=np.array([1.0, 2.0]), stiffness=1.0, friction=law).first_order()
     road = np.zeros(10)
     with pytest.raises(ConfigurationError, match=r"^timestep: found 0\.0 s, must be finite and greater than 0\.0$"):
-        marched_solution(single, 0.0, road)
+        fixed_step_solution(single, 0.0, road)
     with pytest.raises(ConfigurationError, match=r"^every: found 0, must be at least 1$"):
-        marched_solution(single, 1e-3, road, every=0)
+        fixed_step_solution(single, 1e-3, road, every=0)
     with pytest.raises(ConfigurationError, match=r"^road: found shape \(10, 3\)"):
-        marched_solution(stack, 1e-3, np.zeros((10, 3)))
+        fixed_step_solution(stack, 1e-3, np.zeros((10, 3)))
     with pytest.raises(ConfigurationError, match=r"^road: all displacements must be finite$"):
-        marched_solution(single, 1e-3, road + np.nan)
-    with pytest.raises(ConfigurationError, match=r"^marched_solution: needed is one sliding pair, found 0$"):
-        marched_solution(quarter_car(CAR, damper="slip").first_order(), 1e-3, road)
+        fixed_step_solution(single, 1e-3, road + np.nan)
+    with pytest.raises(ConfigurationError, match=r"^fixed_step_solution: needed is one sliding pair, found 0$"):
+        fixed_step_solution(quarter_car(CAR, damper="slip").first_order(), 1e-3, road)
     with pytest.raises(ConfigurationError, match=r"^stiff_solution: found a stack of \(2,\) models"):
         stiff_solution(stack, [0.0, 1.0])
     with pytest.raises(ConfigurationError, match=r"^time: needed are at least two finite, strictly increasing"):
@@ -172,7 +172,7 @@ def test_the_friction_of_every_step_is_the_law_at_its_end_however_rough_the_road
         CAR, damper="friction", vary={"friction.limit": limits, "friction.steepness": 1e6}
     ).first_order()
     road = np.cumsum(np.random.default_rng(3).normal(scale=2e-3, size=400))
-    history = marched_solution(model, 1e-3, road)
+    history = fixed_step_solution(model, 1e-3, road)
     law = Coulomb(friction_limit=limits, smoothing=1e6)
     velocity, found = history.sliding_velocity()[1:], history.sliding_force[1:, :, 0]
     slides = np.abs(velocity) > 0.05
@@ -193,8 +193,8 @@ def test_the_viscous_law_is_centred():
     bent = quarter_car(CAR, damper="friction", degressive=True, vary={**no_friction, **knee}).first_order()
     errors = []
     for stride in (2, 1):
-        exact = marched_solution(plain, fine[stride], road[::stride]).acceleration("body")
-        error = marched_solution(bent, fine[stride], road[::stride]).acceleration("body") - exact
+        exact = fixed_step_solution(plain, fine[stride], road[::stride]).acceleration("body")
+        error = fixed_step_solution(bent, fine[stride], road[::stride]).acceleration("body") - exact
         errors.append(np.sqrt(np.mean(error**2) / np.mean(exact**2)))
     # Smooth motion: the order is 2 and shows clearly; taken at the end of the step it would be 1.
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
