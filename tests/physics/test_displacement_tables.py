@@ -120,7 +120,7 @@ def test_the_car_stands_on_its_tables(bent_car, car):
     assert static.residual < 1e-9
     # Statics do not know of stiffness, but for the share of the ground that is left to hold it while the car settles.
     assert list(static.tyre_load.values()) == pytest.approx(list(car.model.static.tyre_load.values()), rel=1e-3)
-    bend = {one.name: one for one in bent_car.matrices.bends}
+    bend = {segment.name: segment for segment in bent_car.matrices.segments}
     load = static.tyre_load["fr"]
     # The tyre stands at -load / K on the table, so that it leaves the ground after as much.
     assert bend["bushing/tyre_fr along z"].high == pytest.approx(load / TYRE, rel=1e-9)

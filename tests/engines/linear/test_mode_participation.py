@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.engines.linear.mode_participation import REST, participation
+from vehicle.engines.linear.mode_participation import REMAINDER, participation
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
 
@@ -36,7 +36,7 @@ def test_forces_of_the_attachments_are_what_drives_a_mode(changes):
     for stuck in (True, False):
         found = of(car, "seat_rail_acc_z", stuck=stuck)
         largest = np.abs(found.modal_forces).max(axis=(1, 2))
-        assert found.attachments[-1] == REST
+        assert found.attachments[-1] == REMAINDER
         assert (np.abs(found.modal_forces[:, -1]).max(axis=1) / largest).max() < 1e-6
         assert found.attachment_shares.sum(axis=1) == pytest.approx(np.ones((len(largest), 6)), abs=1e-9)
     assert found.modal_forces.shape[0] == (4 if changes else 9)
@@ -53,8 +53,8 @@ def test_at_26_hz_the_torsion_makes_the_seat_rail_loud(car):
 
 
 def test_what_is_no_place_of_a_flexible_body_is_refused(car):
-    with pytest.raises(ConfigurationError, match=r"^place engine_acc_z: no acceleration on the body; there are "):
+    with pytest.raises(ConfigurationError, match=r"^channel engine_acc_z: must be an acceleration of the body: "):
         of(car, "engine_acc_z")
     rigid = Car.load(overrides=["body.flexible=false"])
-    with pytest.raises(ConfigurationError, match=r"its body is rigid; modes that take part need body\.flexible = true"):
+    with pytest.raises(ConfigurationError, match=r"the body is rigid; set body\.flexible = true"):
         of(rigid, "seat_rail_acc_z")

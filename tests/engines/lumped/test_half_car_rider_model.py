@@ -113,7 +113,7 @@ def test_printed_diagonals_agree_but_for_the_pitch_damping():
 
 
 def test_unknown_coordinate_in_an_element_is_refused():
-    with pytest.raises(ConfigurationError, match="linear form: found 'wheell', allowed are wheel, road"):
+    with pytest.raises(ConfigurationError, match="linear form: found 'wheell', must be one of wheel, road"):
         Network(
             coordinates=("wheel",), masses=masses_of({"wheel": 1.0}), links=(spring_damper({"wheell": 1.0}, 1.0, 0.0),)
         ).system()

@@ -142,7 +142,7 @@ def _numbers(options: argparse.Namespace, found: Participation, wheel: str) -> d
     total, phase = found.total[0], np.degrees(np.angle(found.contributions[:, 0] / found.total[0]))
     frequencies = [None] * 6 + [float(one) for one in found.mode_frequency]
     return {
-        "place": found.place,
+        "place": found.channel,
         "frequency_hz": float(found.frequency[0]),
         "wheel": wheel,
         "damper": options.damper,

@@ -1,7 +1,7 @@
 """Mass, damping and stiffness matrices of the assembled car in its design position, read from its MuJoCo model.
 
-u are the velocity coordinates of MuJoCo as small displacements. K holds the geometric stiffness of gravity and
-preloads: it is the derivative of the very forces that the time simulation applies.
+u are the velocity coordinates of MuJoCo as small displacements. K is the derivative of the forces that the time
+simulation applies, so it contains the geometric stiffness of gravity and preloads.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ DIFFERENCE_STEP = 1e-6
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LinearSegment:
-    """A law over displacement that is linear between two displacements from the design position.
+    """Linear segment of a law over displacement in which the car is at rest.
 
     Attributes:
-        name: of its element.
-        row: its displacement over the velocity coordinates; (n,).
-        plate: input that it is on, -1 where there is none.
-        low, high: ends of the piece of the curve on which the car stands [m].
-        steeper: slope of the steepest piece less that of this one [N/m].
+        name: name of the element.
+        row: displacement of the element over the velocity coordinates; (n,).
+        plate: index of the input under a tyre; -1 for other elements.
+        low, high: ends of the segment, as displacements from the design position [m].
+        stiffness_increase: slope of the steepest segment of the law less the slope of this segment [N/m].
     """
 
     name: str
@@ -46,31 +46,31 @@ class LinearSegment:
     plate: int
     low: float
     high: float
-    steeper: float = 0.0
+    stiffness_increase: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarMatrices:
-    """The linear car: a system with the plates as inputs and the dampers as sliding pairs, and what its parts are.
+    """Linear car: a system with the plates as inputs and the dampers as sliding pairs, and data of its parts.
 
     Attributes:
-        system: matrices of `vehicle.engines.linear.system`; C holds the viscous part of the dampers, inputs are the
-            wheels, outputs turn u'' into the acceleration channels.
+        system: matrices of `vehicle.engines.linear.system`; C contains the viscous part of the dampers, inputs are the
+            wheels, outputs map u'' to the acceleration channels.
         dampers: velocity coordinates of the damper joints; (d,).
         viscous: damping constants of the dampers [N s/m], softest settings of controlled ones; (d,).
-        sensors: rows that turn u' into the velocities along controlled dampers, on the wheel and on the body; (2 k, n).
-        bends: where the linear car ends.
+        sensors: rows that map u' to the velocities along controlled dampers, on the wheel and on the body; (2 k, n).
+        segments: linear segments of the laws over displacement: the valid range of the linear car.
         tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (w,).
-        body_rows: rows that turn u' into velocity of the centre of gravity and angular velocity of each body;
+        body_rows: rows that map u' to velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
         body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
         body_centres: centre of gravity of each body in the design position [m]; (3,).
-        tyre_rows: rows that turn u into the height of the tyres over their plates; (w, n).
-        one_sided: wheels whose tyres do not pull.
-        spinning: bodies that turn with a rolling wheel: their angle is of no importance, and not known.
-        carried_by: body that each body is fixed to, itself where it can move on its parent.
-        slope: forces on the coordinates per velocity of a plate, by the static load of a rolling tyre on the slope of
-            the road, a part of the inputs of `system`; (n, w), (n, 0) for tyres that stand.
+        tyre_rows: rows that map u to the height of the tyres over their plates; (w, n).
+        one_sided: wheels whose tyres cannot pull.
+        spinning: bodies that rotate with a rolling wheel; their angle is not a state.
+        carried_by: body to which each body is fixed; the body itself if it can move on its parent.
+        slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
+            the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
         modal: velocity coordinates of the flexible modes.
     """
 
@@ -78,7 +78,7 @@ class CarMatrices:
     dampers: npt.NDArray[np.intp]
     viscous: Vector
     sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))
-    bends: tuple[LinearSegment, ...] = ()
+    segments: tuple[LinearSegment, ...] = ()
     one_sided: frozenset[str] = frozenset()
     tyre_stiffness: Vector
     tyre_damping: Vector
@@ -97,9 +97,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
 
     Args:
         model: compiled and trimmed car (not yet prepared for stepping).
-        static: its preloads.
-        compiled: whether its laws are compiled for that. Compiling takes 15 s where nothing is kept from before; of one
-            car alone the Python form takes 0.3 s, with the same result but for round-off, 1e-11.
+        static: preloads of the car.
+        compiled: compile the laws. Compiling takes 15 s without a cache; the Python form takes 0.3 s for one car and
+            differs by round-off, 1e-11.
 
     Returns:
         The matrices.
@@ -116,7 +116,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
     dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
     rows_of_bodies = _body_rows(model, data)
     laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
-    turning = set(model.dof_bodyid[e.rolling.spins].tolist())
+    rolling_bodies = set(model.dof_bodyid[e.rolling.spins].tolist())
     return CarMatrices(
         system=LinearSystem(
             coordinates=(),
@@ -139,7 +139,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
         one_sided=frozenset(
             wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in e.bushings.one_sided
         ),
-        spinning=frozenset(str(model.body(i).name) for i, root in enumerate(model.body_weldid) if int(root) in turning),
+        spinning=frozenset(
+            str(model.body(i).name) for i, root in enumerate(model.body_weldid) if int(root) in rolling_bodies
+        ),
         body_rows=rows_of_bodies,
         body_masses=_body_masses(model, data),
         body_centres={name: data.xipos[model.body(name).id].copy() for name in rows_of_bodies},
@@ -151,20 +153,20 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
 
 
 class LawMatrices(NamedTuple):
-    """What the laws of a car make of its linear form, but the stiffness matrix: fields of both classes."""
+    """Fields of `LinearSystem` and of `CarMatrices` that follow from the laws, except the stiffness matrix."""
 
     system: dict[str, Any]
     car: dict[str, Any]
 
 
 def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: Vector) -> LawMatrices:
-    """Fields of `LinearSystem` and of `CarMatrices` that depend on the numbers of the laws.
+    """Return the fields of `LinearSystem` and of `CarMatrices` that depend on the parameters of the laws.
 
     Args:
-        rows: of the car at rest.
-        jacobian: of its rows; (rows, n).
+        rows: rows of the car at rest.
+        jacobian: Jacobian of the rows; (rows, n).
         joint_damping: damping inside joints; (n,).
-        preload: static forces of the rows; a rolling tyre takes its load on the slope of the road.
+        preload: static forces of the rows; rolling tyres need their static load for the slope of the road.
     """
     e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
     viscous = e.dampers.laws["viscous_damping"]
@@ -177,7 +179,7 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
     present = bushings.branch_stiffness > 0.0
     vertical = jacobian[bushings.rows[e.tyres][:, 2]]
     tyres = {"stiffness": bushings.stiffness[e.tyres, 2], "damping": bushings.damping[e.tyres, 2]}
-    inputs = {f"input_{kind}": vertical.T * numbers for kind, numbers in tyres.items()}
+    inputs = {f"input_{term}": vertical.T * values for term, values in tyres.items()}
     branch_rows = jacobian[bushings.rows[present]]
     rolling = None
     if len(e.rolling.tyres):
@@ -196,73 +198,78 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
         },
         car={
             "viscous": viscous,
-            "bends": _bends(rows, jacobian),
+            "segments": _segments(rows, jacobian),
             "tyre_rows": vertical,
-            **{f"tyre_{kind}": numbers for kind, numbers in tyres.items()},
+            **{f"tyre_{term}": values for term, values in tyres.items()},
             "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
         },
     )
 
 
-def _bends(rows: Rows, jacobian: Vector) -> tuple[LinearSegment, ...]:
-    """Where the laws over displacement leave their tangents."""
-    found, e, t = [], rows.layout, rows.layout.tables
-    for index, (kind, element, axis, at) in enumerate(zip(t.kinds, t.elements, t.axes, t.at, strict=True)):
-        if kind == 0:
+def _segments(rows: Rows, jacobian: Vector) -> tuple[LinearSegment, ...]:
+    """Return the linear segments of the laws over displacement in which the car is at rest."""
+    segments_of_laws, e, tables = [], rows.layout, rows.layout.tables
+    for index, (law_type, element, axis, position) in enumerate(
+        zip(tables.kinds, tables.elements, tables.axes, tables.at, strict=True)
+    ):
+        if law_type == 0:
             row, name = jacobian[e.bushings.rows[element, axis]], f"{rows.names[element]} along {AXES[axis]}"
         else:
-            row = jacobian[e.springs.rows[element]] if kind == 1 else np.eye(rows.model.nv)[e.dampers.dofs[element]]
-            name = ("", "spring", "stop of damper")[kind] + f" {element + 1}"
-        curve = curve_of(t, index)
-        # A point on the line through its neighbours is no corner.
+            row = jacobian[e.springs.rows[element]] if law_type == 1 else np.eye(rows.model.nv)[e.dampers.dofs[element]]
+            name = ("", "spring", "stop of damper")[law_type] + f" {element + 1}"
+        curve = curve_of(tables, index)
+        # A point on the line through its neighbours is not a breakpoint.
         corners = curve.knots[np.abs(np.diff(curve.slopes)) > 1e-9 * np.max(curve.slopes)]
         edges = np.concatenate([[-np.inf], corners, [np.inf]])
-        piece = int(np.searchsorted(edges[1:-1], at))
-        plate = list(e.tyres).index(element) if kind == 0 and axis == 2 and element in e.tyres else -1
-        steeper = float(np.max(curve.slopes) - curve.slope(at))
-        low, high = edges[piece] - at, edges[piece + 1] - at
-        found.append(LinearSegment(name=name, row=row, plate=plate, low=low, high=high, steeper=steeper))
-    return tuple(found)
+        index_of_segment = int(np.searchsorted(edges[1:-1], position))
+        plate = list(e.tyres).index(element) if law_type == 0 and axis == 2 and element in e.tyres else -1
+        stiffness_increase = float(np.max(curve.slopes) - curve.slope(position))
+        low, high = edges[index_of_segment] - position, edges[index_of_segment + 1] - position
+        segments_of_laws.append(
+            LinearSegment(name=name, row=row, plate=plate, low=low, high=high, stiffness_increase=stiffness_increase)
+        )
+    return tuple(segments_of_laws)
 
 
 def _tangent_stiffness(rows: Rows, compiled: bool) -> Vector:
-    """K = -dF/du of all static forces, by central differences."""
+    """Return K = -dF/du of all static forces, by central differences."""
     return -differences(rows, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied, compiled=compiled)
 
 
 def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector], *, compiled: bool = True) -> Vector:
-    """Central differences of what is read from a state, over the velocity coordinates in the design position.
+    """Return central differences of a function of the state over the velocity coordinates in the design position.
 
     Args:
-        rows: of the car at rest.
-        read: an array of a state whose rows are written, (...); of the step everything is there but the solution.
-        compiled: as of `car_matrices`.
+        rows: rows of the car at rest.
+        read: function of a state with written rows that returns an array (...); only the solution of the step is
+            missing in the state.
+        compiled: see `car_matrices`.
 
     Returns:
-        (..., n).
+        Derivatives, (..., n).
     """
     model = rows.model
     data = mujoco.MjData(model)
     rewrite = _rewriter(rows, data) if compiled else rows
-    start, way, found = data.qpos.copy(), np.zeros(model.nv), []
+    start, direction, columns = data.qpos.copy(), np.zeros(model.nv), []
     for column in range(model.nv):
         ends = []
         for sign in (1.0, -1.0):
             data.qpos[:] = start
-            way[column] = sign
-            mujoco.mj_integratePos(model, data.qpos, way, DIFFERENCE_STEP)
-            # Everything of a step but the solution of the rows, which would cost as much again.
+            direction[column] = sign
+            mujoco.mj_integratePos(model, data.qpos, direction, DIFFERENCE_STEP)
+            # Run a step without the solution of the rows, which would double the cost.
             mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
             rewrite(model, data)
             ends.append(read(data))
-        way[column] = 0.0
-        found.append((ends[0] - ends[1]) / (2.0 * DIFFERENCE_STEP))
-    return np.stack(found, axis=-1)
+        direction[column] = 0.0
+        columns.append((ends[0] - ends[1]) / (2.0 * DIFFERENCE_STEP))
+    return np.stack(columns, axis=-1)
 
 
 def _rewriter(rows: Rows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
-    """What writes the element forces into this state: the compiled form where it can be had."""
+    """Return the function that writes the element forces into this state, compiled where possible."""
     compiled = compiled_rows(rows)
     if isinstance(compiled, str):
         return rows
@@ -271,49 +278,49 @@ def _rewriter(rows: Rows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujo
 
 
 def _sensors(rows: Rows, data: mujoco.MjData) -> Vector:
-    """Rows of the velocities that the sensors of controlled dampers measure."""
-    model, own = rows.model, rows.layout.controls
-    found = np.zeros((2 * len(own.dampers), model.nv))
-    for row, (site, shape) in enumerate(zip(own.sites.ravel(), own.shapes, strict=True)):
+    """Return the rows of the velocities that the sensors of controlled dampers measure."""
+    model, controls = rows.model, rows.layout.controls
+    sensor_rows = np.zeros((2 * len(controls.dampers), model.nv))
+    for row, (site, shape) in enumerate(zip(controls.sites.ravel(), controls.shapes, strict=True)):
         jacobian = np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, jacobian, None, int(site))
         jacobian[:, rows.layout.modes.velocities] += shape.reshape(3, -1)
-        damper = rows.layout.dampers.dofs[own.dampers[row // 2]]
-        found[row] = data.xaxis[model.dof_jntid[damper]] @ jacobian
-    return found
+        damper = rows.layout.dampers.dofs[controls.dampers[row // 2]]
+        sensor_rows[row] = data.xaxis[model.dof_jntid[damper]] @ jacobian
+    return sensor_rows
 
 
 def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:
-    """Rows of all acceleration channels."""
+    """Return the rows of all acceleration channels."""
     outputs = {}
-    for place in places_of(model):
+    for point in places_of(model):
         jacobian = np.zeros((3, model.nv))
-        mujoco.mj_jacSite(model, data, jacobian, None, model.site(f"place/{place}").id)
-        shape = numeric(model, f"shape/place/{place}")
+        mujoco.mj_jacSite(model, data, jacobian, None, model.site(f"place/{point}").id)
+        shape = numeric(model, f"shape/place/{point}")
         if shape is not None:
             jacobian[:, modes] = shape.reshape(3, -1)
         for axis, row in zip(AXES, jacobian, strict=True):
-            outputs[f"{place}_acc_{axis}"] = row
+            outputs[f"{point}_acc_{axis}"] = row
     return outputs
 
 
 def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
-    found = {}
+    velocity_rows = {}
     for body in range(1, model.nbody):
         if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
             rows = np.zeros((6, model.nv))
             mujoco.mj_jacBodyCom(model, data, rows[:3], rows[3:], body)
-            found[model.body(body).name] = rows
-    return found
+            velocity_rows[model.body(body).name] = rows
+    return velocity_rows
 
 
 def _body_masses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
-    found = {}
+    mass_matrices = {}
     for body in range(1, model.nbody):
         if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
             matrix = np.zeros((6, 6))
             matrix[:3, :3] = model.body_mass[body] * np.eye(3)
             frame = data.ximat[body].reshape(3, 3)
             matrix[3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
-            found[model.body(body).name] = matrix
-    return found
+            mass_matrices[model.body(body).name] = matrix
+    return mass_matrices

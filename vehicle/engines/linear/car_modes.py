@@ -1,4 +1,4 @@
-"""Modes of the assembled car and what moves in them; a car whose motion grows by itself is refused by what moves."""
+"""Modes of the assembled car with names of the moving parts; rejection of unstable cars."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Mode:
         shape: complex displacement of the velocity coordinates; (n,).
         energy: share of the kinetic energy by group of parts; sums to 1.
         growth: Re(s) [1/s].
-        grows: whether the motion grows by itself, beyond round-off.
+        grows: True if the mode is unstable: Re(s) is above round-off.
         motions: share of the kinetic energy by named motion, largest first; sums to 1. See `motion_names`.
-        description: name of the motion that holds half of it, else of the two largest.
-        modal_a: as of `vehicle.engines.linear.modal_scale`, of this shape [kg/s].
+        description: name of the motion with at least half of the kinetic energy; otherwise of the two largest motions.
+        modal_a: Modal A of this shape [kg/s]; see `vehicle.engines.linear.modal_scale`.
     """
 
     frequency: float
@@ -47,48 +47,48 @@ class Mode:
 
 
 def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0, names: Sequence[str] = ()) -> list[Mode]:
-    """Modes of the car up to a frequency.
+    """Return the modes of the car up to a frequency.
 
     Args:
-        matrices: of the assembled car.
-        stuck: True with the dampers locked, False with their viscous part and no friction.
+        matrices: matrices of the assembled car.
+        stuck: True for locked dampers, False for their viscous part without friction.
         highest: highest natural frequency [Hz].
-        names: of the modes of the free flexible body, for the descriptions; none by default.
+        names: names of the modes of the free flexible body, for the descriptions; empty by default.
 
     Returns:
-        Modes sorted by natural frequency; overdamped motions (real poles) are left out. What grows is listed at any
-        frequency, real poles too, with "grows: " before its description.
+        Modes sorted by natural frequency, without overdamped motions (real poles). Unstable modes are included at any
+        frequency, real poles too, and their description begins with "grows: ".
     """
-    modes, rows = natural_modes(first_order(matrices.system, stuck=stuck)), rigid_rows(matrices)
-    found = []
-    for index in np.flatnonzero((modes.frequency <= highest) | grows(modes.pole)):
-        shape, growing = modes.motion[index], bool(grows(modes.pole)[index])
+    natural, rows = natural_modes(first_order(matrices.system, stuck=stuck)), rigid_rows(matrices)
+    car_mode_list = []
+    for index in np.flatnonzero((natural.frequency <= highest) | grows(natural.pole)):
+        shape, growing = natural.motion[index], bool(grows(natural.pole)[index])
         energy, scale = _energy(matrices, shape)
         motions = motion_shares(
-            {group: own @ shape / scale for group, own in rows.items()},
+            {group: group_rows @ shape / scale for group, group_rows in rows.items()},
             energy,
             shape[matrices.modal] / scale,
             names,
-            float(modes.frequency[index]),
+            float(natural.frequency[index]),
         )
-        found.append(
+        car_mode_list.append(
             Mode(
-                frequency=float(modes.frequency[index]),
-                damping_ratio=float(modes.damping_ratio[index]),
-                growth=float(modes.pole[index].real),
+                frequency=float(natural.frequency[index]),
+                damping_ratio=float(natural.damping_ratio[index]),
+                growth=float(natural.pole[index].real),
                 grows=growing,
                 shape=shape,
                 energy=energy,
                 motions=motions,
                 description=("grows: " if growing else "") + description(motions),
-                modal_a=modal_a(matrices.system, modes.pole[index], shape),
+                modal_a=modal_a(matrices.system, natural.pole[index], shape),
             )
         )
-    return found
+    return car_mode_list
 
 
 def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> tuple[dict[str, float], float]:
-    """Shares of the kinetic energy, v^H M v of each group; the root of its sum, which scales the shape."""
+    """Return the share of each group in the kinetic energy v^H M v, and the root of the total."""
     energy: dict[str, float] = {}
     for body, rows in matrices.body_rows.items():
         velocity = rows @ shape
@@ -101,35 +101,35 @@ def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> tuple[d
 
 
 def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.complex128]) -> None:
-    """Refuse a car with a growing pole.
+    """Raise an error if the car has an unstable pole.
 
-    The poles with sliding dampers tell: what buckles while the friction holds buckles all the more without it, for
-    a stiffness that is indefinite in a part of the motions is so in all of them.
+    The poles with sliding dampers are sufficient: a car that buckles while friction holds the dampers also buckles
+    without friction, because a stiffness that is indefinite on a subspace is indefinite on the whole space.
 
     Args:
-        car: the car.
-        matrices: its matrices.
-        poles: its poles with sliding dampers [rad/s].
+        car: compiled and trimmed car.
+        matrices: matrices of the car.
+        poles: poles of the car with sliding dampers [rad/s].
 
     Raises:
-        ConfigurationError: what moves, how fast it grows, and what could be wrong.
+        ConfigurationError: the car is unstable; the message names the moving part, the growth and likely causes.
     """
     if not np.any(grows(poles)):
         return
     growing = [mode for mode in car_modes(matrices, stuck=False) if mode.grows]
-    worst = max(growing, key=lambda mode: mode.growth)
+    fastest = max(growing, key=lambda mode: mode.growth)
     vehicle = car.vehicle
     if vehicle.driving.rolling:
         raise ConfigurationError(
-            f"this car does not keep its course at {vehicle.driving.speed:g} m/s: "
-            f"{worst.description.removeprefix('grows: ')} grows by itself, e-fold in {1.0 / worst.growth:.3g} s. Lower "
-            "driving.speed, or look at cornering_stiffness of the tyres, more in front than behind; where it grows "
-            "with driving.speed=0 too, its springs do not hold it: python -m vehicle.modes"
+            f"the car is unstable at {vehicle.driving.speed:g} m/s: "
+            f"{fastest.description.removeprefix('grows: ')} grows by a factor e in {1.0 / fastest.growth:.3g} s. Lower "
+            "driving.speed, or check cornering_stiffness of the tyres: the front axle may have too much of it. If the "
+            "car is unstable with driving.speed=0 too, its springs are too soft: see python -m vehicle.modes"
         )
     raise ConfigurationError(
-        f"this car does not stand: {worst.description.removeprefix('grows: ')} grows by itself, e-fold in "
-        f"{1.0 / worst.growth:.3g} s. Its weight and preloads are more than its springs hold: what works most there is "
-        f"{holding_parameter(car, worst.growth + 0j, worst.shape)}; check it against "
-        f"body.mass ({vehicle.body.mass:g} kg), body.cog and gravity ({vehicle.gravity:g} m/s2), or look at "
+        f"the car is statically unstable: {fastest.description.removeprefix('grows: ')} grows by a factor e in "
+        f"{1.0 / fastest.growth:.3g} s. Its springs cannot support its weight and preloads; most strained is "
+        f"{holding_parameter(car, fastest.growth + 0j, fastest.shape)}. Check this parameter against "
+        f"body.mass ({vehicle.body.mass:g} kg), body.cog and gravity ({vehicle.gravity:g} m/s2), or see "
         "python -m vehicle.modes"
     )

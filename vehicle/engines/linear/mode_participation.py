@@ -1,16 +1,16 @@
-"""Which modes of the body make a place of it loud, and which attachments drive them.
+"""Contributions of the body modes to an acceleration of the body, and of the attachments to the modal forces.
 
-In the car the acceleration of a place on the body is a sum over the rigid motions and the modes of the free body,
+The acceleration of a point on the body is a sum over the rigid motions and the modes of the free body,
 
     a = s^2 (J r + sum_n Phi_n q_n),
 
-and what drives a mode is the sum over the attachments a of their forces F_a on the body,
+and the modal force is a sum over the attachments a of their forces F_a on the body,
 
     (s^2 + 2 zeta_n w_n s + w_n^2) q_n = sum_a Phi_na' F_a + m_n,
 
-m_n being what else reaches a mode: moments, and preloads that turn with what they hang on. With rigid r, modes q and
-forces F of the coupled car both sums are exact. A share is the part of a contribution that is in phase with the sum,
-Re(c conj(a)) / |a|^2, so that shares add up to one; one that works against it is negative.
+with the remainder m_n: moments, and preloads that rotate with their carriers. With rigid motions r, modes q and forces
+F of the coupled car both sums are exact. The share of a contribution c is its part in phase with the sum a,
+Re(c conj(a)) / |a|^2: shares add up to 1, and a contribution that opposes the sum has a negative share.
 
 Source: Ewins, Modal Testing, 2nd ed., section 2.8, for the superposition of modes; the shares are the projection that
 transfer path analysis uses for its contributions.
@@ -36,27 +36,27 @@ Complex = npt.NDArray[np.complex128]
 Vector = npt.NDArray[np.float64]
 
 RIGID = tuple(f"body {word}" for word in RIGID_WORDS)
-"""The rigid motions of the trimmed body: of its centre of gravity, and about it."""
+"""Rigid motions of the trimmed body: translations of its centre of gravity and rotations about it."""
 
-REST = "moments, turning preloads"
-"""What drives a mode beside the forces of the attachments."""
+REMAINDER = "moments, turning preloads"
+"""Name of the remainder of the modal force, in addition to the forces of the attachments."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Participation:
-    """Contributions to the acceleration of a place on the body, per plate displacement, at m lines.
+    """Contributions to an acceleration of the body per plate displacement, at m spectral lines.
 
     Attributes:
-        place: acceleration channel.
+        channel: acceleration channel.
         frequency: [Hz]; (m,).
-        names: of the rigid motions and behind them of the modes; (6 + k).
-        mode_frequency: of the body with what is fixed to it [Hz]; (k,).
-        contributions: [m/s2 per m]; (6 + k, m).
-        attachments: what holds the body or stands on it, and `REST`; (a,).
-        modal_forces: of each on each mode [kg^-1/2 N per m]; (k, a, m).
+        names: names of the rigid motions followed by the modes; (6 + k).
+        mode_frequency: natural frequencies of the body with the parts fixed to it [Hz]; (k,).
+        contributions: contribution of each motion [m/s2 per m]; (6 + k, m).
+        attachments: names of the elements attached to the body, and `REMAINDER`; (a,).
+        modal_forces: force of each attachment on each mode [kg^-1/2 N per m]; (k, a, m).
     """
 
-    place: str
+    channel: str
     frequency: Vector
     names: tuple[str, ...]
     mode_frequency: Vector
@@ -66,23 +66,23 @@ class Participation:
 
     @property
     def total(self) -> Complex:
-        """The FRF of the place [m/s2 per m]; (m,)."""
+        """Return the FRF of the channel [m/s2 per m]; (m,)."""
         return np.asarray(self.contributions.sum(axis=0))
 
     @property
     def shares(self) -> Vector:
-        """Share of each contribution in the total [-], (6 + k, m); the sum over them is 1."""
+        """Return the share of each contribution in the total [-], (6 + k, m); the shares add up to 1."""
         return np.asarray(in_phase(self.contributions) / np.abs(self.total))
 
     @property
     def attachment_shares(self) -> Vector:
-        """Share of each attachment in the force on each mode [-], (k, a, m); the sum over the attachments is 1."""
+        """Return the share of each attachment in each modal force [-], (k, a, m); they add up to 1 over a."""
         sums = np.abs(self.modal_forces.sum(axis=1))
-        return np.asarray(np.stack([in_phase(one) for one in self.modal_forces]) / sums[:, None])
+        return np.asarray(np.stack([in_phase(forces) for forces in self.modal_forces]) / sums[:, None])
 
 
 def in_phase(parts: Complex) -> Vector:
-    """The part of each contribution in phase with their sum, (k, m): Re(c conj(a)) / |a|; they add up to |a|."""
+    """Return the part of each contribution c in phase with the sum a of all: Re(c conj(a)) / |a|; (k, m)."""
     total = parts.sum(axis=0)
     return np.asarray((parts * np.conj(total)).real / np.abs(total))
 
@@ -91,52 +91,56 @@ def participation(
     car: CarModel,
     matrices: CarMatrices,
     loads: LoadRows,
-    place: str,
+    channel: str,
     frequency: npt.ArrayLike,
     *,
     stuck: bool,
     wheel: str,
 ) -> Participation:
-    """Contributions to a channel of the body.
+    """Return the contributions to an acceleration channel of the body.
 
     Args:
-        car: the car.
-        matrices: its linear form.
-        loads: forces of its elements as rows over it.
-        place: acceleration channel of a place on the body, as "seat_rail_acc_z".
+        car: compiled and trimmed car.
+        matrices: matrices of the car.
+        loads: element forces of the car as rows over its motion.
+        channel: acceleration channel of a point on the body, for example "seat_rail_acc_z".
         frequency: lines [Hz], (m,), above zero.
-        stuck: dampers locked, else with their viscous part alone.
-        wheel: whose plate moves.
+        stuck: True for locked dampers, False for their viscous part without friction.
+        wheel: wheel whose plate moves.
 
     Returns:
         The contributions.
 
     Raises:
-        ConfigurationError: the place is none of the body, or the body is rigid.
+        ConfigurationError: the channel is not an acceleration of the body, or the body is rigid.
     """
-    own = car.vehicle.composition
-    known = [f"{one.name}_acc_{axis}" for one in own.outputs if one.on == "body" for axis in AXES]
-    if place not in known:
-        raise ConfigurationError(f"place {place}: no acceleration on the body; there are {', '.join(known) or 'none'}")
+    composition = car.vehicle.composition
+    body_channels = [
+        f"{output.name}_acc_{axis}" for output in composition.outputs if output.on == "body" for axis in AXES
+    ]
+    if channel not in body_channels:
+        raise ConfigurationError(
+            f"channel {channel}: must be an acceleration of the body: {', '.join(body_channels) or 'it has none'}"
+        )
     body = car.superelement
     if not (car.vehicle.body.flexible and len(body.frequencies)):
         raise ConfigurationError(
-            f"{car.vehicle.name}: its body is rigid; modes that take part need body.flexible = true and a body model"
+            f"{car.vehicle.name}: the body is rigid; set body.flexible = true and give a body model to get its modes"
         )
     lines = np.atleast_1d(np.asarray(frequency, dtype=float))
     driven = [float(name == wheel) for name in car.vehicle.wheels]
     steady = steady_motion(matrices.system, lines, driven, stuck=stuck)
-    row, _ = matrices.system.output(place)
+    row, _ = matrices.system.output(channel)
     first = int(car.model.joint("body").dofadr[0])
     columns = [*range(first, first + 6), *range(matrices.modal.start, matrices.modal.stop)]
     attachments, forces = _modal_forces(car, matrices, loads, steady, driven)
     return Participation(
-        place=place,
+        channel=channel,
         frequency=lines,
         names=(*RIGID, *(mode_words(n, body.mode_names) for n in range(1, len(body.mode_names) + 1))),
         mode_frequency=body.frequencies * car.vehicle.body.frequency_scale,
         contributions=row[columns, None] * steady.motion[columns] * steady.s**2,
-        attachments=(*attachments, REST),
+        attachments=(*attachments, REMAINDER),
         modal_forces=forces,
     )
 
@@ -144,27 +148,27 @@ def participation(
 def _modal_forces(
     car: CarModel, matrices: CarMatrices, loads: LoadRows, steady: SteadyMotion, driven: list[float]
 ) -> tuple[list[str], Complex]:
-    """Names of what acts on the body, and its forces on the modes: (k, a + 1, m), the rest last."""
+    """Return the names of the a attachments, and the modal forces (k, a + 1, m) with the remainder last."""
     s, u, z = steady.s, steady.motion, np.array(driven)
     values = loads.displacement @ u + loads.velocity @ (s * u) + loads.acceleration @ (s**2 * u)
     values += loads.branch @ steady.branch + loads.friction @ steady.friction
     values += (loads.height @ z)[:, None] + np.outer(loads.height_rate @ z, s)
-    at, names, forces = {name: index for index, name in enumerate(loads.names)}, list[str](), list[Complex]()
-    for one in car.vehicle.composition.connections:
-        sign = float(one.moving == "body") - float(one.carrier == "body")
-        kind = "ball" if one.law is None else "bushing"
-        shape = _shape(car, f"{kind}/{one.name}")
+    index_of, names, forces = {name: index for index, name in enumerate(loads.names)}, list[str](), list[Complex]()
+    for connection in car.vehicle.composition.connections:
+        sign = float(connection.moving == "body") - float(connection.carrier == "body")
+        element_type = "ball" if connection.law is None else "bushing"
+        shape = _shape(car, f"{element_type}/{connection.name}")
         if sign and shape is not None:
             # In the design position the axes of every carrier are those of the car.
-            names.append(one.name)
-            forces.append(sign * shape.T @ values[[at[f"{one.name}_force_{axis}"] for axis in AXES]])
+            names.append(connection.name)
+            forces.append(sign * shape.T @ values[[index_of[f"{connection.name}_force_{axis}"] for axis in AXES]])
     for spring in car.vehicle.composition.springs:
         shape = _shape(car, spring.name)
         if shape is not None:
             low, high = (np.array(point) for point in spring.at)
-            way = (high - low) / np.linalg.norm(high - low) * (1.0 if spring.parts[1] == "body" else -1.0)
+            direction = (high - low) / np.linalg.norm(high - low) * (1.0 if spring.parts[1] == "body" else -1.0)
             names.append(spring.name)
-            forces.append(np.outer(shape.T @ way, values[at[f"{spring.name}_force"]]))
+            forces.append(np.outer(shape.T @ direction, values[index_of[f"{spring.name}_force"]]))
     dofs = np.arange(matrices.modal.start, matrices.modal.stop)
     joints = [int(car.model.dof_jntid[dof]) for dof in dofs]
     stiffness, damping = car.model.jnt_stiffness[joints].ravel(), np.ravel(car.model.dof_damping[dofs])
@@ -174,6 +178,6 @@ def _modal_forces(
 
 
 def _shape(car: CarModel, name: str) -> Vector | None:
-    """Modal displacement of the body's node of an element [kg^-1/2], (3, k); None where it is not on the body."""
+    """Return the modal displacement of an element's node [kg^-1/2], (3, k); None if it is not on the body."""
     shape = numeric(car.model, f"shape/{name}")
     return None if shape is None else shape.reshape(3, -1)

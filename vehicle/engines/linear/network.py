@@ -1,9 +1,9 @@
-"""Masses joined by springs, bushings, elastomers and sliding pairs, and the linear system that they make.
+"""Network of masses, springs, bushings, elastomers and sliding pairs, assembled to a linear system.
 
     T = 1/2 sum m (row . x')^2,   V = 1/2 sum k (e . x + r . z)^2,   D = 1/2 sum c (e . x' + r . z')^2
 
 Lagrange's equations d/dt(dT/dx') + dD/dx' + dV/dx = 0 give K = sum k e' e and Bk = -sum k e' r, and C, Bc likewise, so
-that symmetry cannot be lost by a wrong sign.
+that a wrong sign cannot break the symmetry.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from vehicle.model.laws.law import Numbers, Parallel
 from vehicle.model.laws.maxwell import Maxwell
 
 ROAD = "road"
-"""Name of the input of a model with one road."""
+"""Name of the input of a model with a single road."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Mass:
-    """Point mass, or moment of inertia: T = m/2 sum over its axes of (row . x')^2."""
+    """Point mass, or moment of inertia: T = m/2 sum over the axes of (row . x')^2."""
 
     mass: Numbers
     axes: tuple[Row, ...]
@@ -36,7 +36,7 @@ class Mass:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Link:
-    """Linear element along one direction; its extension is row . (x, z)."""
+    """Linear element along one direction with the extension row . (x, z)."""
 
     row: Row
     law: Kelvin | Maxwell
@@ -44,9 +44,9 @@ class Link:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Network:
-    """Lumped model: coordinates, parts, and the places beside the coordinates whose motion is asked for.
+    """Lumped model: coordinates, parts, and further outputs in addition to the coordinates.
 
-    Arrays in the masses, laws and rows must broadcast together; they stand for many models at once.
+    Arrays in the masses, laws and rows must broadcast together; they describe a stack of models.
     """
 
     coordinates: tuple[str, ...]
@@ -56,13 +56,13 @@ class Network:
     slides: tuple[Slide, ...] = ()
     inputs: tuple[str, ...] = (ROAD,)
     force: Row = field(default_factory=dict)
-    """Where an applied force acts: its generalised force is row times the force."""
+    """Direction of an applied force F: the generalised force is row times F."""
 
     def system(self) -> LinearSystem:
-        """Matrices of the model.
+        """Assemble the matrices of the model.
 
         Raises:
-            ConfigurationError: a row names what does not exist, parameters do not broadcast together, a coordinate
+            ConfigurationError: a row has an unknown coordinate, parameters do not broadcast together, a coordinate
                 carries no mass, or a Maxwell branch has no stiffness or no damping.
         """
         shape, n, w = self._stack(), len(self.coordinates), len(self.inputs)
@@ -84,15 +84,15 @@ class Network:
                 continue
             if not (np.asarray(link.law.relaxation_time) > 0.0).all():
                 raise ConfigurationError(
-                    "network: a Maxwell branch needs branch_stiffness and branch_damping above 0.0"
+                    "network: branch_stiffness and branch_damping of a Maxwell branch must be above 0.0"
                 )
             branches.append((row, link.law))
         branch_rows = _stacked([row for row, _ in branches], (*shape, 0, n + w), axis=-2)
 
-        def numbers(values: Sequence[Numbers]) -> Array:
+        def stacked_values(values: Sequence[Numbers]) -> Array:
             return _stacked([np.broadcast_to(value, shape) for value in values], (*shape, 0), axis=-1)
 
-        own = ((name, {name: 1.0}) for name in self.coordinates)
+        coordinate_outputs = ((name, {name: 1.0}) for name in self.coordinates)
         system = LinearSystem(
             coordinates=self.coordinates,
             inputs=self.inputs,
@@ -103,27 +103,27 @@ class Network:
             input_stiffness=-joint_stiffness[..., :n, n:],
             branch_rows=branch_rows[..., :n],
             branch_inputs=branch_rows[..., n:],
-            branch_stiffness=numbers([law.branch_stiffness for _, law in branches]),
-            branch_time=numbers([law.relaxation_time for _, law in branches]),
+            branch_stiffness=stacked_values([law.branch_stiffness for _, law in branches]),
+            branch_time=stacked_values([law.relaxation_time for _, law in branches]),
             slide_rows=np.zeros((*shape, 0, n)),
             slide_inputs=np.zeros((*shape, 0, w)),
             constraints=np.zeros((0, n)),
             load=form_row(self.force, self.coordinates, shape),
-            outputs={name: self._row(form, shape) for name, form in (*own, *self.outputs.items())},
+            outputs={name: self._row(form, shape) for name, form in (*coordinate_outputs, *self.outputs.items())},
         )
         for slide in self.slides:
             system = system.with_slide(slide)
         return system
 
     def first_order(self) -> FirstOrder:
-        """First-order form of the model, its sliding pairs free; errors as of `system`."""
+        """Return the first-order form of the model with free sliding pairs; raises the errors of `system`."""
         return first_order(self.system())
 
     def _row(self, form: Row, shape: tuple[int, ...]) -> Array:
         return form_row(form, (*self.coordinates, *self.inputs), shape)
 
     def _stack(self) -> tuple[int, ...]:
-        """Common shape of all masses, coefficients and parameters of laws."""
+        """Return the common shape of all masses, coefficients and law parameters."""
         rows = [axis for part in self.masses for axis in part.axes]
         rows += [link.row for link in self.links] + [slide.row for slide in self.slides] + list(self.outputs.values())
         shapes = [np.shape(part.mass) for part in self.masses]
@@ -133,22 +133,22 @@ class Network:
         try:
             return np.broadcast_shapes(*shapes)
         except ValueError:
-            found = ", ".join(sorted({str(shape) for shape in shapes}))
-            raise ConfigurationError(f"network: parameters of shapes {found} do not broadcast together") from None
+            listed = ", ".join(sorted({str(shape) for shape in shapes}))
+            raise ConfigurationError(f"network: parameters of shapes {listed} do not broadcast together") from None
 
 
 def masses_of(masses: Mapping[str, Numbers]) -> tuple[Mass, ...]:
-    """Parts of coordinates that each carry a mass [kg] or a moment of inertia [kg m2] of their own."""
+    """Return one mass for each coordinate: coordinate name -> mass [kg] or moment of inertia [kg m2]."""
     return tuple(Mass(mass=mass, axes=({name: 1.0},)) for name, mass in masses.items())
 
 
 def spring_damper(row: Row, stiffness: Numbers, damping: Numbers) -> Link:
-    """Spring k [N/m] and damper c [N s/m] side by side along one linear form of coordinates and inputs."""
+    """Return a spring k [N/m] and a damper c [N s/m] in parallel along a linear form of coordinates and inputs."""
     return Link(row=row, law=Kelvin(stiffness=stiffness, damping=damping))
 
 
 def _law_shapes(law: Any) -> list[tuple[int, ...]]:
-    """Shapes of the parameters of a law: many laws on equal masses are many models too."""
+    """Return the shapes of the law parameters, which also define the stack of models."""
     if isinstance(law, Parallel):
         return [shape for member in law.laws for shape in _law_shapes(member)]
     if not dataclasses.is_dataclass(law):
@@ -157,7 +157,7 @@ def _law_shapes(law: Any) -> list[tuple[int, ...]]:
 
 
 def _each(value: Numbers, axes: int) -> Array:
-    """A parameter with trailing axes of length one, so that it multiplies vectors or matrices."""
+    """Append axes of length one to a parameter, so that it multiplies vectors or matrices."""
     array = np.asarray(value, dtype=float)
     return array.reshape(array.shape + (1,) * axes)
 

@@ -1,14 +1,14 @@
-"""Matrices of a car that differs from another one in numbers alone, from terms that are read once from that other one.
+"""Matrices of a car that differs from a reference car in parameter values only, from terms read once from that car.
 
-Where the places stay, so do the rows J, the shapes of all outputs, and how forces of given size turn with the parts:
+With unchanged geometry the rows J, the shapes of all outputs and the rotation of forces with parts are unchanged:
 
     K = J' K_e J + sum of K_rot T' T + joint springs + stops + hold of the course + sum of p_i H_i + sum of m_b g G_b,
-    C = J' B_e J + joint dampers + what rolling adds,    M = M0 + sum of J_b' (M_b - M_b0) J_b,
+    C = J' B_e J + joint dampers + rolling terms,    M = M0 + sum of J_b' (M_b - M_b0) J_b,
 
-p_i being the preloads, H_i = -dg_i/du of the generalised force g_i of the preload i = 1, and G_b = dJ_bz'/du of the
-centre of gravity of part b. K is that of the other car plus the difference of this sum: what the sum misses would show
-in the other car itself, and it is compared there. A trimmed body of another mass or CoG has other modal coordinates and
-another origin, on which all of this is carried over (`vehicle.engines.linear.body_change`).
+with the preloads p_i, H_i = -dg_i/du for the generalised force g_i of a preload i = 1, and G_b = dJ_bz'/du for the
+centre of gravity of part b. K is that of the reference car plus the difference of this sum. The sum is compared with
+the stiffness matrix of the reference car, so that no missing term stays hidden. A trimmed body of another mass or CoG
+has other modal coordinates and another origin; see `vehicle.engines.linear.body_change` for the transformation.
 """
 
 from __future__ import annotations
@@ -37,114 +37,122 @@ from vehicle.model.parameters.vehicle import Vehicle
 Vector = npt.NDArray[np.float64]
 
 AGREEMENT = 1e-9
-"""Largest difference between the sum of terms and the stiffness matrix of the same car, over its largest entry: both
-come from central differences, whose round-off is 1e-10 of it."""
+"""Maximum difference between the sum of terms and the stiffness matrix of the same car, over its largest entry: both
+are central differences with a round-off of 1e-10 of that entry."""
 
-CORNER = 10.0 * DIFFERENCE_STEP
-"""Distance [m] from the corner of a curve within which the differences of a car that is built reach over it."""
+BREAKPOINT_MARGIN = 10.0 * DIFFERENCE_STEP
+"""Distance [m] from a breakpoint of a curve within which the central differences of a built car cross it."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarVariant:
-    """A car from terms: its linear form and its static loads; the residual is that of the linear car."""
+    """Modified car from the terms: its matrices and its static loads; the residual is that of the linear car."""
 
     matrices: CarMatrices
     static: StaticTrim
 
 
-class Terms:
-    """What all cars share that have the places of one car.
+class VariantTerms:
+    """Terms of the matrices that all cars with the geometry of a reference car share.
 
     Args:
-        car: compiled and trimmed car.
-        matrices: of its linear form.
-        trimmed_body: its body without what is fixed to it.
+        car: compiled and trimmed reference car.
+        matrices: matrices of the reference car.
+        trimmed_body: its body without the parts fixed to it.
     """
 
     def __init__(self, car: CarModel, matrices: CarMatrices, trimmed_body: Superelement) -> None:
         self.car, self.matrices, self.trimmed_body = car, matrices, trimmed_body
         model = car.model
         self.rows = Rows(model)
-        standing = self.rows.anew(car.static.preload)
+        rows_at_rest = self.rows.anew(car.static.preload)
         self.numbers = element_numbers(car.vehicle, car.superelement)
-        self.rest = at_rest(self.rows)
-        turning, self.by_preload = _turning_forces(standing)
+        self.rest_state = at_rest(self.rows)
+        geometric, self.by_preload = _geometric_stiffness(rows_at_rest)
         same = BodyChange(trimmed=trimmed_body, body=car.superelement)
-        self.sum = self._stiffness(standing, joint_springs(model), car.static.preload, self.rest, same)
-        difference = self.sum + turning - matrices.system.stiffness
+        self.sum = self._stiffness(rows_at_rest, joint_springs(model), car.static.preload, self.rest_state, same)
+        difference = self.sum + geometric - matrices.system.stiffness
         scale = float(np.max(np.abs(matrices.system.stiffness)))
         self.complete = bool(np.max(np.abs(difference)) <= AGREEMENT * scale)
-        """whether the sum of the terms is the stiffness of the car"""
+        """True if the sum of the terms equals the stiffness matrix of the reference car"""
 
     @cached_property
     def weight_terms(self) -> dict[str, Vector]:
-        """g G of each part: change of its weight per kg over the coordinates; (n, n)."""
-        model, chosen = self.car.model, list(self.matrices.body_masses)
+        """Return g G of each part: derivative of its weight force per kg over the coordinates; (n, n)."""
+        model, names = self.car.model, list(self.matrices.body_masses)
         gravity = -float(model.opt.gravity[2])
-        bodies = [model.body(name).id for name in chosen]
+        bodies = [model.body(name).id for name in names]
 
         def read(data: mujoco.MjData) -> Vector:
-            found = np.zeros((len(bodies), 3, model.nv))
-            for own, body in zip(found, bodies, strict=True):
-                mujoco.mj_jacBodyCom(model, data, own, None, body)
-            return found[:, 2]
+            jacobians = np.zeros((len(bodies), 3, model.nv))
+            for jacobian, body in zip(jacobians, bodies, strict=True):
+                mujoco.mj_jacBodyCom(model, data, jacobian, None, body)
+            return jacobians[:, 2]
 
-        return dict(zip(chosen, gravity * differences(self.rows, read), strict=True))
+        return dict(zip(names, gravity * differences(self.rows, read), strict=True))
 
-    def car_of(self, vehicle: Vehicle) -> CarVariant | None:
-        """The car of other parameters.
+    def variant(self, vehicle: Vehicle) -> CarVariant | None:
+        """Compute the car with other parameter values.
 
         Args:
-            vehicle: the parameters.
+            vehicle: parameters of the new car.
 
         Returns:
-            The car; None where more than numbers differ, and it has to be built.
+            The new car; None if more than values of laws and masses differ, so that its model must be built.
 
         Raises:
-            ConfigurationError, SimulationError: no such car can be, as of
+            ConfigurationError, SimulationError: the car is invalid; see
                 `vehicle.engines.simulation.car_model.build_model`.
         """
-        if not self.complete or not same_places(vehicle, self.car.vehicle):
+        if not self.complete or not same_geometry(vehicle, self.car.vehicle):
             return None
         change = body_change(vehicle, self.car, self.trimmed_body)
         require_body_modes(vehicle, change.trimmed)
-        every = element_numbers(vehicle, change.body, (self.car.vehicle, self.numbers))
-        if not all(map(_same_kinds, every, self.numbers)):
+        element_values = element_numbers(vehicle, change.body, (self.car.vehicle, self.numbers))
+        if not all(map(_same_fields, element_values, self.numbers)):
             return None
-        numbers = {name: own for one in every for name, own in one.items()}
-        rows = self.rows.with_laws(numbers)
+        values = {name: value for element in element_values for name, value in element.items()}
+        rows = self.rows.with_laws(values)
         springs, dampers = joint_springs(rows.model), joint_dampers(rows.model).copy()
-        for name, (stiffness, damping) in _fields(numbers, "joint/"):
+        for name, (stiffness, damping) in _fields(values, "joint/"):
             dof = rows.model.joint(name).dofadr[0]
             springs[dof], dampers[dof] = stiffness, damping
-        moved, parts = change.columns, self._masses(every, change)
-        rest = AtRest(
-            jacobian=moved(self.rest.jacobian), turned=change.rotations(self.rest.turned), weight=parts.weight
+        to_new, parts = change.columns, self._masses(element_values, change)
+        rest_state = AtRest(
+            jacobian=to_new(self.rest_state.jacobian),
+            turned=change.rotations(self.rest_state.turned),
+            weight=parts.weight,
         )
-        settled = settle(rows, rest, springs)
-        if _on_a_corner(rows):
+        settled = settle(rows, rest_state, springs)
+        if _near_breakpoint(rows):
             return None
-        preload, count = settled.preload, len(rest.jacobian)
-        left = unsolved(rows.layout, rest.weight) - springs * settled.displacement + rest.jacobian.T @ preload[:count]
-        left += np.einsum("nij,ni->j", rest.turned, preload[count:].reshape(-1, 3))
-        left[rows.layout.rolling.spins] = 0.0
-        static = static_loads(rows, settled, left)
+        preload, count = settled.preload, len(rest_state.jacobian)
+        residual = (
+            unsolved(rows.layout, rest_state.weight)
+            - springs * settled.displacement
+            + rest_state.jacobian.T @ preload[:count]
+        )
+        residual += np.einsum("nij,ni->j", rest_state.turned, preload[count:].reshape(-1, 3))
+        residual[rows.layout.rolling.spins] = 0.0
+        static = static_loads(rows, settled, residual)
         require_standing(vehicle, rows, static)
-        laws, known = law_matrices(rows, rest.jacobian, dampers, preload), self.matrices.system
-        stiffness = parts.turning + self._stiffness(rows, springs, preload, rest, change)
-        stiffness += change.carried(rest.weight)
+        laws, reference = law_matrices(rows, rest_state.jacobian, dampers, preload), self.matrices.system
+        stiffness = parts.geometric + self._stiffness(rows, springs, preload, rest_state, change)
+        stiffness += change.weight_stiffness(rest_state.weight)
         system = replace(
-            known,
+            reference,
             mass=parts.mass,
             stiffness=stiffness,
-            constraints=rest.jacobian[rows.layout.joints.ravel()],
-            outputs=known.outputs if change.same else {name: moved(row) for name, row in known.outputs.items()},
+            constraints=rest_state.jacobian[rows.layout.joints.ravel()],
+            outputs=reference.outputs
+            if change.same
+            else {name: to_new(row) for name, row in reference.outputs.items()},
             **laws.system,
         )
         matrices = replace(
             self.matrices,
             system=system,
-            sensors=moved(self.matrices.sensors),
+            sensors=to_new(self.matrices.sensors),
             body_rows=parts.rows,
             body_masses=parts.masses,
             body_centres={**self.matrices.body_centres, "body": np.array(vehicle.body.cog)},
@@ -152,140 +160,154 @@ class Terms:
         )
         return CarVariant(matrices=matrices, static=static)
 
-    def _stiffness(self, rows: Rows, springs: Vector, preload: Vector, rest: AtRest, change: BodyChange) -> Vector:
-        """K of laws and preloads; (n, n)."""
-        e, j = rows.layout, rest.jacobian
+    def _stiffness(
+        self, rows: Rows, springs: Vector, preload: Vector, rest_state: AtRest, change: BodyChange
+    ) -> Vector:
+        """Return the part of K that depends on laws and preloads; (n, n)."""
+        e, j = rows.layout, rest_state.jacobian
         diagonal = np.zeros(e.row_count)
         diagonal[e.bushings.rows], diagonal[e.springs.rows] = e.bushings.stiffness, e.springs.stiffness
-        found: Vector = j.T @ (diagonal[:, None] * j)
-        found += change.both((self.by_preload @ preload).reshape(j.shape[1], -1))
-        turned = rest.turned.reshape(-1, j.shape[1])
-        found += turned.T @ (np.repeat(e.rotations.stiffness, 3)[:, None] * turned)
-        found[np.diag_indices(len(found))] += springs
+        stiffness: Vector = j.T @ (diagonal[:, None] * j)
+        stiffness += change.transformed((self.by_preload @ preload).reshape(j.shape[1], -1))
+        rotations = rest_state.turned.reshape(-1, j.shape[1])
+        stiffness += rotations.T @ (np.repeat(e.rotations.stiffness, 3)[:, None] * rotations)
+        stiffness[np.diag_indices(len(stiffness))] += springs
         if len(e.rolling.tyres):
-            course = e.rolling.course_rows(len(found))
-            found += course.T @ (e.rolling.hold[:3, None] * course)
+            course = e.rolling.course_rows(len(stiffness))
+            stiffness += course.T @ (e.rolling.hold[:3, None] * course)
         for index in np.flatnonzero(e.tables.kinds == 2).tolist():
             dof, curve = e.dampers.dofs[e.tables.elements[index]], curve_of(e.tables, index)
-            ends = curve.force(np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]))
-            found[dof, dof] += (ends[1] - ends[0]) / (2.0 * DIFFERENCE_STEP)
-        return found
+            end_forces = curve.force(np.array([-DIFFERENCE_STEP, DIFFERENCE_STEP]))
+            stiffness[dof, dof] += (end_forces[1] - end_forces[0]) / (2.0 * DIFFERENCE_STEP)
+        return stiffness
 
-    def _masses(self, every: list[Numbers], change: BodyChange) -> _Masses:
-        """What the masses of the parts make of a car."""
+    def _masses(self, element_values: list[Numbers], change: BodyChange) -> _Masses:
+        """Return the mass terms of a car with other masses of its parts."""
         masses, system = dict(self.matrices.body_masses), self.matrices.system
-        mass, weight, turning = system.mass, self.rest.weight, system.stiffness - self.sum
+        mass, weight, geometric = system.mass, self.rest_state.weight, system.stiffness - self.sum
         gravity, body_rows = float(self.car.model.opt.gravity[2]), self.matrices.body_rows
         if change.shift.any():
-            # The trimmed body is taken out before its origin moves, and comes back at the new one.
-            own, rows = masses["body"], body_rows["body"]
-            mass, weight = mass - rows.T @ own @ rows, weight - gravity * own[0, 0] * rows[2]
-            mass, turning, weight = change.frames(mass), change.frames(turning), change.shifted(weight)
-            body_rows = {name: one if name == "body" else change.shifted(one) for name, one in body_rows.items()}
-            mass, weight = mass + rows.T @ own @ rows, weight + gravity * own[0, 0] * rows[2]
-        for one, other in zip(every, self.numbers, strict=True):
-            for name, own in _fields({} if one is other else one, "mass/"):
-                before, rows = masses[name], body_rows[name]
-                masses[name] = _mass_matrix(own)
-                more = masses[name] - before
-                mass = mass + rows.T @ more @ rows
-                weight = weight + gravity * more[0, 0] * rows[2]
-                turning = turning + more[0, 0] * change.frames(self.weight_terms[name])
+            # Remove the trimmed body before its origin moves, and add it at the new origin.
+            value, rows = masses["body"], body_rows["body"]
+            mass, weight = mass - rows.T @ value @ rows, weight - gravity * value[0, 0] * rows[2]
+            mass, geometric, weight = (
+                change.displaced_matrix(mass),
+                change.displaced_matrix(geometric),
+                change.displaced_rows(weight),
+            )
+            body_rows = {
+                name: element if name == "body" else change.displaced_rows(element)
+                for name, element in body_rows.items()
+            }
+            mass, weight = mass + rows.T @ value @ rows, weight + gravity * value[0, 0] * rows[2]
+        for element, reference in zip(element_values, self.numbers, strict=True):
+            for name, value in _fields({} if element is reference else element, "mass/"):
+                old_mass, rows = masses[name], body_rows[name]
+                masses[name] = _mass_matrix(value)
+                added = masses[name] - old_mass
+                mass = mass + rows.T @ added @ rows
+                weight = weight + gravity * added[0, 0] * rows[2]
+                geometric = geometric + added[0, 0] * change.displaced_matrix(self.weight_terms[name])
         if change.hanging is not None:
-            turning = turning + change.frames(gravity * masses["body"][0, 0] * change.hanging)
-        return _Masses(masses=masses, rows=body_rows, mass=mass, weight=weight, turning=turning)
+            geometric = geometric + change.displaced_matrix(gravity * masses["body"][0, 0] * change.hanging)
+        return _Masses(masses=masses, rows=body_rows, mass=mass, weight=weight, geometric=geometric)
 
 
 class _Masses(NamedTuple):
-    """Masses of the parts and their rows, M, weight on the coordinates, and what K has of the weight."""
+    """Masses of the parts and their rows, M, generalised weight, and the geometric stiffness of the weight."""
 
     masses: dict[str, Vector]
     rows: dict[str, Vector]
     mass: Vector
     weight: Vector
-    turning: Vector
+    geometric: Vector
 
 
-def same_places(vehicle: Vehicle, other: Vehicle) -> bool:
-    """Whether two cars differ in numbers of laws, in masses and in the numerics alone."""
-    car, known, body = vehicle.composition, other.composition, other.body
+def same_geometry(vehicle: Vehicle, other: Vehicle) -> bool:
+    """Return True if two cars differ only in values of laws, in masses and in solver settings."""
+    car, reference, body = vehicle.composition, other.composition, other.body
     if vehicle.gravity != other.gravity or (car.points, car.outputs, car.wheels) != (
-        known.points,
-        known.outputs,
-        known.wheels,
+        reference.points,
+        reference.outputs,
+        reference.wheels,
     ):
         return False
     if not same_body(vehicle.body, body):
         return False
     spinning = {wheel.part for wheel in car.wheels} if vehicle.driving.rolling else set[str]()
-    for one, like in zip(car.parts, known.parts, strict=False):
-        # The inertia of a wheel about its axle is read from the model.
-        if (one.name in spinning or one.parent in spinning) and one.numbers != like.numbers:
+    for part, other_part in zip(car.parts, reference.parts, strict=False):
+        # The rolling terms read the inertia of a wheel about its axle from the model.
+        if (part.name in spinning or part.parent in spinning) and part.numbers != other_part.numbers:
             return False
     if vehicle.body.flexible:
-        # What is fixed to a flexible body changes its modes; a load is in the body model, which is scaled whole.
+        # Parts fixed to a flexible body change its modes; a payload is in the body model, which is scaled as a whole.
         scaled = vehicle.body.model_factor != body.model_factor
-        for one, like in zip(car.parts, known.parts, strict=False):
-            if one.parent == "body" and (one.numbers != like.numbers or (scaled and one.seat is None)):
+        for part, other_part in zip(car.parts, reference.parts, strict=False):
+            if part.parent == "body" and (part.numbers != other_part.numbers or (scaled and part.seat is None)):
                 return False
     return (
-        _alike(car.parts, known.parts, "numbers")
-        and _alike(car.connections, known.connections, "law", "rolling")
-        and _alike(car.springs, known.springs, "stiffness", "table")
-        and _alike(car.joint_springs, known.joint_springs, "stiffness", "damping")
-        and _alike(car.dampers, known.dampers, "law")
+        _differ_only_in(car.parts, reference.parts, "numbers")
+        and _differ_only_in(car.connections, reference.connections, "law", "rolling")
+        and _differ_only_in(car.springs, reference.springs, "stiffness", "table")
+        and _differ_only_in(car.joint_springs, reference.joint_springs, "stiffness", "damping")
+        and _differ_only_in(car.dampers, reference.dampers, "law")
     )
 
 
-def _alike(own: tuple[Any, ...], known: tuple[Any, ...], *numbers: str) -> bool:
-    """Whether elements differ in these fields alone."""
-    return len(own) == len(known) and all(
-        one is other or replace(one, **{name: getattr(other, name) for name in numbers}) == other
-        for one, other in zip(own, known, strict=True)
+def _differ_only_in(elements: tuple[Any, ...], reference: tuple[Any, ...], *fields: str) -> bool:
+    """Return True if elements differ only in the given fields."""
+    return len(elements) == len(reference) and all(
+        element is reference_element
+        or replace(element, **{name: getattr(reference_element, name) for name in fields}) == reference_element
+        for element, reference_element in zip(elements, reference, strict=True)
     )
 
 
-def _same_kinds(own: Numbers, known: Numbers) -> bool:
-    """Whether an element has the same fields, of the same lengths, and turns what it turned."""
-    if own is known:
+def _same_fields(values: Numbers, reference: Numbers) -> bool:
+    """Return True if an element has the same fields of the same lengths, and resists rotation in both cars or none."""
+    if values is reference:
         return True
-    if list(own) != list(known) or any(own[name].shape != known[name].shape for name in own):
+    if list(values) != list(reference) or any(values[name].shape != reference[name].shape for name in values):
         return False
-    return all((own[name][TURNING] > 0.0) == (known[name][TURNING] > 0.0) for name in own if len(own[name]) == WIDTH)
+    return all(
+        (values[name][TURNING] > 0.0) == (reference[name][TURNING] > 0.0)
+        for name in values
+        if len(values[name]) == WIDTH
+    )
 
 
-def _fields(numbers: Mapping[str, Vector], kind: str) -> Iterator[tuple[str, Vector]]:
-    """Fields of a kind by what follows it."""
-    return ((name.removeprefix(kind), own) for name, own in numbers.items() if name.startswith(kind))
+def _fields(values: Mapping[str, Vector], prefix: str) -> Iterator[tuple[str, Vector]]:
+    """Return the fields whose name has a prefix, by the rest of their name."""
+    return ((name.removeprefix(prefix), value) for name, value in values.items() if name.startswith(prefix))
 
 
-def _on_a_corner(rows: Rows) -> bool:
-    """Whether a law over displacement stands so near to a corner that it has no tangent."""
-    t = rows.layout.tables
+def _near_breakpoint(rows: Rows) -> bool:
+    """Return True if a law over displacement is at rest so near to a breakpoint that it has no tangent."""
+    tables = rows.layout.tables
     return any(
-        bool(np.any(np.abs(curve_of(t, index).knots - t.at[index]) < CORNER))
-        for index in np.flatnonzero(t.kinds < 2).tolist()
+        bool(np.any(np.abs(curve_of(tables, index).knots - tables.at[index]) < BREAKPOINT_MARGIN))
+        for index in np.flatnonzero(tables.kinds < 2).tolist()
     )
 
 
 def _mass_matrix(numbers: Vector) -> Vector:
-    """Mass [kg] and inertia tensor [kg m2] of a part, (6, 6), of the numbers of `mass_numbers`."""
+    """Return mass [kg] and inertia tensor [kg m2] of a part, (6, 6), from the values of `mass_numbers`."""
     mass, xx, yy, zz, xy, xz, yz = numbers
     return np.asarray(scipy.linalg.block_diag(mass * np.eye(3), [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
 
 
-def _turning_forces(rows: Rows) -> tuple[Vector, Any]:
-    """What K has of the weight, (n, n); H of every preload, sparse, K row by row = H p, (n n, preloads)."""
+def _geometric_stiffness(rows: Rows) -> tuple[Vector, Any]:
+    """Return the geometric stiffness of the weight, (n, n), and sparse H with K = H p row by row, (n n, preloads)."""
     model, e = rows.model, rows.layout
     straight = np.setdiff1d(np.arange(len(e.bushings.rows)), e.bushings.oblique)
-    own, carriers = e.bushings.rows[straight], e.bushings.carriers[straight]
+    bushing_rows, carriers = e.bushings.rows[straight], e.bushings.carriers[straight]
 
     def read(data: mujoco.MjData) -> Vector:
-        """Forces on the coordinates, of the weight and of each preload of 1, which turns with its carrier."""
-        along = data.efc_J.reshape(e.row_count, model.nv).copy()
-        along[own] = np.einsum("nki,nkj->nij", data.xmat[carriers].reshape(-1, 3, 3), along[own])
-        turned = np.einsum("nki,nkj->nij", rows.rotation(data)[1], rows.rotation_jacobian(data))
-        return np.concatenate([-data.qfrc_bias[None], along, turned.reshape(-1, model.nv)])
+        """Return the generalised forces of the weight and of each unit preload, which rotates with its carrier."""
+        forces = data.efc_J.reshape(e.row_count, model.nv).copy()
+        forces[bushing_rows] = np.einsum("nki,nkj->nij", data.xmat[carriers].reshape(-1, 3, 3), forces[bushing_rows])
+        moments = np.einsum("nki,nkj->nij", rows.rotation(data)[1], rows.rotation_jacobian(data))
+        return np.concatenate([-data.qfrc_bias[None], forces, moments.reshape(-1, model.nv)])
 
     weight, *preloads = -differences(rows, read)
     return weight, scipy.sparse.csr_array(np.reshape(preloads, (len(preloads), -1)).T)

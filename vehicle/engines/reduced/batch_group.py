@@ -68,7 +68,7 @@ class Group:
         Returns:
             What the motion of each car has shown.
         """
-        system, bends = self.models[0].matrices.system, self.models[0].matrices.bends
+        system, segments = self.models[0].matrices.system, self.models[0].matrices.segments
         bodies = rotating_bodies(self.models[0].matrices)
         lanes = BatchTable(self.factors, dampers, self.start)
         count = len(dampers[0])
@@ -76,7 +76,7 @@ class Group:
         moved = [name for name in channels if name in system.outputs]
         tyres = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
         levels = TILE * -(-len(moved) // TILE)
-        ends = levels + TILE * -(-(len(tyres) + len(bends)) // TILE)
+        ends = levels + TILE * -(-(len(tyres) + len(segments)) // TILE)
         rows = {name: row for row, name in enumerate(moved)} | {name: levels + row for row, name in enumerate(tyres)}
         rest = np.zeros((len(channels), LANES))
         for index, wheel in enumerate(system.inputs[:count]):
@@ -102,7 +102,7 @@ class Group:
             turns=lanes.tiles(turns),
             loads=len(tyres),
             every=check_stride(self.interval),
-            always=bool(bends) or any(name in tyres for name in channels),
+            always=bool(segments) or any(name in tyres for name in channels),
             wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
             rest=rest,
             weights=(np.cumsum(WEIGHTS[::-1])[::-1][1:] / self.interval**2).astype(ELEMENT),
@@ -161,13 +161,13 @@ class Group:
     def _judge(seen: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]) -> Validity:
         """What the motion of a car has shown; its peaks are those of `vehicle.engines.reduced.batch_stepping.march`."""
         turned, low, high = seen[: len(bodies)], seen[len(bodies) :: 2], seen[len(bodies) + 1 :: 2]
-        wheels, bends = model.matrices.system.inputs, model.matrices.bends
-        own = slice(len(wheels), len(wheels) + len(bends))
+        wheels, segments = model.matrices.system.inputs, model.matrices.segments
+        own = slice(len(wheels), len(wheels) + len(segments))
         return Validity(
             angles=dict(zip(bodies, np.sqrt(turned).tolist(), strict=True)),
             loads={wheel: tyre_load[wheel] + load for wheel, load in zip(wheels, low.tolist(), strict=False)},
             one_sided=model.matrices.one_sided,
-            left=exceeded_segments(bends, low[own], high[own]),
+            left=exceeded_segments(segments, low[own], high[own]),
         )
 
 

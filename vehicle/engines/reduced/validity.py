@@ -115,10 +115,12 @@ def rotation_outputs(model: PoleModel, bodies: Sequence[str]) -> Outputs:
 
 def segment_outputs(model: PoleModel) -> Outputs:
     """Displacements of the laws that bend; (bends, ...)."""
-    bends, wheels = model.matrices.bends, len(model.matrices.system.inputs)
-    stretch = np.array([bend.row @ model.modal for bend in bends], dtype=complex).reshape(-1, len(model.poles))
-    height = np.array([-1.0 * (np.arange(wheels) == bend.plate) for bend in bends]).reshape(-1, wheels)
-    return Outputs(poles=stretch, height=height, velocity=np.zeros_like(height))
+    segments, wheels = model.matrices.segments, len(model.matrices.system.inputs)
+    displacements = np.array([segment.row @ model.modal for segment in segments], dtype=complex).reshape(
+        -1, len(model.poles)
+    )
+    height = np.array([-1.0 * (np.arange(wheels) == segment.plate) for segment in segments]).reshape(-1, wheels)
+    return Outputs(poles=displacements, height=height, velocity=np.zeros_like(height))
 
 
 def tyre_outputs(model: PoleModel) -> Outputs:
@@ -126,10 +128,13 @@ def tyre_outputs(model: PoleModel) -> Outputs:
     return model.outputs([f"tyre_{wheel}_force_z" for wheel in model.matrices.system.inputs])
 
 
-def exceeded_segments(bends: Sequence[LinearSegment], low: Vector, high: Vector) -> dict[str, float]:
+def exceeded_segments(segments: Sequence[LinearSegment], low: Vector, high: Vector) -> dict[str, float]:
     """How far each bend left its piece [m], of those that did; low, high: extremes of the displacements; (bends,)."""
-    beyond = [max(bend.low - a, b - bend.high) for bend, a, b in zip(bends, low.tolist(), high.tolist(), strict=True)]
-    return {bend.name: distance for bend, distance in zip(bends, beyond, strict=True) if distance > 0.0}
+    excess = [
+        max(segment.low - a, b - segment.high)
+        for segment, a, b in zip(segments, low.tolist(), high.tolist(), strict=True)
+    ]
+    return {segment.name: distance for segment, distance in zip(segments, excess, strict=True) if distance > 0.0}
 
 
 class ValidityWatch:
@@ -162,7 +167,7 @@ class ValidityWatch:
         )
         self.static = np.array([tyre_load[wheel] for wheel in model.matrices.system.inputs])
         self.angle, self.load = np.zeros(len(self.bodies)), self.static.copy()
-        self.low, self.high = np.zeros((2, len(model.matrices.bends)))
+        self.low, self.high = np.zeros((2, len(model.matrices.segments)))
 
     def look(self, states: Vector, plates: Vector, before: Vector) -> None:
         """Take a block of samples into account; arguments as of `Readout.at`."""
@@ -171,7 +176,7 @@ class ValidityWatch:
         self.angle = np.maximum(self.angle, np.sqrt(np.max(np.sum(turns**2, axis=1), axis=1)))
         loads = self.tyres.at(states[seen], plates[seen], before[seen]) + self.static[:, None]
         self.load = np.minimum(self.load, np.min(loads, axis=1))
-        if self.matrices.bends:
+        if self.matrices.segments:
             values = self.stretches.at(states, plates, before)
             self.low, self.high = np.minimum(self.low, values.min(axis=1)), np.maximum(self.high, values.max(axis=1))
 
@@ -181,5 +186,5 @@ class ValidityWatch:
             angles=dict(zip(self.bodies, self.angle.tolist(), strict=True)),
             loads=dict(zip(self.matrices.system.inputs, self.load.tolist(), strict=True)),
             one_sided=self.matrices.one_sided,
-            left=exceeded_segments(self.matrices.bends, self.low, self.high),
+            left=exceeded_segments(self.matrices.segments, self.low, self.high),
         )

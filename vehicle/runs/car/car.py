@@ -19,7 +19,7 @@ from vehicle.engines.linear.load_rows import LoadRows, load_rows
 from vehicle.engines.linear.natural_modes import grows
 from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
-from vehicle.engines.linear.variant_matrices import CarVariant, Terms
+from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.engines.reduced.reduced_run import simulate_reduced
@@ -133,13 +133,13 @@ class Car:
         return build_model(self.vehicle, self.trimmed_body)
 
     @cached_property
-    def _terms(self) -> Terms:
-        return Terms(self.model, self.matrices, self.trimmed_body)
+    def _terms(self) -> VariantTerms:
+        return VariantTerms(self.model, self.matrices, self.trimmed_body)
 
     @cached_property
     def _from_terms(self) -> CarVariant | None:
         """What the terms of another car make of this one; None where it has to be built."""
-        return None if self._base is None else self._base._terms.car_of(self.vehicle)
+        return None if self._base is None else self._base._terms.variant(self.vehicle)
 
     @cached_property
     def matrices(self) -> CarMatrices:
