@@ -144,12 +144,12 @@ def test_tables_of_a_line_are_the_linear_car(car, bump_piece):
 def test_energy_balances_and_the_engines_say_where_they_end(bent_car, bump_piece):
     run = bent_car.run(bump_piece, engine="auto")
     assert run.recording.statistics.engine == "mujoco"
-    assert "stop of damper 1 left the piece of its table" in run.engine_reason
+    assert "stop of damper 1 left the linear segment of its table" in run.engine_reason
     assert run.recording.statistics.energies.residual < 2e-3
     # Who asks for the reduced engine gets it, and is told.
     beyond = bent_car.run(bump_piece, engine="reduced").recording.statistics
     assert beyond.engine == "reduced" and not beyond.within_validity
-    assert any("stop of damper 1 left the piece of its table" in text for text in beyond.warnings)
+    assert any("stop of damper 1 left the linear segment of its table" in text for text in beyond.warnings)
     small = type(bump_piece)(
         time=bump_piece.time, displacement={name: 0.1 * z for name, z in bump_piece.displacement.items()}
     )

@@ -21,7 +21,7 @@ def test_pieces_give_the_same_run(car, monkeypatch):
     whole = car.run(road, engine="reduced", channels=channels)
     monkeypatch.setattr(plate_samples, "LARGEST_TABLE", 0)
     pieces = car.run(road, engine="reduced", channels=channels)
-    assert isinstance(plate_samples.plate_samples(road, 1e-3, 10, 2), plate_samples.LongPlates)
+    assert isinstance(plate_samples.plate_samples(road, 1e-3, 10, 2), plate_samples.LongPlateSamples)
     for name in channels:
         np.testing.assert_array_equal(whole[name], pieces[name])
 

@@ -140,7 +140,7 @@ def test_auto_is_reduced_until_the_motion_is_large(car, high_piece):
     large = Signal(time=time, displacement={"fr": bump_shape(time, amplitude=0.04, start=0.1)})
     reduced = car.run(large, engine="reduced").recording.statistics
     assert not reduced.within_validity
-    assert f"holds up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine" in reduced.warnings[0]
+    assert f"is valid up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine" in reduced.warnings[0]
     assert car.run(large, engine="auto").recording.statistics.engine == "mujoco"
 
 
@@ -160,7 +160,7 @@ def test_without_numba_it_is_named_and_auto_is_mujoco(car, high_piece, monkeypat
 
     monkeypatch.setattr(pole_stepping, "numba_module", without)
     try:
-        with pytest.raises(MissingPartError, match="needs numba, which is missing"):
+        with pytest.raises(MissingPartError, match="needs numba; install it"):
             car.run(piece, engine="reduced")
         monkeypatch.undo()
         monkeypatch.setattr(pole_stepping, "find_spec", lambda name: None)

@@ -1,4 +1,4 @@
-"""A group of cars in the lanes: what is read of them, and their march, block by block."""
+"""Simulation of a group of up to eight cars, block by block."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.reduced.batch_factors import CarFactors
-from vehicle.engines.reduced.batch_layout import ELEMENT, INNER, LANES, PAST, TILE, Reading, aligned
+from vehicle.engines.reduced.batch_layout import ELEMENT, INNER_BLOCK, LANES, PAST, TILE, OutputTiles, aligned_table
 from vehicle.engines.reduced.batch_tables import BatchTable, Table, damper_nodes
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import PoleModel
@@ -21,18 +21,18 @@ from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
 
-BLOCK = 64 * INNER
-"""Samples whose plates are made at once."""
+BLOCK = 64 * INNER_BLOCK
+"""Samples in a block of plate displacements."""
 
 
-class Group:
-    """Up to eight cars in the lanes.
+class BatchGroup:
+    """Group of up to eight cars, one in each SIMD lane.
 
     Args:
-        models, factors: of the cars.
+        models, factors: pole models and factors of the cars.
         signal: displacement of the plates.
-        interval: between two samples [s].
-        timestep: [s].
+        interval: time between two samples [s].
+        timestep: time step [s].
     """
 
     def __init__(
@@ -57,126 +57,134 @@ class Group:
         dampers: Sequence[Sequence[Damper]],
         tyre_load: Sequence[Mapping[str, float]],
     ) -> list[Validity]:
-        """Fill the rows of the cars.
+        """Simulate the cars and fill their rows of the table.
 
         Args:
-            table: (channels, all cars, samples).
-            cars: rows of these cars.
-            channels: their names.
-            dampers, tyre_load: of these cars.
+            table: time histories; (channels, all cars, samples).
+            cars: rows of the cars of this group.
+            channels: names of the channels.
+            dampers, tyre_load: damper laws and static tyre loads of the cars.
 
         Returns:
-            What the motion of each car has shown.
+            Validity of the motion of each car.
         """
         system, segments = self.models[0].matrices.system, self.models[0].matrices.segments
         bodies = rotating_bodies(self.models[0].matrices)
         lanes = BatchTable(self.factors, dampers, self.start)
         count = len(dampers[0])
-        # In a sample: positions, all tyre loads and bends, damper velocities, damper forces.
-        moved = [name for name in channels if name in system.outputs]
-        tyres = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
-        levels = TILE * -(-len(moved) // TILE)
-        ends = levels + TILE * -(-(len(tyres) + len(segments)) // TILE)
-        rows = {name: row for row, name in enumerate(moved)} | {name: levels + row for row, name in enumerate(tyres)}
-        rest = np.zeros((len(channels), LANES))
+        # Rows of a sample: positions, all tyre loads and segments, damper velocities, damper forces.
+        position_names = [name for name in channels if name in system.outputs]
+        tyre_wheels = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
+        levels = TILE * -(-len(position_names) // TILE)
+        velocity_row = levels + TILE * -(-(len(tyre_wheels) + len(segments)) // TILE)
+        rows = {name: row for row, name in enumerate(position_names)} | {
+            name: levels + row for row, name in enumerate(tyre_wheels)
+        }
+        static_values = np.zeros((len(channels), LANES))
         for index, wheel in enumerate(system.inputs[:count]):
-            rows |= {f"damper_{wheel}_velocity": ends + index, f"damper_{wheel}_force": ends + count + index}
+            rows |= {
+                f"damper_{wheel}_velocity": velocity_row + index,
+                f"damper_{wheel}_force": velocity_row + count + index,
+            }
         for row, name in enumerate(channels):
-            if name in tyres:
-                rest[row, : len(cars)] = [load[tyres[name]] for load in tyre_load]
-            elif rows.get(name, 0) >= ends + count:
-                rest[row, : len(cars)] = [
-                    damper_nodes(own[rows[name] - ends - count])[0]["rest_force"] for own in dampers
+            if name in tyre_wheels:
+                static_values[row, : len(cars)] = [load[tyre_wheels[name]] for load in tyre_load]
+            elif rows.get(name, 0) >= velocity_row + count:
+                static_values[row, : len(cars)] = [
+                    damper_nodes(car_dampers[rows[name] - velocity_row - count])[0]["rest_force"]
+                    for car_dampers in dampers
                 ]
             elif name not in rows:
                 table[row, cars] = self._plate(name, table.shape[2])
-        linear = [model.outputs([*tyres]) + segment_outputs(model) for model in self.models]
-        shapes = [car.weights(model.modal) for car, model in zip(self.factors, self.models, strict=True)]
-        places, turns = (
-            [rows_of(model.matrices) @ shape for model, shape in zip(self.models, shapes, strict=True)]
-            for rows_of in (partial(_places, names=moved), partial(_turns, bodies=bodies))
+        linear = [model.outputs([*tyre_wheels]) + segment_outputs(model) for model in self.models]
+        modal_weights = [car.weights(model.modal) for car, model in zip(self.factors, self.models, strict=True)]
+        positions, rotations = (
+            [rows_of(model.matrices) @ shape for model, shape in zip(self.models, modal_weights, strict=True)]
+            for rows_of in (partial(_position_rows, names=position_names), partial(_rotation_rows, bodies=bodies))
         )
-        reading = Reading(
-            positions=lanes.tiles(places),
-            levels=lanes.tiles([car.weights_of(one) for car, one in zip(self.factors, linear, strict=True)]),
-            turns=lanes.tiles(turns),
-            loads=len(tyres),
+        reading = OutputTiles(
+            positions=lanes.tiles(positions),
+            levels=lanes.tiles([car.weights_of(outputs) for car, outputs in zip(self.factors, linear, strict=True)]),
+            rotations=lanes.tiles(rotations),
+            loads=len(tyre_wheels),
             every=check_stride(self.interval),
-            always=bool(segments) or any(name in tyres for name in channels),
+            always=bool(segments) or any(name in tyre_wheels for name in channels),
             wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
-            rest=rest,
+            offset=static_values,
             weights=(np.cumsum(WEIGHTS[::-1])[::-1][1:] / self.interval**2).astype(ELEMENT),
         )
-        y = aligned((PAST + INNER) * (ends + 2 * count))
-        for lane, one in enumerate(linear):
-            # The first sample: a car that has not yet moved, over plates that may stand anywhere.
-            chosen = self.factors[lane].columns
-            begin = np.hstack([one.height[:, chosen], one.velocity[:, chosen]]) @ self.start.ravel()
-            y[(PAST - 1) * (ends + 2 * count) + levels :, lane][: len(begin)] = begin
-        peaks = aligned(len(bodies) + 2 * (ends - levels))
-        self._march(lanes, reading, y, peaks, table, cars, count)
+        output_buffer = aligned_table((PAST + INNER_BLOCK) * (velocity_row + 2 * count))
+        for lane, outputs in enumerate(linear):
+            # First sample: a car at rest over plates with any displacement.
+            columns = self.factors[lane].columns
+            initial = np.hstack([outputs.height[:, columns], outputs.velocity[:, columns]]) @ self.start.ravel()
+            output_buffer[(PAST - 1) * (velocity_row + 2 * count) + levels :, lane][: len(initial)] = initial
+        peaks = aligned_table(len(bodies) + 2 * (velocity_row - levels))
+        self._step_blocks(lanes, reading, output_buffer, peaks, table, cars, count)
         return [
-            self._judge(peaks[:, lane].astype(float), model, bodies, static)
+            self._validity(peaks[:, lane].astype(float), model, bodies, static)
             for lane, (model, static) in enumerate(zip(self.models, tyre_load, strict=True))
         ]
 
     def _plate(self, channel: str, samples: int) -> Vector | float:
-        """Displacement of a plate at the samples."""
+        """Return the displacement of a plate at the samples [m]."""
         for column, wheel in enumerate(self.driven):
             if channel == f"plate_{wheel}_displacement":
                 return self.plates[: samples * self.every : self.every][:, 2 * column]
         return 0.0
 
-    def _march(
+    def _step_blocks(
         self,
         lanes: BatchTable,
-        reading: Reading,
+        reading: OutputTiles,
         y: Table,
         peaks: Table,
         table: Vector,
         cars: Sequence[int],
         count: int,
     ) -> None:
-        """Block by block; arguments as of `vehicle.engines.reduced.batch_stepping.march`."""
+        """Advance the cars block by block; see `batch_stepping.step_batch` for the arguments."""
         from vehicle.engines.reduced.batch_stepping import compiled_batch_stepping
 
-        march, m, every = compiled_batch_stepping(), lanes.plates, self.every
-        x, own = aligned((INNER + 1) * lanes.states), np.array(cars, dtype=np.int64)
-        x[: len(lanes.begin)] = lanes.begin
-        tuples = (0.0,) * (2 * (count + m)), (0.0,) * count
-        done, end = 1, table.shape[2] + AHEAD
-        while done < end:
-            size, first = min(BLOCK, end - done), (done - 1) * every
-            piece = self.plates[first : first + size * every + 1]
-            rates = np.zeros((len(piece), 2 * m), dtype=ELEMENT)
-            rates[:, :m] = piece[:, 1::2]
-            rates[:-1, m:] = np.diff(piece[:, 0::2], axis=0) / self.timestep
-            ends = piece[::every, 0::2]
-            heights = np.hstack([ends[1:], np.diff(ends, axis=0)]).astype(ELEMENT)
-            march(lanes.table, lanes.rows, lanes.laws, rates, heights, every, reading, x, y, peaks, table, done, own,
-                  *tuples)  # fmt: skip
-            done += size
+        stepping, m, every = compiled_batch_stepping(), lanes.plates, self.every
+        x, car_indices = aligned_table((INNER_BLOCK + 1) * lanes.states), np.array(cars, dtype=np.int64)
+        x[: len(lanes.initial)] = lanes.initial
+        lengths = (0.0,) * (2 * (count + m)), (0.0,) * count
+        sample, end = 1, table.shape[2] + AHEAD
+        while sample < end:
+            size, first = min(BLOCK, end - sample), (sample - 1) * every
+            block_plates = self.plates[first : first + size * every + 1]
+            rates = np.zeros((len(block_plates), 2 * m), dtype=ELEMENT)
+            rates[:, :m] = block_plates[:, 1::2]
+            rates[:-1, m:] = np.diff(block_plates[:, 0::2], axis=0) / self.timestep
+            displacements = block_plates[::every, 0::2]
+            plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(ELEMENT)
+            stepping(lanes.table, lanes.rows, lanes.laws, rates, plate_z, every, reading, x, y, peaks, table, sample,
+                     car_indices, *lengths)  # fmt: skip
+            sample += size
 
     @staticmethod
-    def _judge(seen: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]) -> Validity:
-        """What the motion of a car has shown; its peaks are those of `vehicle.engines.reduced.batch_stepping.march`."""
-        turned, low, high = seen[: len(bodies)], seen[len(bodies) :: 2], seen[len(bodies) + 1 :: 2]
+    def _validity(
+        car_peaks: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]
+    ) -> Validity:
+        """Return the validity of the motion of a car from its peaks; see `step_batch` for their order."""
+        rotations, low, high = car_peaks[: len(bodies)], car_peaks[len(bodies) :: 2], car_peaks[len(bodies) + 1 :: 2]
         wheels, segments = model.matrices.system.inputs, model.matrices.segments
-        own = slice(len(wheels), len(wheels) + len(segments))
+        segment_rows = slice(len(wheels), len(wheels) + len(segments))
         return Validity(
-            angles=dict(zip(bodies, np.sqrt(turned).tolist(), strict=True)),
+            angles=dict(zip(bodies, np.sqrt(rotations).tolist(), strict=True)),
             loads={wheel: tyre_load[wheel] + load for wheel, load in zip(wheels, low.tolist(), strict=False)},
             one_sided=model.matrices.one_sided,
-            left=exceeded_segments(segments, low[own], high[own]),
+            exceeded=exceeded_segments(segments, low[segment_rows], high[segment_rows]),
         )
 
 
-def _places(matrices: CarMatrices, names: Sequence[str]) -> Vector:
-    """Rows of places on the coordinates, of which `vehicle.engines.simulation.acceleration` makes channels."""
+def _position_rows(matrices: CarMatrices, names: Sequence[str]) -> Vector:
+    """Return the rows of acceleration channels over the coordinates; see `vehicle.engines.simulation.acceleration`."""
     size = matrices.system.size
     return np.array([matrices.system.outputs[name][:size] for name in names]).reshape(-1, size)
 
 
-def _turns(matrices: CarMatrices, bodies: Sequence[str]) -> Vector:
-    """Rows of the rotations of bodies about three axes on the coordinates."""
+def _rotation_rows(matrices: CarMatrices, bodies: Sequence[str]) -> Vector:
+    """Return the rows of the rotations of bodies about three axes over the coordinates."""
     return np.concatenate([matrices.body_rows[body][3:] for body in bodies])

@@ -1,4 +1,4 @@
-"""How eight cars lie in a table: one column each, a row for each number, and where the sections begin."""
+"""Layout of the tables of a batch: one column for each of eight cars, one row for each number."""
 
 from __future__ import annotations
 
@@ -10,41 +10,41 @@ import numpy.typing as npt
 from vehicle.engines.simulation.acceleration import AHEAD
 
 ELEMENT = np.float32
-"""Single precision."""
+"""Number type: single precision."""
 
 LANES = 8
-"""Cars in a vector: 32 bytes, a register of AVX2; tables of more would not stay in the nearest cache."""
+"""Cars in a SIMD vector: 32 bytes, a register of AVX2; tables of more cars would not fit in the L1 cache."""
 
 ALIGNMENT = 32
-"""Of the first row [byte]."""
+"""Alignment of the first row of a table [byte]."""
 
-INNER = 64
-"""Samples between two readings of the states: they stay in the cache of a core."""
+INNER_BLOCK = 64
+"""Samples in an inner block, after which outputs are computed: their states fit in the cache of a core."""
 
 TILE = 3
-"""Outputs that are read at once: those of three axes."""
+"""Outputs that are computed together: those of three axes."""
 
 PAST = 2 * AHEAD
-"""Samples before a block that the accelerations in it need."""
+"""Samples before a block that are needed for the accelerations in the block."""
 
 
-class Rows(NamedTuple):
-    """Where the sections of a table of cars begin, and how long they are.
+class TableRows(NamedTuple):
+    """First rows of the sections of a table of cars, and their sizes.
 
     Attributes:
-        pairs, reals: numbers of poles; the table begins with factors of the pairs, those of the real poles come next.
-        real: first row of those.
-        slip: what z' at the end of a step adds to the damper velocities, dampers by plates.
-        gain, ramp: what mean forces and their slopes add, dampers by dampers each.
-        law: of each damper, `pieces` + 1 times (x, F_c/2, friction as a share of its limit).
-        pieces: of the laws.
-        limit, full: friction limits; velocities at which the friction is full.
+        pairs, reals: numbers of pole pairs and real poles; the table begins with the factors of the pairs.
+        real: first row of the factors of the real poles.
+        slip: contribution of z' at the end of a step to the damper velocities, dampers by plates.
+        gain, ramp: contributions of mean forces and of their slopes, dampers by dampers each.
+        law: `pieces` + 1 breakpoints (x, F_c/2, friction over its limit) of each damper.
+        pieces: number of segments of the laws.
+        limit, full: friction limits; velocities of full friction.
         inputs: forces, slopes, z' and mean z' of a step.
-        viscous: damping constants that the poles hold.
-        velocity, earlier: velocities now, and a step ago.
-        hold, stuck, stick: halves of F_c now, 1 where the damper stuck at the end of the last step, 1 where in all of
-            it.
-        room: rows for the solution of a step.
+        viscous: damping constants in the poles.
+        velocity, earlier: current velocities and those of the last step.
+        hold, stuck, stick: current halves of F_c, 1 if the damper was stuck at the end of the last step, 1 if stuck
+            during the whole step.
+        work: work space for the solution of a step.
     """
 
     pairs: int
@@ -64,37 +64,37 @@ class Rows(NamedTuple):
     hold: int
     stuck: int
     stick: int
-    room: int
+    work: int
 
 
-class Reading(NamedTuple):
-    """What is read of the states at a sample.
+class OutputTiles(NamedTuple):
+    """Weights of the outputs of a sample, in tiles, and their use.
 
     Attributes:
-        positions, levels: tiles of places, of which accelerations are made, and of forces and displacements.
-        turns: a tile of rotations for each body.
+        positions, levels: tiles of the positions of acceleration channels, and of forces and displacements.
+        rotations: one tile of rotations for each body.
         loads: number of the levels that are tyre loads, which come first.
-        every: samples from one look at rotations and tyre loads to the next.
-        always: whether levels are needed at every sample; else at those looks.
-        wanted: row of a sample that each channel is made of, positions first; -1 of one that is not made here.
-        rest: what is added to it; (channels, LANES).
-        weights: of the differences of positions, for `acceleration`; (2 AHEAD,).
+        every: samples from one check of rotations and tyre loads to the next.
+        always: compute levels at every sample; otherwise only at the checks.
+        wanted: row of a sample for each channel, positions first; -1 for channels that are not computed here.
+        offset: static value of each channel; (channels, LANES).
+        weights: weights of the differences of positions for `acceleration`; (2 AHEAD,).
     """
 
     positions: Any
     levels: Any
-    turns: Any
+    rotations: Any
     loads: int
     every: int
     always: bool
     wanted: Any
-    rest: Any
+    offset: Any
     weights: Any
 
 
-def aligned(rows: int) -> npt.NDArray[Any]:
-    """A table (rows, LANES) of zeros as `load` and `store` of `vehicle.engines.reduced.simd_vector` take it."""
+def aligned_table(rows: int) -> npt.NDArray[Any]:
+    """Return an aligned table (rows, LANES) of zeros; `simd_vector.load` and `store` need the alignment."""
     size = rows * LANES * np.dtype(ELEMENT).itemsize
-    room = np.zeros(size + ALIGNMENT, dtype=np.uint8)
-    start = -room.ctypes.data % ALIGNMENT
-    return room[start : start + size].view(ELEMENT).reshape(rows, LANES)
+    buffer = np.zeros(size + ALIGNMENT, dtype=np.uint8)
+    start = -buffer.ctypes.data % ALIGNMENT
+    return buffer[start : start + size].view(ELEMENT).reshape(rows, LANES)

@@ -1,8 +1,8 @@
-"""Many cars on one signal: eight at once, in single precision, with longer steps than one car alone.
+"""Batch of cars on one signal: eight at once, in single precision, with longer steps than a single run.
 
-Linear parts are exact at any step, and a stuck damper is of third order in it, so the step only places the instants of
-sticking and slipping. At `COARSE_STEP` comfort values agree with those of a single run within 0.15 % and slip shares
-within 0.1 points; instants of the first slip and peaks of damper tops need
+Linear parts are exact at any step, and a stuck damper has third order, so the step only limits the accuracy of the
+instants of sticking and slipping. At `COARSE_STEP` comfort values agree with those of a single run within 0.15 % and
+slip shares within 0.1 points; instants of the first slip and peaks of damper tops need
 `vehicle.engines.reduced.reduced_run.LONGEST_STEP`.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.reduced.batch_factors import car_factors
-from vehicle.engines.reduced.batch_group import Group
+from vehicle.engines.reduced.batch_group import BatchGroup
 from vehicle.engines.reduced.batch_layout import LANES
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.pole_stepping import MISSING, has_compiler
@@ -30,19 +30,19 @@ from vehicle.signals.excitation.signal import Signal, uniform_time
 Vector = npt.NDArray[np.float64]
 
 COARSE_STEP = 5e-4
-"""Longest step [s] for comfort and slip."""
+"""Maximum time step [s] for comfort values and slip shares."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BatchRuns:
-    """Time histories of many cars on one signal.
+    """Time histories of a batch of cars on one signal.
 
     Attributes:
-        time: (n,) [s].
-        channels: name to (cars, n); names and units are those of `vehicle.names`.
-        units: name to unit.
+        time: sample times [s]; (n,).
+        channels: channel name to time histories (cars, n); see `vehicle.names`.
+        units: channel name to unit.
         excited: wheels whose plates were driven.
-        statistics: of each car; its computing time is its share of that of all.
+        statistics: statistics of each car; its computing time is its share of the time of the group.
     """
 
     time: Vector
@@ -52,11 +52,11 @@ class BatchRuns:
     statistics: tuple[Statistics, ...]
 
     def __len__(self) -> int:
-        """Number of cars."""
+        """Return the number of cars."""
         return len(self.statistics)
 
     def recording(self, car: int) -> Recording:
-        """What one car has left, as of a single run; its channels are views."""
+        """Return the recording of one car; its channels are views."""
         return Recording(
             time=self.time,
             channels={name: values[car] for name, values in self.channels.items()},
@@ -78,31 +78,31 @@ def simulate_batch(
     channels: Sequence[str],
     step: float = COARSE_STEP,
 ) -> BatchRuns:
-    """Run many cars of one topology on the same plates with the reduced engine.
+    """Simulate a batch of cars of one topology on the same plates with the reduced engine.
 
-    The row of a car is the same, bit for bit, whatever the others are and however many. A car that the lanes do
-    not know (`car_factors`) is run alone, as `simulate_reduced` does it.
+    The values of a car are bitwise independent of the other cars. Cars that `car_factors` leaves out are simulated one
+    at a time by `simulate_reduced`.
 
     Args:
-        models: the cars as sums over their poles: the same wheels, dampers, bodies and channels; any numbers.
+        models: pole models of the cars, with the same wheels, dampers, bodies and channels.
         signal: displacement of the plates.
-        dampers: laws of each car, one for each damper.
+        dampers: damper laws of each car.
         record_rate: rate of the samples [Hz].
         tyre_load: static tyre loads [N] of each car by wheel.
-        channels: names of the recorded channels, without loads.
-        step: longest time step [s].
+        channels: names of the recorded channels; load channels are not possible.
+        step: maximum time step [s].
 
     Returns:
         The channels of all cars.
 
     Raises:
         MissingPartError: numba is not installed.
-        ConfigurationError: there are no cars.
+        ConfigurationError: the list of cars is empty.
     """
     if not has_compiler():
         raise MissingPartError(MISSING)
     if not models:
-        raise ConfigurationError("simulate_batch: no cars were given")
+        raise ConfigurationError("simulate_batch: the list of cars is empty")
     interval = 1.0 / record_rate
     timestep = interval / int(np.ceil(interval / step - 1e-9))
     samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
@@ -122,23 +122,23 @@ def simulate_batch(
         )
         statistics[car] = run.statistics
         table[:, car] = [run[name] for name in channels]
-    # Like ones together: the longest list of poles in a group is that of all.
-    together = sorted(factors, key=lambda car: (factors[car].pairs, factors[car].reals))
-    for first in range(0, len(together), LANES):
-        cars = together[first : first + LANES]
+    # Group cars with similar numbers of poles: the largest number in a group applies to all its cars.
+    ordered_cars = sorted(factors, key=lambda car: (factors[car].pairs, factors[car].reals))
+    for first in range(0, len(ordered_cars), LANES):
+        cars = ordered_cars[first : first + LANES]
         started = clock.perf_counter()
-        run_of = Group([models[car] for car in cars], [factors[car] for car in cars], signal, interval, timestep)
-        found = run_of.fill(table, cars, channels, [dampers[car] for car in cars], [tyre_load[car] for car in cars])
-        wall = (clock.perf_counter() - started) / len(cars)
-        for car, validity in zip(cars, found, strict=True):
+        group = BatchGroup([models[car] for car in cars], [factors[car] for car in cars], signal, interval, timestep)
+        validities = group.fill(table, cars, channels, [dampers[car] for car in cars], [tyre_load[car] for car in cars])
+        time_of_car = (clock.perf_counter() - started) / len(cars)
+        for car, validity in zip(cars, validities, strict=True):
             statistics[car] = Statistics(
                 engine="reduced",
                 callback="native",
                 timestep=timestep,
                 steps=(samples - 1) * round(interval / timestep),
-                wall_time=wall,
+                wall_time=time_of_car,
                 warnings=validity.warnings(),
-                within_validity=validity.held,
+                within_validity=validity.within_limits,
                 energies=None,
             )
     return BatchRuns(

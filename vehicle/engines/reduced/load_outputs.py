@@ -1,6 +1,9 @@
-"""Loads as outputs of the poles: u = Re(modal xi), u' = Re(modal s xi), u'' = Re(modal s xi') with xi' of the poles.
+"""Load channels as outputs of the poles.
 
-xi' = s xi + b_z z + b_c z' + e f: what plates and damper forces add to xi' reaches u'' at once, and no other load.
+u = Re(modal xi), u' = Re(modal s xi), u'' = Re(modal s xi') with xi' of the poles.
+
+xi' = s xi + b_z z + b_c z' + e f: plates and damper forces act directly on xi' and hence on u'', and on no other part
+of a load.
 """
 
 from __future__ import annotations
@@ -15,11 +18,11 @@ Vector = npt.NDArray[np.float64]
 
 
 def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:
-    """Rows of loads over the poles and the plates, without their static values and `direct_forces`.
+    """Return the rows of loads over the poles and the plates, without static values and `direct_forces`.
 
     Args:
-        model: the car.
-        loads: its loads.
+        model: pole model of the car.
+        loads: rows of the loads over the motion.
     """
     rate = model.modal * model.poles
     return Outputs(
@@ -33,5 +36,5 @@ def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:
 
 
 def direct_forces(model: PoleModel, loads: LoadRows) -> Vector:
-    """Rows of loads over the nonlinear damper forces of the same instant; (loads, d)."""
+    """Return the rows of loads over the nonlinear damper forces at the same instant; (loads, d)."""
     return np.asarray(loads.friction + (loads.acceleration @ (model.modal * model.poles @ model.force)).real)

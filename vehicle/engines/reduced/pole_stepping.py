@@ -1,13 +1,14 @@
-"""Advancing the poles step by step, compiled: the damper forces of every step are implicit.
+"""Compiled time stepping of the poles with implicit damper forces.
 
-v+ = a + G f with a the w velocities without the forces of the step, f = -phi(v+) and
+v+ = a + G f with the w velocities a without the forces of the step, f = -phi(v+) and
 
     phi(v) = clamp(c v, L) + F_c(v) - D v - F_c(0),   c = (2/pi) L eps: friction;  F_c: curve, D its smallest slope.
 
-phi grows with v and is piecewise linear, so one damper alone is solved exactly. Several are solved by turns: the fixed
-point is the minimum of a convex function (G is symmetric, positive). Two find it from anywhere, by coordinate descent;
-more do where the dampers act on themselves more than all others on them. In a car it is a hundred times more, so few
-turns do.
+phi increases with v and is piecewise linear, so a single damper is solved exactly. Several dampers are solved by
+iteration, each with the last forces of the others (Jacobi); the fixed point is the minimum of a convex function (G is
+symmetric, positive). With two dampers the iteration converges from any start (coordinate descent). With more it
+converges if the effect of each damper on itself is larger than that of all others on it. In a car it is a hundred times
+larger, so few iterations are sufficient.
 """
 
 from __future__ import annotations
@@ -20,38 +21,38 @@ from typing import Any
 import numpy as np
 
 from vehicle.compiler import OPTIONS, jitable, numba_module, stamp
-from vehicle.engines.reduced.damper_control import Control, control, keep
-from vehicle.engines.reduced.slope_force import Slope, slopes
+from vehicle.engines.reduced.damper_control import Control, record_sample, set_coefficients
+from vehicle.engines.reduced.slope_force import SlopeForces, set_slope_forces
 from vehicle.engines.simulation.sampling import copy_row
 from vehicle.errors import MissingPartError
 from vehicle.model.laws.damper import friction_limit
 from vehicle.model.laws.friction import clamp, slope_at_rest
 
-MISSING = "the reduced engine needs numba, which is missing (pip install numba)"
+MISSING = "the reduced engine needs numba; install it: pip install numba"
 
-March = Callable[..., None]
+PoleStepping = Callable[..., None]
 
-TURNS = 60
-"""Most turns among the dampers; of two, each shrinks the error by the square of their coupling."""
+ITERATIONS = 60
+"""Maximum number of iterations; with two dampers, two iterations reduce the error by the square of their coupling."""
 
 ACCURACY = 1e-9
-"""Error [N] of a damper force at which the turns end, far below what friction is known to."""
+"""Error [N] of a damper force at which the iteration ends, far below the accuracy of any friction limit."""
 
 
 @jitable
 def solve_damper(a: float, g: float, limit: float, full: float, curve: Any, piece: int) -> tuple[float, int]:
-    """Velocity v of a = v + g (clamp(c v, L) + s v + b), and the piece of the curve that it is on.
+    """Solve a = v + g (clamp(c v, L) + s v + b) for v; return v and its segment of the curve.
 
-    With the piece s v + b known, v = (a - g b) k - g k clamp(c v, L), k = 1/(1 + g s). Beyond the edge of that piece,
-    the solution is beyond it in truth too, for all of the law rises: the next piece is tried.
+    For a given segment s v + b, v = (a - g b) k - g k clamp(c v, L), k = 1/(1 + g s). If v is beyond an end of the
+    segment, so is the solution, because the law is monotonic: the next segment is tried.
 
     Args:
         a: velocity without the forces of the step.
-        g: own gain, above 0.
-        limit: L.
-        full: velocity pi/(2 eps) at which the friction is full, for c = (2/pi) L eps.
-        curve: upper edge, s, b and k of every piece; (4, pieces).
-        piece: to begin with.
+        g: gain of the damper on its own velocity, above 0.
+        limit: friction limit L.
+        full: velocity pi/(2 eps) of full friction, for c = (2/pi) L eps.
+        curve: upper end, s, b and k of every segment; (4, segments).
+        piece: index of the first segment to try.
     """
     while True:
         k = curve[3, piece]
@@ -70,7 +71,7 @@ def solve_damper(a: float, g: float, limit: float, full: float, curve: Any, piec
 
 @jitable
 def damper_force(v: float, limit: float, smoothing: float, curve: Any, piece: int) -> float:
-    """-phi(v)."""
+    """Return the damper force -phi(v)."""
     force: float = -clamp(slope_at_rest(limit, smoothing) * v, limit) - curve[1, piece] * v - curve[2, piece]
     return force
 
@@ -79,30 +80,31 @@ def damper_force(v: float, limit: float, smoothing: float, curve: Any, piece: in
 def solve_dampers(
     count: int, arriving: Any, gain: Any, laws: Any, curves: Any, velocity: Any, force: Any, last: Any, pieces: Any
 ) -> None:
-    """Velocities and forces of w dampers in a step.
+    """Solve for the velocities and forces of w dampers in a step.
 
     Args:
         count: w.
         arriving: velocities without the forces of the step [m/s]; (w,).
         gain: G [m/(N s)]; (w, w).
         laws: records of `vehicle.model.laws.damper`; (w,).
-        curves: what the pieces of the curves have beside D v, as of `solve_damper`; (w, 4, pieces).
-        velocity: at the beginning of the step, which sets the friction limits, and at its end; changed in place, (w,).
-        force: of the last step and of this one [N], changed in place; (w,).
-        last: room for limits and last forces, and the velocities of full friction; (3, w).
-        pieces: which of a curve each damper was on; changed in place, (w,).
+        curves: segments of the curves without D v, see `solve_damper`; (w, 4, segments).
+        velocity: velocity at the beginning of the step, which sets the friction limits, then at its end; changed in
+            place, (w,).
+        force: force of the last step, then of this step [N]; changed in place, (w,).
+        last: buffers for limits and last forces, and the velocities of full friction; (3, w).
+        pieces: current segment of each damper; changed in place, (w,).
     """
     limit, before, full = last[0], last[1], last[2]
     for i in range(count):
         limit[i] = friction_limit(laws[i], velocity[i])
-    for _ in range(TURNS):
-        # By turns with the others' last forces; all at once, so that none waits for another.
+    for _ in range(ITERATIONS):
+        # Jacobi iteration: all dampers use the last forces of the others, so the processor can overlap them.
         for i in range(count):
-            own = arriving[i]
+            uncoupled = arriving[i]
             for j in range(count):
                 if j != i:
-                    own += gain[i, j] * force[j]
-            velocity[i], pieces[i] = solve_damper(own, gain[i, i], limit[i], full[i], curves[i], pieces[i])
+                    uncoupled += gain[i, j] * force[j]
+            velocity[i], pieces[i] = solve_damper(uncoupled, gain[i, i], limit[i], full[i], curves[i], pieces[i])
         for i in range(count):
             before[i] = force[i]
             force[i] = damper_force(velocity[i], limit[i], laws[i]["smoothing"], curves[i], pieces[i])
@@ -118,7 +120,7 @@ def solve_dampers(
 
 
 @jitable
-def march(
+def step_poles(
     count: int,
     pair_factors: Any,
     real_factors: Any,
@@ -137,22 +139,22 @@ def march(
     before: Any,
     after: Any,
     controls: Control,
-    slope: Slope,
+    slope: SlopeForces,
 ) -> None:
-    """March over the steps between the rows of `plates` and keep every `every`-th end.
+    """Advance the poles over the steps between the rows of `plates` and store every `every`-th end.
 
-    Inputs and damper velocities are taken in pairs: an odd number of dampers has one more that does nothing (e).
+    Inputs and damper velocities are processed in pairs: an odd number of dampers is padded by an idle damper.
 
     Args:
-        count: e.
+        count: even number e of dampers.
         pair_factors: real and imaginary rows for the pairs: decay, damper velocities (e), inputs in the order two
             forces, first plate, further forces, further plates, tyres on slopes; (2 (1 + e + e + m + r), p). One table,
             so that the compiler sees that no row overlaps the state.
         real_factors: the same rows for the real poles, real parts; (1 + e + e + m + r, q).
-        slip_plate: what the plates add to the damper velocities, (e, m).
+        slip_plate: contribution of the plates to the damper velocities, (e, m).
         gain: G of the damper forces of a step, (e, e).
         laws: records of `vehicle.model.laws.damper`; (e,).
-        curves: pieces of their curves, as of `solve_damper`; (e, 4, pieces).
+        curves: segments of the damper curves, see `solve_damper`; (e, 4, segments).
         plates: (z, z') of the driven plates at the ends of the steps; (steps + 1, m).
         pair, real: eta without the forces of the step, changed in place; (2, p), (q,).
         force: damper forces of the last step [N], changed in place; (e,).
@@ -161,8 +163,8 @@ def march(
         samples: eta without the forces of the step at the samples; (block, 2 p + q).
         velocities, before, after: damper velocities [m/s], and damper forces [N] of the steps that end and
             begin at a sample; (all samples, e).
-        controls: controlled dampers, whose curves it changes.
-        slope: rolling tyres, an even number r.
+        controls: controlled dampers; their curves are changed in place.
+        slope: slope forces of an even number r of rolling tyres.
     """
     pairs, reals = pair.shape[1], real.shape[0]
     inputs, at = count + plates.shape[1] + slope.past.shape[0], 1 + count
@@ -176,16 +178,16 @@ def march(
     copy_row(velocity, velocities[first - 1])
     room, pieces = np.empty((3, count)), np.zeros(count, dtype=np.int64)
     for i in range(count):
-        # An idle damper has no smoothing, and no friction.
+        # An idle damper has no smoothing and no friction.
         room[2, i] = 0.5 * np.pi / laws[i]["smoothing"] if laws[i]["smoothing"] > 0.0 else 1.0
     for step in range(plates.shape[0] - 1):
-        control(pair, real, plates[step], force, gain, velocity, curves, controls)
+        set_coefficients(pair, real, plates[step], force, gain, velocity, curves, controls)
         u[0], u[1], u[2], u[3] = force[0], force[1], plates[step, 0], plates[step, 1]
         for k in range(2, count):
             u[2 + k] = force[k]
         for k in range(2, plates.shape[1]):
             u[count + k] = plates[step, k]
-        slopes(pair, real, plates, step, force, u, count + plates.shape[1], slope)
+        set_slope_forces(pair, real, plates, step, force, u, count + plates.shape[1], slope)
         f0, f1, z, d = u[0], u[1], u[2], u[3]
         w0, w1 = 0.0, 0.0
         for p in range(pairs):
@@ -231,7 +233,7 @@ def march(
         phase += 1
         if phase == 1:
             copy_row(after[sample - 1], force)
-            keep(sample - 1, 1, velocity, curves, controls)
+            record_sample(sample - 1, 1, velocity, curves, controls)
         if phase == every:
             phase = 0
             row = samples[sample - first]
@@ -240,18 +242,18 @@ def march(
             copy_row(row[2 * pairs :], real)
             copy_row(velocities[sample], velocity)
             copy_row(before[sample], force)
-            keep(sample, 0, velocity, curves, controls)
+            record_sample(sample, 0, velocity, curves, controls)
             sample += 1
 
 
 def has_compiler() -> bool:
-    """Whether numba is installed."""
+    """Return True if numba is installed."""
     return find_spec("numba") is not None
 
 
 @cache
-def compiled_stepping(count: int) -> March:
-    """The compiled march of an even number of dampers, which the compiler knows: loops over two are none.
+def compiled_stepping(count: int) -> PoleStepping:
+    """Compile `step_poles` for an even number of dampers; the constant number lets the compiler unroll its loops.
 
     Raises:
         MissingPartError: numba is not installed.
@@ -262,10 +264,10 @@ def compiled_stepping(count: int) -> March:
         raise MissingPartError(MISSING) from None
     mark = stamp()
 
-    # What it closes over is part of the key of the compiler's cache.
+    # Closure variables are part of the key of numba's cache.
     def entry(*arguments: Any) -> None:
         if mark:
-            march(count, *arguments)
+            step_poles(count, *arguments)
 
-    compiled: March = numba.njit(cache=True, nogil=True, **OPTIONS)(entry)
+    compiled: PoleStepping = numba.njit(cache=True, nogil=True, **OPTIONS)(entry)
     return compiled

@@ -1,12 +1,12 @@
-"""Present wheel loads on the slope of a road: a force of each rolling tyre, known when a step begins.
+"""Longitudinal forces of the current wheel loads on the slope of a road, constant over a step.
 
 A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling`). The poles contain the
-share of the static load F_0, as a force b z' of the velocity of the plate. The present load adds
+effect of the static load F_0, as a force b z' of the velocity of the plate. The current load adds
 
     b (max(0, F_z) / F_0 - 1) z',
 
-a product of two motions. It acts as a force that is constant over a step: z' is the mean of both ends, F_z that of the
-middle, extrapolated from the beginnings of this step and of the last one. Both are of second order in the step.
+a product of two motions. It acts as a force that is constant over a step: z' is the mean of both ends, F_z the value in
+the middle, extrapolated from the beginnings of this step and of the last step. Both are of second order in the step.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 
-class Slope(NamedTuple):
-    """The r rolling tyres on driven plates, and idle ones that make their number even.
+class SlopeForces(NamedTuple):
+    """Slope forces of the r rolling tyres on driven plates, padded by an idle tyre to an even number.
 
     Attributes:
         states, plates, forces: rows of F_z/F_0 - 1 over the state of the poles without the forces of the last step, the
@@ -42,39 +42,41 @@ class Slope(NamedTuple):
     past: Vector
 
 
-def slope_of(
+def slope_forces_at_rest(
     model: PoleModel, factors: StepFactors, columns: Sequence[int], tyre_load: Mapping[str, float] | None
-) -> tuple[Slope, Complex]:
-    """Return the tyres of a car at rest, and the factors of their forces on the poles.
+) -> tuple[SlopeForces, Complex]:
+    """Return the slope forces of a car at rest, and the factors of these forces on the poles.
 
     Args:
-        model, factors, columns: as of `Readout`.
+        model, factors, columns: see `Readout`.
         tyre_load: static tyre loads [N] by wheel; None for no tyres, so that the static loads act on the slope.
 
     Returns:
-        The tyres; (p, r).
+        The slope forces, and their factors (p, r).
     """
     inputs = model.matrices.system.inputs
-    chosen = list(columns[::2]) if model.slope.shape[1] and tyre_load else []
-    static = np.array([tyre_load[inputs[tyre]] for tyre in chosen] if tyre_load else [])[:, None]
+    tyres = list(columns[::2]) if model.slope.shape[1] and tyre_load else []
+    static = np.array([tyre_load[inputs[tyre]] for tyre in tyres] if tyre_load else [])[:, None]
     readout = Readout(tyre_outputs(model), factors, model.pairs, columns)
-    idle = ((0, len(chosen) % 2), (0, 0))
-    rows = [np.pad(one[chosen] / static, idle) for one in (readout.rows, readout.by_plate, readout.by_step)]
-    return Slope(rows[0], rows[1], rows[2], np.zeros(len(rows[0]))), np.pad(factors.slope[:, chosen], idle[::-1])
+    idle = ((0, len(tyres) % 2), (0, 0))
+    rows = [np.pad(part[tyres] / static, idle) for part in (readout.rows, readout.by_plate, readout.by_step)]
+    return SlopeForces(rows[0], rows[1], rows[2], np.zeros(len(rows[0]))), np.pad(factors.slope[:, tyres], idle[::-1])
 
 
 @jitable
-def slopes(pair: Any, real: Any, plates: Any, step: int, force: Any, inputs: Any, first: int, s: Slope) -> None:
-    """Set the inputs of the tyres for the step that begins.
+def set_slope_forces(
+    pair: Any, real: Any, plates: Any, step: int, force: Any, inputs: Any, first: int, s: SlopeForces
+) -> None:
+    """Set the inputs of the tyres for the next step.
 
     Args:
         pair, real: state of the poles without the forces of the last step.
         plates: (z, z') of the driven plates at the ends of the steps; (steps + 1, m).
-        step: row of its beginning.
+        step: row of the beginning of the step.
         force: damper forces of the last step.
-        inputs: of the step; changed in place from `first` on.
-        first: input of the first tyre.
-        s: changed in place.
+        inputs: inputs of the step; changed in place from `first` on.
+        first: index of the input of the first tyre.
+        s: slope forces; changed in place.
     """
     pairs = pair.shape[1]
     for i in range(s.past.shape[0]):
