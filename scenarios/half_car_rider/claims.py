@@ -75,7 +75,7 @@ def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Clai
         ("acceleration", "m/s2", 1.0, 6),
     )
     for quantity, unit, factor, figure in shown:
-        upper, lower = (factor * peak(history.of(name, quantity)) for name in ("upper_limb", "lower_limb"))
+        upper, lower = (factor * peak(history.motion(name, quantity)) for name in ("upper_limb", "lower_limb"))
         rows.append(
             PREDICTED.statement(
                 f"peak {quantity} of the upper body above that of the lower body",

@@ -43,7 +43,7 @@ def time_figures(folder: Path, histories: Mapping[str, History], speed: float) -
         with chart(folder / f"{name}.png", caption, rows=len(shown), size=(9.0, 3.0 + 2.2 * len(shown))) as panels:
             for panel, one in zip(panels, shown, strict=True):
                 for (law, history), color in zip(histories.items(), COLOURS, strict=False):
-                    curve = (law, factor * history.of(one, quantity), color, LINE_STYLES[law])
+                    curve = (law, factor * history.motion(one, quantity), color, LINE_STYLES[law])
                     lines(panel, history.time, [curve], xlabel="time [s]", ylabel=label, title=one.replace("_", " "))
                 panel.set_xlim(0.0, 4.0)
 

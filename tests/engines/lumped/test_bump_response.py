@@ -86,7 +86,9 @@ def test_acceleration_obeys_the_equation_of_motion():
     h = bump_response(MODEL, passage, time_step=1e-3, duration=1.0)
     np.testing.assert_allclose(h.inputs.T, passage.heights(h.time), atol=1e-12)
     force = MODEL.input_stiffness @ h.inputs.T + MODEL.input_damping @ h.input_rates.T
-    moved = {q: np.array([h.of(n, q) for n in MODEL.coordinates]) for q in ("displacement", "velocity", "acceleration")}
+    moved = {
+        q: np.array([h.motion(n, q) for n in MODEL.coordinates]) for q in ("displacement", "velocity", "acceleration")
+    }
     left = MODEL.mass @ moved["acceleration"] + MODEL.damping @ moved["velocity"]
     left += MODEL.stiffness @ moved["displacement"]
     assert np.abs(left - force).max() < 1e-9 * np.abs(force).max()
@@ -108,5 +110,5 @@ def test_bad_grid_is_refused(change, message):
 
 
 def test_wrong_number_of_wheels_is_refused():
-    with pytest.raises(ConfigurationError, match="found 1 arrivals for 2 roads, needed is one each"):
+    with pytest.raises(ConfigurationError, match="found 1 arrivals for 2 roads, must be equal"):
         bump_response(MODEL, BumpPassage(height=0.05, omega=1.0, arrivals=(0.0,)), time_step=0.01, duration=1.0)

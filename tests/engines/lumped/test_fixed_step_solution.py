@@ -149,19 +149,19 @@ def test_refusals():
         fixed_step_solution(stack, 1e-3, np.zeros((10, 3)))
     with pytest.raises(ConfigurationError, match=r"^road: all displacements must be finite$"):
         fixed_step_solution(single, 1e-3, road + np.nan)
-    with pytest.raises(ConfigurationError, match=r"^fixed_step_solution: needed is one sliding pair, found 0$"):
+    with pytest.raises(ConfigurationError, match=r"^fixed_step_solution: found 0 sliding pairs, must be one$"):
         fixed_step_solution(quarter_car(CAR, damper="slip").first_order(), 1e-3, road)
     with pytest.raises(ConfigurationError, match=r"^stiff_solution: found a stack of \(2,\) models"):
         stiff_solution(stack, [0.0, 1.0])
-    with pytest.raises(ConfigurationError, match=r"^time: needed are at least two finite, strictly increasing"):
+    with pytest.raises(ConfigurationError, match=r"^time: must be at least two finite, strictly increasing"):
         stiff_solution(single, [0.0, 0.0])
-    with pytest.raises(ConfigurationError, match=r"^initial: needed are 2 finite numbers$"):
+    with pytest.raises(ConfigurationError, match=r"^initial: must be 2 finite numbers$"):
         stiff_solution(single, [0.0, 1.0], initial=[1.0])
     with pytest.raises(ConfigurationError, match=r"^Tolerances\.relative: found 0\.0"):
         Tolerances(relative=0.0)
-    with pytest.raises(DataError, match=r"^sampled drive: needed are at least two finite samples"):
+    with pytest.raises(DataError, match=r"^sampled signal: must have at least two finite samples"):
         Sampled([0.0, np.nan], 1e-3)
-    with pytest.raises(ConfigurationError, match=r"^sampled drive: timestep -1\.0 s"):
+    with pytest.raises(ConfigurationError, match=r"^sampled signal: timestep -1\.0 s"):
         Sampled([0.0, 1.0], -1.0)
 
 

@@ -201,16 +201,19 @@ def test_the_switch_model_gives_up_after_its_evaluations():
     law = Switch(limit=p.friction_limit, band=p.stick_band, return_time=p.return_time)
     drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)
     with pytest.raises(SimulationError) as caught:
-        switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, most_evaluations=300)
+        switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, max_evaluations=300)
     message = str(caught.value)
     assert message.startswith("switch model: stopped at t = 0.")  # 1200 for the whole half second
     assert message.endswith(
-        "s of 0.5 s after most_evaluations = 300; widen the stick band, lengthen the return time, or allow more"
+        "s of 0.5 s after max_evaluations = 300; widen the stick band, lengthen the return time, or allow more"
     )
-    with pytest.raises(ConfigurationError, match=r"^most_evaluations: found 0, must be at least 1$"):
-        switch_solution(model, law, [0.0, 0.5], most_evaluations=0)
+    with pytest.raises(ConfigurationError, match=r"^max_evaluations: found 0, must be at least 1$"):
+        switch_solution(model, law, [0.0, 0.5], max_evaluations=0)
 
 
 def test_the_switch_model_refuses_a_belt():
-    with pytest.raises(ConfigurationError, match="needed is a single model with one sliding pair off the road"):
+    with pytest.raises(
+        ConfigurationError,
+        match="the model must be a single model with one sliding pair that is independent of the road",
+    ):
         switch_solution(oscillator(1.0, belt=True), Switch(limit=1.0, band=1e-6, return_time=1e-4), [0.0, 1.0])

@@ -8,7 +8,7 @@ import sympy
 
 from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
 from vehicle.engines.linear.network import Network, masses_of, spring_damper
-from vehicle.engines.lumped.half_car_rider_model import half_car_rider, places, static_tyre_load
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider, output_points, static_tyre_load
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
 
@@ -90,7 +90,7 @@ def test_static_loads_balance_weight_and_moment():
 
 
 def test_places_follow_equations_8_to_10_of_the_source():
-    place = places(CAR)
+    place = output_points(CAR)
     assert place["seat_base"] == {"heave": 1.0, "pitch": -0.65}
     assert place["front_body"] == {"heave": 1.0, "pitch": -1.35}
     assert place["rear_body"] == {"heave": 1.0, "pitch": 1.45}

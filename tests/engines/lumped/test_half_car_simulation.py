@@ -140,9 +140,9 @@ def test_wheel_in_the_air_is_pulled_by_nothing_but_its_suspension():
     [
         (
             {"law": "sky"},
-            f"half car: law: found 'sky', allowed are passive, {', '.join(LAWS)}",
+            f"half car: law: found 'sky', must be one of passive, {', '.join(LAWS)}",
         ),
-        ({"speeds": [1.0, 2.0]}, "half car: found 1 cars and 2 speeds, needed is one speed each"),
+        ({"speeds": [1.0, 2.0]}, "half car: found 1 cars and 2 speeds, must be one speed for each car"),
         ({"largest_step": 0.0}, "half car: largest_step: found 0.0 s, must be greater than 0.0"),
         ({"duration": 0.0}, "half car: duration: found 0.0 s, must be at least 0.0005 s"),
     ],
@@ -154,7 +154,7 @@ def test_bad_arguments_are_refused(arguments, message):
 
 
 def test_cars_with_different_controllers_are_refused():
-    with pytest.raises(ConfigurationError, match="half car: semi_active: the cars of one call must share it"):
+    with pytest.raises(ConfigurationError, match="half car: semi_active: all cars of one call must have the same"):
         simulate_bump([CAR, at(CAR, maximum_damping=4000.0)], [5.0, 5.0])
 
 

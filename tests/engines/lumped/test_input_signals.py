@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.engines.lumped.input_signals import AtRest, Sampled, Sine
+from vehicle.engines.lumped.input_signals import Sampled, Sine, ZeroSignal
 
 TIME = np.linspace(0.0, 1.0, 201)
 
 
 @pytest.mark.parametrize(
     "drive",
-    [AtRest(), Sine(amplitude=0.02, frequency=3.0, phase=0.4), Sampled(np.sin(5.0 * TIME), TIME[1])],
+    [ZeroSignal(), Sine(amplitude=0.02, frequency=3.0, phase=0.4), Sampled(np.sin(5.0 * TIME), TIME[1])],
     ids=lambda drive: type(drive).__name__,
 )
 def test_the_rate_is_the_derivative_of_the_value(drive):

@@ -208,10 +208,10 @@ BAD = [
         {"damper": "slip", "vary": {"mount.stifness": 1.0}},
         "no parameter mount.stifness; the nearest is mount.stiffness",
     ),
-    ({"damper": "stuck"}, "damper: found 'stuck', allowed are slip, stick, friction"),
-    ({"damper": "friction", "friction": "stick"}, "friction: found 'stick', allowed are coulomb, stribeck"),
-    ({"damper": "slip", "engine": "diesel"}, "engine: found 'diesel', allowed are none, linear, elastomer"),
-    ({"damper": "slip", "degressive": True}, "degressive: needs damper='friction', found damper='slip'"),
+    ({"damper": "stuck"}, "damper: found 'stuck', must be slip, stick or friction"),
+    ({"damper": "friction", "friction": "stick"}, "friction: found 'stick', must be one of coulomb, stribeck"),
+    ({"damper": "slip", "engine": "diesel"}, "engine: found 'diesel', must be none, linear or elastomer"),
+    ({"damper": "slip", "degressive": True}, "degressive: found damper='slip', must be damper='friction'"),
 ]
 
 

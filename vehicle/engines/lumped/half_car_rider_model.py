@@ -4,7 +4,7 @@ Heave and pitch of the body are about its centre of gravity; the seat base is q_
 front wheel x_b - a1 theta, above the rear wheel x_b + a2 theta.
 
 Source: "Parametric study of rider's comfort in a vehicle with semi-active suspension system under transient road
-conditions", equations 8 to 10; its equations of motion and matrices carry typing errors and are not used here.
+conditions", equations 8 to 10; its equations of motion and matrices contain misprints and are not used here.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from vehicle.model.parameters.axle import Axle
 from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters, Limb
 
 GRAVITY = 9.81
-"""[m/s2]."""
+"""Gravity [m/s2]."""
 
 ENDS = ("front", "rear")
 
@@ -30,14 +30,14 @@ ROADS = tuple(f"{end}_road" for end in ENDS)
 """Road heights under the front and the rear wheel."""
 
 
-def places(parameters: HalfCarRiderParameters) -> Mapping[str, Mapping[str, float]]:
-    """Displacements a user asks for, as linear forms of the coordinates [m per m, m per rad].
+def output_points(parameters: HalfCarRiderParameters) -> Mapping[str, Mapping[str, float]]:
+    """Return the displacements of the output points as linear forms of the coordinates [m per m, m per rad].
 
     Args:
-        parameters: the car.
+        parameters: parameters of the car.
 
     Returns:
-        Name of the place -> coordinate -> coefficient. A travel is positive in rebound (wheel below the body).
+        Name of the output point -> coordinate -> coefficient. A travel is positive in rebound (wheel below the body).
     """
     body = parameters.body
     front = {"heave": 1.0, "pitch": -body.front_arm}
@@ -61,10 +61,10 @@ def places(parameters: HalfCarRiderParameters) -> Mapping[str, Mapping[str, floa
 
 
 def half_car_rider(parameters: HalfCarRiderParameters) -> LinearSystem:
-    """Linear model of the half car with rider; its outputs are the coordinates and the places of `places`.
+    """Return the linear model of the half car with rider; its outputs are the coordinates and `output_points`.
 
     Args:
-        parameters: the car.
+        parameters: parameters of the car.
 
     Returns:
         The model with the coordinates upper_limb, lower_limb, seat, heave, front_wheel, rear_wheel [m], pitch [rad].
@@ -78,43 +78,43 @@ def half_car_rider(parameters: HalfCarRiderParameters) -> LinearSystem:
         "rear_wheel": parameters.rear.unsprung_mass,
         "pitch": parameters.body.pitch_inertia,
     }
-    place = places(parameters)
+    points = output_points(parameters)
     links = (
         _on(parameters.upper_limb, {"upper_limb": 1.0, "seat": -1.0}),
         _on(parameters.lower_limb, {"lower_limb": 1.0, "seat": -1.0}),
-        _on(parameters.seat, {"seat": 1.0, **{name: -value for name, value in place["seat_base"].items()}}),
-        *axle_links(parameters.front, place["front_travel"], "front_wheel", "front_road"),
-        *axle_links(parameters.rear, place["rear_travel"], "rear_wheel", "rear_road"),
+        _on(parameters.seat, {"seat": 1.0, **{name: -value for name, value in points["seat_base"].items()}}),
+        *axle_links(parameters.front, points["front_travel"], "front_wheel", "front_road"),
+        *axle_links(parameters.rear, points["rear_travel"], "rear_wheel", "rear_road"),
     )
-    coordinates, extra = tuple(masses), {name: form for name, form in place.items() if name not in masses}
+    coordinates, extra = tuple(masses), {name: form for name, form in points.items() if name not in masses}
     return Network(coordinates=coordinates, masses=masses_of(masses), links=links, outputs=extra, inputs=ROADS).system()
 
 
 def static_tyre_load(parameters: HalfCarRiderParameters) -> Array:
-    """Load of the front and rear tyre at rest [N], shape (2,).
+    """Return the load of the front and rear tyre at rest [N], shape (2,).
 
     K x = -M g e with e = 1 for every displacement and 0 for pitch; the load is the force of the compressed tyre.
 
     Args:
-        parameters: the car.
+        parameters: parameters of the car.
     """
     model = half_car_rider(parameters)
     vertical = np.array([0.0 if name == "pitch" else 1.0 for name in model.coordinates])
-    rest = np.linalg.solve(model.stiffness, -GRAVITY * model.mass @ vertical)
+    static_position = np.linalg.solve(model.stiffness, -GRAVITY * model.mass @ vertical)
     wheels = [model.coordinates.index(name) for name in ("front_wheel", "rear_wheel")]
     stiffness = np.array([parameters.front.tyre_stiffness, parameters.rear.tyre_stiffness])
-    return np.asarray(-stiffness * rest[wheels])
+    return np.asarray(-stiffness * static_position[wheels])
 
 
 def linear_tyre_load(parameters: HalfCarRiderParameters, history: History) -> Array:
-    """Load of a tyre that is glued to the road [N]: static load + k (z - x) + c (z' - x').
+    """Return the load of a linear tyre that cannot lift off [N]: static load + k (z - x) + c (z' - x').
 
     Args:
-        parameters: the car.
-        history: its motion.
+        parameters: parameters of the car.
+        history: motion of the car.
 
     Returns:
-        Front and rear load, shape (2, m); below zero the linear tyre pulls on the road, which no tyre can.
+        Front and rear load, shape (2, m); negative where the linear tyre pulls on the road.
     """
     loads = []
     for i, (end, axle) in enumerate(zip(ENDS, (parameters.front, parameters.rear), strict=True)):
@@ -126,30 +126,30 @@ def linear_tyre_load(parameters: HalfCarRiderParameters, history: History) -> Ar
 
 
 def lift_off(time: npt.ArrayLike, load: npt.ArrayLike) -> list[tuple[float, float]]:
-    """Intervals in which a tyre load is not positive.
+    """Return the intervals in which a tyre load is not positive.
 
     Args:
-        time: [s], shape (m,).
-        load: [N], shape (m,).
+        time: sample times [s], shape (m,).
+        load: tyre load [N], shape (m,).
 
     Returns:
         Start and end of each interval [s]: its first and last sample.
     """
-    instants, off = np.asarray(time, dtype=float), np.asarray(load, dtype=float) <= 0.0
-    edges = np.diff(np.concatenate(([False], off, [False])).astype(int))
+    instants, lifted = np.asarray(time, dtype=float), np.asarray(load, dtype=float) <= 0.0
+    edges = np.diff(np.concatenate(([False], lifted, [False])).astype(int))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
     return [(float(instants[a]), float(instants[b])) for a, b in zip(starts, ends, strict=True)]
 
 
 def axle_links(axle: Axle, travel: Row, wheel: str, road: str, damping: float | None = None) -> tuple[Link, Link]:
-    """Suspension and tyre of one axle.
+    """Return suspension and tyre of an axle as links.
 
     Args:
-        axle: its parameters.
-        travel: extension of the suspension.
+        axle: parameters of the axle.
+        travel: extension of the suspension as a linear form.
         wheel: coordinate of the unsprung mass.
-        road: input under it.
-        damping: damper coefficient in place of the axle's own [N s/m].
+        road: input under the wheel.
+        damping: damper coefficient that replaces the value of the axle [N s/m].
     """
     return (
         spring_damper(travel, axle.suspension_stiffness, axle.suspension_damping if damping is None else damping),

@@ -1,4 +1,4 @@
-"""What drives a lumped model: road displacement and applied force as functions of time."""
+"""Input signals of a lumped model: road displacement and applied force as functions of time."""
 
 from __future__ import annotations
 
@@ -13,57 +13,58 @@ import scipy
 from vehicle.errors import ConfigurationError, DataError
 
 
-class Drive(Protocol):
-    """Signal with its rate at one instant."""
+class InputSignal(Protocol):
+    """Signal that returns its value and rate at an instant."""
 
     def at(self, time: float) -> tuple[float, float]:
-        """Value and first derivative at a time [s]."""
+        """Return value and first derivative at a time [s]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class AtRest:
-    """Zero at all times."""
+class ZeroSignal:
+    """Signal that is zero at all times."""
 
     def at(self, time: float) -> tuple[float, float]:
-        """Zero value and rate."""
+        """Return zero value and zero rate."""
         return 0.0, 0.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Sine:
-    """value = amplitude sin(2 pi frequency t + phase)."""
+    """Sine signal: value = amplitude sin(2 pi frequency t + phase)."""
 
     amplitude: float
     frequency: float
     phase: float = 0.0
 
     def at(self, time: float) -> tuple[float, float]:
-        """Value and rate at a time [s]."""
+        """Return value and rate at a time [s]."""
         omega = 2.0 * math.pi * self.frequency
         angle = omega * time + self.phase
         return self.amplitude * math.sin(angle), self.amplitude * omega * math.cos(angle)
 
 
 class Sampled:
-    """Natural cubic spline through samples on a uniform grid that begins at t = 0; held at its last value afterwards.
+    """Natural cubic spline through samples on a uniform grid that begins at t = 0; constant after the last sample.
 
-    A spline, not straight lines: the stiff solver then meets no kink at each sample and its steps follow the solution.
+    With straight lines the stiff solver would have to resolve a kink at each sample; with a spline its steps follow the
+    solution.
     """
 
     def __init__(self, values: npt.ArrayLike, timestep: float) -> None:
         samples = np.asarray(values, dtype=float)
         if samples.ndim != 1 or samples.size < 2 or not np.isfinite(samples).all():
-            raise DataError("sampled drive: needed are at least two finite samples in one row")
+            raise DataError("sampled signal: must have at least two finite samples in one dimension")
         if not (math.isfinite(timestep) and timestep > 0.0):
-            raise ConfigurationError(f"sampled drive: timestep {timestep!r} s must be finite and greater than 0.0")
+            raise ConfigurationError(f"sampled signal: timestep {timestep!r} s must be finite and greater than 0.0")
         self.timestep = timestep
         self.values = samples
         spline = scipy.interpolate.CubicSpline(timestep * np.arange(samples.size), samples, bc_type="natural")
-        # Plain floats: the solver asks for one instant at a time, where an array access costs more than the polynomial.
+        # Plain floats: the solver evaluates single instants, for which an array access costs more than the polynomial.
         self._cubic: list[tuple[float, float, float, float]] = [tuple(c) for c in spline.c.T.tolist()]
 
     def at(self, time: float) -> tuple[float, float]:
-        """Value and rate at a time [s]."""
+        """Return value and rate at a time [s]."""
         index = int(time / self.timestep)
         if index >= len(self._cubic):
             return float(self.values[-1]), 0.0

@@ -1,4 +1,4 @@
-"""Every quarter-car model of the family, composed from one set of parts."""
+"""Quarter-car models of Bommer 2006, composed from one set of parts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from vehicle.model.parameters.quarter_car import QuarterCar
 from vehicle.model.parameters.toml_file import as_table
 
 PUBLISHED = {"friction_limit": "limit", "smoothing": "steepness"}
-"""Names of the source for numbers of a friction law."""
+"""Names of friction-law parameters in the source."""
 
 
 def quarter_car(
@@ -37,7 +37,7 @@ def quarter_car(
     small_mass: bool = False,
     vary: Mapping[str, Numbers] | None = None,
 ) -> Network:
-    """Quarter car with the parts asked for.
+    """Return a quarter car composed of the selected parts.
 
     Coordinates: `body`, `wheel` (vertical), `mount` (extension of the suspension mount along the strut, only with
     friction), `engine`, `longitudinal` (wheel, only with the strut at an angle), `small_mass`. Outputs: `body`,
@@ -46,8 +46,8 @@ def quarter_car(
     | composition | equation |
     |---|---|
     | damper="slip": massless damper D in series with the mount Kd | 2.1 |
-    | damper="stick": damper rigid, Kd beside Km | 2.2 |
-    | damper="friction": damper mass Md, viscous damper and smooth Coulomb friction side by side | 2.6 |
+    | damper="stick": damper rigid, Kd parallel to Km | 2.2 |
+    | damper="friction": damper mass Md, viscous damper and smooth Coulomb friction in parallel | 2.6 |
     | engine="linear" | 2.7 |
     | engine="elastomer" | 2.13 |
     | degressive=True | C.2 |
@@ -60,29 +60,29 @@ def quarter_car(
     Args:
         car: the parameters.
         damper: how the shock absorber is modelled.
-        friction: word of its law in `vehicle.model.laws.damper.FRICTION`, with damper="friction".
+        friction: name of the friction law in `vehicle.model.laws.damper.FRICTION`, with damper="friction".
         engine: engine mass on a linear mount or on the elastomer.
         degressive: degressive damper in place of the viscous one; needs damper="friction".
         strut: put the suspension at the angle of the strut.
-        small_mass: small mass on the body (appendix B).
-        vary: dotted parameter path -> number or array that replaces the car's own; arrays make many models at once.
+        small_mass: add a small mass on the body (appendix B).
+        vary: dotted parameter path -> value or array that replaces the value of the car; arrays make a stack of models.
 
     Returns:
         The network of masses and elements.
 
     Raises:
-        ConfigurationError: an unknown path or a bad value in `vary`, or parts that exclude each other.
+        ConfigurationError: an unknown path or an invalid value in `vary`, or parts that exclude each other.
 
     Source: Bommer 2006, equations 2.1, 2.2, 2.6, 2.7, 2.13, C.2, D.28 to D.34 (signs derived again).
     """
     if damper not in ("slip", "stick", "friction"):
-        raise ConfigurationError(f"damper: found {damper!r}, allowed are slip, stick, friction")
+        raise ConfigurationError(f"damper: found {damper!r}, must be slip, stick or friction")
     if friction not in FRICTION:
-        raise ConfigurationError(f"friction: found {friction!r}, allowed are {', '.join(FRICTION)}")
+        raise ConfigurationError(f"friction: found {friction!r}, must be one of {', '.join(FRICTION)}")
     if engine not in ("none", "linear", "elastomer"):
-        raise ConfigurationError(f"engine: found {engine!r}, allowed are none, linear, elastomer")
+        raise ConfigurationError(f"engine: found {engine!r}, must be none, linear or elastomer")
     if degressive and damper != "friction":
-        raise ConfigurationError(f"degressive: needs damper='friction', found damper={damper!r}")
+        raise ConfigurationError(f"degressive: found damper={damper!r}, must be damper='friction'")
     value = Variation(car, vary or {})
     coordinates = ["body", "wheel"]
     outputs: dict[str, Row] = {"body": {"body": 1.0}, "wheel": {"wheel": 1.0}}
@@ -120,14 +120,14 @@ def quarter_car(
         sliding = {**axis, "mount": 1.0}
         if not degressive:
             links.append(Link(row=sliding, law=Kelvin(stiffness=0.0, damping=value("damper.damping"))))
-        names = [(one.name, PUBLISHED.get(one.name, one.name)) for one in fields(FRICTION[friction])]
-        law = FRICTION[friction](**{name: value(f"friction.{own}") for name, own in names})
-        bent = Degressive(
+        names = [(entry.name, PUBLISHED.get(entry.name, entry.name)) for entry in fields(FRICTION[friction])]
+        law = FRICTION[friction](**{name: value(f"friction.{path_name}") for name, path_name in names})
+        degressive_law = Degressive(
             low_damping=value("degressive.low_damping"),
             high_damping=value("damper.damping"),
             knee_velocity=value("degressive.knee_velocity"),
         )
-        slides = (Slide(row=sliding, friction=law, viscous=bent if degressive else None),)
+        slides = (Slide(row=sliding, friction=law, viscous=degressive_law if degressive else None),)
     if engine != "none":
         coordinates.append("engine")
         outputs["engine"] = {"engine": 1.0}
@@ -148,7 +148,7 @@ def quarter_car(
 
 
 def elastomer(car: QuarterCar, vary: Mapping[str, Numbers] | None = None) -> Maxwell:
-    """Law of the elastomer (2.8); arguments as of `quarter_car`."""
+    """Return the law of the elastomer (2.8); see `quarter_car` for the arguments."""
     value = Variation(car, vary or {})
     names = ("stiffness", "branch_stiffness", "branch_damping")
     return Maxwell(**{name: value(f"elastomer.{name}") for name in names})
@@ -157,16 +157,16 @@ def elastomer(car: QuarterCar, vary: Mapping[str, Numbers] | None = None) -> Max
 def single_mass(
     *, mass: Numbers, friction: ForceLaw, stiffness: Numbers = 0.0, damping: Numbers = 0.0, belt: bool = False
 ) -> Network:
-    """m x'' + D x' + K x + f(x') = F; on a belt the friction sees x' minus the belt velocity.
+    """Return a single mass m x'' + D x' + K x + f(x') = F; on a belt, f acts on x' minus the belt velocity.
 
     Coordinate and output: `mass`. The applied force acts on the mass; the road displacement is that of the belt.
 
     Args:
-        mass: m [kg].
+        mass: mass m [kg].
         friction: law of the friction f.
         stiffness: spring K to the ground [N/m].
         damping: damper D to the ground [N s/m].
-        belt: let the friction act between mass and belt, not between mass and ground.
+        belt: friction between mass and belt instead of mass and ground.
 
     Returns:
         The network.
@@ -186,10 +186,10 @@ def single_mass(
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """Values of a quarter car by their paths, with replacements such as {"mount.stiffness": array}.
+    """Parameter values of a quarter car by path, with replacements, for example {"mount.stiffness": array}.
 
     Raises:
-        ConfigurationError: an unknown path (with the nearest known one) or a value out of the range of its field.
+        ConfigurationError: an unknown path (the message suggests the nearest) or a value out of range.
     """
 
     car: QuarterCar
@@ -197,13 +197,13 @@ class Variation:
 
     def __post_init__(self) -> None:
         table = as_table(self.car)
-        whole = {full_path(table, path): value for path, value in self.replaced.items()}
-        for path, value in whole.items():
+        by_full_path = {full_path(table, path): value for path, value in self.replaced.items()}
+        for path, value in by_full_path.items():
             check(path, value, quantity_of(QuarterCar, path))
-        object.__setattr__(self, "replaced", whole)
+        object.__setattr__(self, "replaced", by_full_path)
 
     def __call__(self, path: str) -> Numbers:
-        """Value of a parameter, e.g. "mount.stiffness"."""
+        """Return the value of a parameter, for example "mount.stiffness"."""
         if path in self.replaced:
             return self.replaced[path]
         part, _, name = path.partition(".")

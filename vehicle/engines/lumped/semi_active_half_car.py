@@ -1,11 +1,11 @@
-"""Half cars with controlled dampers or tyres that can leave the road, many at once, over a bump.
+"""Batch of half cars with controlled dampers, or tyres that can lift off, over a bump.
 
-The controller reads body and wheel velocity once a control period and holds the damper coefficients until the next
-(`vehicle.model.laws.semi_active`); so the damper force c v opposes its velocity at every instant. In between the
-equations are integrated by the classical Runge-Kutta method with a fixed step. The road rate of a step is its
+The controller samples body and wheel velocity once in a control period and holds the damper coefficients until the next
+(`vehicle.model.laws.semi_active`), so the damper force c v opposes its velocity at every instant. Between the samples
+the equations are integrated by the classical Runge-Kutta method with a fixed step. The road rate of a step is its
 difference quotient (z(t + h) - z(t)) / h: the impulse of the tyre damper is then exact where the slope of the road
-jumps. Order of the
-whole: 2.
+jumps. The
+method has order 2.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
 from vehicle.model.parameters.semi_active import LAWS, PASSIVE
 
 LARGEST_STEP = 5e-4
-"""[s]: against half of it the dose values of the base case change by less than 0.1 %."""
+"""Maximum step [s]; with half of it the dose values of the base case change by less than 0.1 %."""
 
 
 def simulate_bump(
@@ -38,33 +38,38 @@ def simulate_bump(
     duration: float = 5.0,
     largest_step: float = LARGEST_STEP,
 ) -> list[History]:
-    """Drive cars over their bump with passive or controlled dampers.
+    """Simulate cars over their bumps with passive or controlled dampers.
 
     Args:
-        cars: one car for each run; control limits and period are those of the first, which all must share.
-        speeds: one speed for each run [m/s].
-        law: "passive" or one of the laws of `vehicle.model.parameters.semi_active`; that of the parameters is not used.
-        one_sided_tyres: a tyre that would pull gives no force: its load is max(0, static + k (z - x) + c (z' - x')).
-        duration: [s].
+        cars: car of each run; all cars must have the same `semi_active` parameters.
+        speeds: speed of each run [m/s].
+        law: "passive" or one of the laws of `vehicle.model.parameters.semi_active`; the law in the parameters is
+            ignored.
+        one_sided_tyres: tyres cannot pull: the load is max(0, static + k (z - x) + c (z' - x')).
+        duration: duration of the runs [s].
         largest_step: upper limit of the integration step [s].
 
     Returns:
-        One history for each run, sampled once an integration step. Its sliding pairs are the dampers of both ends,
-        then what a one-sided tyre takes away from the force of a linear one.
+        History of each run, sampled once in an integration step. Its sliding pairs are the dampers of both axles,
+        then the differences between one-sided and linear tyre forces.
 
     Raises:
         ConfigurationError: unknown law, different numbers of cars and speeds, or limits that differ between the cars.
-        SimulationError: the motion grew without bound.
+        SimulationError: the motion is not finite.
     """
     if law not in (PASSIVE, *LAWS):
-        raise ConfigurationError(f"half car: law: found {law!r}, allowed are {', '.join((PASSIVE, *LAWS))}")
+        raise ConfigurationError(f"half car: law: found {law!r}, must be one of {', '.join((PASSIVE, *LAWS))}")
     if len(cars) != len(speeds) or not cars:
-        raise ConfigurationError(f"half car: found {len(cars)} cars and {len(speeds)} speeds, needed is one speed each")
+        raise ConfigurationError(
+            f"half car: found {len(cars)} cars and {len(speeds)} speeds, must be one speed for each car"
+        )
     if not (math.isfinite(largest_step) and largest_step > 0.0):
         raise ConfigurationError(f"half car: largest_step: found {largest_step!r} s, must be greater than 0.0")
     control = cars[0].semi_active
     if any(car.semi_active != control for car in cars):
-        raise ConfigurationError("half car: semi_active: the cars of one call must share it; call once for each")
+        raise ConfigurationError(
+            "half car: semi_active: all cars of one call must have the same; simulate other cars in another call"
+        )
     substeps = math.ceil(control.control_period / largest_step)
     step = control.control_period / substeps
     steps = round(duration / step)
@@ -80,13 +85,13 @@ def simulate_bump(
     states = np.zeros((steps + 1, len(cars), run.state.shape[-1]))
     slopes, forces = np.zeros_like(states), np.zeros((steps + 1, len(cars), 2 * len(ENDS)))
     coefficient = np.array([[car.front.suspension_damping, car.rear.suspension_damping] for car in cars])
-    numbers = in_steps(pack(replace(control, law=law)), step) if law != PASSIVE else None
-    past = None if numbers is None else at_rest(numbers, *coefficient.shape)
+    record = in_steps(pack(replace(control, law=law)), step) if law != PASSIVE else None
+    law_state = None if record is None else at_rest(record, *coefficient.shape)
     for k in range(steps + 1):
         state = states[k]
-        if past is not None:
-            act(numbers, k, *run.velocities(state), past)
-            coefficient = past[PRESENT]
+        if law_state is not None:
+            act(record, k, *run.velocities(state), law_state)
+            coefficient = law_state[PRESENT]
         z0, z1, z2 = road[2 * k], road[2 * k + 1], road[2 * k + 2]
         rate = (z2 - z0) / step
         k1, forces[k] = run.slope(state, z0, rate, coefficient)
@@ -117,15 +122,15 @@ def simulate_bump(
 
 
 def _without_dampers(car: HalfCarRiderParameters) -> FirstOrder:
-    """One car without its suspension dampers; they, and what one-sided tyres take away, are forces between pairs."""
+    """Return a car without suspension dampers; dampers and lift-off forces of the tyres are sliding pairs instead."""
     front, rear = (replace(axle, suspension_damping=0.0) for axle in (car.front, car.rear))
     system = half_car_rider(replace(car, front=front, rear=rear))
-    pairs = [system.output(f"{end}_{place}")[0] for place in ("travel", "wheel") for end in ENDS]
+    pairs = [system.output(f"{end}_{point}")[0] for point in ("travel", "wheel") for end in ENDS]
     return first_order(replace(system, slide_rows=np.stack(pairs), slide_inputs=np.zeros((4, 2))))
 
 
 class _Cars:
-    """Equations of all cars, leading axis (runs)."""
+    """Equations of motion of all cars, with the leading axis (runs)."""
 
     def __init__(self, forms: list[FirstOrder], cars: Sequence[HalfCarRiderParameters], one_sided: bool) -> None:
         self.forms, self.one_sided = forms, one_sided
@@ -140,16 +145,16 @@ class _Cars:
         self.damping = np.array([[car.front.tyre_damping, car.rear.tyre_damping] for car in cars])
 
     def velocities(self, state: Array) -> tuple[Array, Array]:
-        """Velocity of the body above each wheel and of the wheel, (r, w)."""
+        """Return the velocities of the body above each wheel and of the wheel, (r, w)."""
         free = self.body.shape[-1]
         return _times(self.body, state[:, free : 2 * free]), state[:, free:][:, self.wheel]
 
     def slope(self, state: Array, road: Array, rate: Array, coefficient: Array) -> tuple[Array, Array]:
-        """Rate of the states (r, s), and forces of the pairs (r, 2w)."""
+        """Return the rates of the states (r, s) and the forces of the sliding pairs (r, 2w)."""
         sliding = _times(self.slide, state)
         ends = len(ENDS)
         force = np.concatenate((coefficient * sliding[:, :ends], np.zeros_like(coefficient)), axis=1)
-        if self.one_sided:  # takes away what a linear tyre would pull
+        if self.one_sided:  # subtract the pull of the linear tyre
             dynamic = self.stiffness * (road - state[:, self.wheel]) + self.damping * (rate - sliding[:, ends:])
             force[:, ends:] = np.minimum(0.0, self.static + dynamic)
         slope = _times(self.state, state) + _times(self.road, road) + _times(self.road_rate, rate)
@@ -157,5 +162,5 @@ class _Cars:
 
 
 def _times(matrix: Array, vector: Array) -> Array:
-    """Matrix-vector product of every run."""
+    """Return the matrix-vector product of every run."""
     return np.asarray((matrix @ vector[..., None])[..., 0])
