@@ -25,7 +25,7 @@ TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def free_box(force, *, turned=False, law=FREE, ratio=0.02, carrier=False):
-    """The box, free, pulled at a node by the preload of a bushing to the ground; position of its CoG is the origin."""
+    """Return the free box, pulled at a node by the preload of a bushing to the ground; its CoG is the origin."""
     spec = empty_spec(STEP)
     body = spec.worldbody.add_body(name="body")
     body.explicitinertial = True
@@ -91,11 +91,11 @@ def test_acceleration_of_another_node_is_rigid_plus_modal():
     arm = BOX.positions[BOX.node_index(NODE)] - BOX.cog
     there = BOX.positions[BOX.node_index(OTHER)] - BOX.cog
     body, modal = run.data.qacc[:6], run.data.qacc[6:]
-    found = body[:3] + np.cross(body[3:], there) + BOX.shape_at(OTHER) @ modal
+    acceleration = body[:3] + np.cross(body[3:], there) + BOX.shape_at(OTHER) @ modal
     rigid = force / BOX.mass + np.cross(np.linalg.solve(BOX.inertia, np.cross(arm, force)), there)
     exact = rigid + BOX.shape_at(OTHER) @ (BOX.shape_at(NODE).T @ force)
     # The armature of the scheme, w2 h2 / 12, makes the modal part smaller by at most 3e-4.
-    np.testing.assert_allclose(found, exact, atol=5e-4 * np.max(np.abs(exact)))
+    np.testing.assert_allclose(acceleration, exact, atol=5e-4 * np.max(np.abs(exact)))
 
 
 @pytest.mark.parametrize("carrier", [False, True], ids=["body moves", "body carries"])

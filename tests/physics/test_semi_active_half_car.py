@@ -1,4 +1,4 @@
-"""Semi-active dampers of both engines against the lumped half car of source 2, every law, with delay and rate."""
+"""Semi-active dampers of both engines against the lumped half car with rider, every law, with delay and rate."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def with_control(**changes):
 
 
 def damper_of(car):
-    """Damper of the complete car without friction under the control of a half car."""
+    """Return a damper of the complete car without friction under the control of a half car."""
     return dataclasses.replace(
         load_vehicle().damper, coulomb_friction=0.0, stribeck_friction=0.0, control=car.semi_active
     )
@@ -67,13 +67,13 @@ def in_mujoco(car):
             mujoco.mj_step(model, data)
             velocity[index] = data.qvel - 0.5 * STEP * data.qacc
             coefficient[index] = rows.state.coefficient
-    own = {model.joint(joint).name: velocity[:, model.jnt_dofadr[joint]] for joint in range(model.njnt)}
-    base = own["heave"] - CAR.body.seat_arm * own["pitch"]
+    joint_velocity = {model.joint(joint).name: velocity[:, model.jnt_dofadr[joint]] for joint in range(model.njnt)}
+    base = joint_velocity["heave"] - CAR.body.seat_arm * joint_velocity["pitch"]
     return {
-        "heave": own["heave"],
-        "upper limb": base + own["seat"] + own["upper_limb"],
-        "damper_fr": -own["damper_fr"],
-        "damper_rr": -own["damper_rr"],
+        "heave": joint_velocity["heave"],
+        "upper limb": base + joint_velocity["seat"] + joint_velocity["upper_limb"],
+        "damper_fr": -joint_velocity["damper_fr"],
+        "damper_rr": -joint_velocity["damper_rr"],
     }, coefficient
 
 
@@ -84,7 +84,7 @@ def reduced(car):
     still = StaticTrim(
         preload=np.zeros(Rows(model).weights.preload.size), tyre_load=loads, support_load={}, residual=0.0
     )
-    names = [f"damper_{wheel}_{what}" for wheel in loads for what in ("velocity", "force", "coefficient")]
+    names = [f"damper_{wheel}_{quantity}" for wheel in loads for quantity in ("velocity", "force", "coefficient")]
     return simulate_reduced(
         pole_model(car_matrices(model, still)),
         ROAD,
@@ -95,8 +95,8 @@ def reduced(car):
     )
 
 
-def gap(found, expected):
-    return float(np.std(found - expected) / np.std(expected))
+def gap(values, expected):
+    return float(np.std(values - expected) / np.std(expected))
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -112,5 +112,5 @@ def test_both_engines_are_the_lumped_half_car(law):
         # Passive at every sample: the force is a coefficient of the damper times its velocity.
         force = -run[f"damper_{wheel}_force"]
         np.testing.assert_allclose(force, setting * velocity, atol=1e-9 * np.max(np.abs(force)))
-        for one in (setting, coefficient[:, number]):
-            assert 300.0 - 1e-9 <= one.min() < one.max() <= 3000.0 + 1e-9
+        for history in (setting, coefficient[:, number]):
+            assert 300.0 - 1e-9 <= history.min() < history.max() <= 3000.0 + 1e-9

@@ -31,7 +31,7 @@ FALLING = [
 
 
 @pytest.mark.parametrize("engine", ["mujoco", "reduced", "auto"])
-def test_a_growing_car_is_refused_by_what_moves(engine):
+def test_an_unstable_car_is_rejected_with_the_moving_part(engine):
     with pytest.raises(ConfigurationError) as caught:
         Car.load(None, FALLING).run(ROAD, engine=engine)
     message = str(caught.value)
@@ -50,10 +50,10 @@ def test_its_modes_list_what_grows(car, capsys):
     assert not any(mode.grows for mode in car.modes())
     arguments = [word for setting in FALLING for word in ("--set", setting)]
     assert modes.main([*arguments, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert len(found["growing"]) == len(growing)
+    printed = json.loads(capsys.readouterr().out)
+    assert len(printed["growing"]) == len(growing)
     assert modes.main(arguments) == 0
-    assert f"this car does not stand: {', '.join(found['growing'])} grows by itself" in capsys.readouterr().out
+    assert f"this car does not stand: {', '.join(printed['growing'])} grows by itself" in capsys.readouterr().out
 
 
 def test_round_off_does_not_grow():

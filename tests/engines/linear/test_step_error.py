@@ -1,4 +1,4 @@
-"""Item 51: a step that would not answer the car is refused before the run, with the part and the step that does."""
+"""Item 51: a step that is too long is rejected before the run, with the part and a sufficient step."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_the_reduced_engine_does_not_depend_on_the_step(high_piece):
     np.testing.assert_array_equal(coarse["damper_top_fr_acc_z"], fine["damper_top_fr_acc_z"])
 
 
-def test_a_run_is_refused_before_it_begins(high_piece):
+def test_a_run_is_rejected_before_it_begins(high_piece):
     begun: list[float] = []
     with pytest.raises(ConfigurationError, match=r"^solver\.timestep: found 0\.001 s, .*stiffness\.z"):
         Car.load(None, [MOUNT.format(3e7)]).run(high_piece, begun.append)

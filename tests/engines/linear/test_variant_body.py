@@ -33,11 +33,11 @@ def test_the_mass_alone_is_a_file_with_that_tensor(sedan):
     factor = 1300.0 / 1222.1
     table = dict(sedan.vehicle.table)
     moments = {name: factor * value for name, value in table["body"]["inertia"].items()}
-    own = Car(vehicle_of({**table, "body": {**table["body"], "mass": 1300.0, "inertia": moments}}))
+    separate = Car(vehicle_of({**table, "body": {**table["body"], "mass": 1300.0, "inertia": moments}}))
     varied = sedan.varied(["body.mass=1300"])
-    for one, other in zip(own.modes("sliding"), varied.modes("sliding"), strict=True):
-        assert other.frequency == pytest.approx(one.frequency, rel=1e-9)
-    for wheel, load in own.static.tyre_load.items():
+    for expected, mode in zip(separate.modes("sliding"), varied.modes("sliding"), strict=True):
+        assert mode.frequency == pytest.approx(expected.frequency, rel=1e-9)
+    for wheel, load in separate.static.tyre_load.items():
         assert varied.static.tyre_load[wheel] == pytest.approx(load, rel=1e-12)
     # More mass on the same springs is slower in heave and pitch, and quieter over a road.
     slower = [[mode.frequency for mode in car.modes("sliding", highest=2.5)] for car in (sedan, varied)]
@@ -45,13 +45,13 @@ def test_the_mass_alone_is_a_file_with_that_tensor(sedan):
 
 
 def test_a_flexible_body_varied_is_the_body_built():
-    """Matrices within 1e-9 of their largest entry; frequencies within 1e-7: see
+    """Compare matrices within 1e-9 of their largest entry; frequencies within 1e-7: see
     `vehicle.engines.linear.body_change`.
     """
     car, changes = Car.load("focus"), ["body.mass=829.26"]
     require_same(car, "focus", (), changes)
     pairs = zip(car.varied(changes).modes(), Car.load("focus", changes).modes(), strict=True)
-    assert max(abs(one.frequency / other.frequency - 1.0) for one, other in pairs) < 1e-7
+    assert max(abs(mode.frequency / other.frequency - 1.0) for mode, other in pairs) < 1e-7
     # Its modal coordinates are mass-normalised again.
     matrices = car.varied(changes).matrices
     np.testing.assert_allclose(matrices.system.mass[matrices.modal, matrices.modal], np.eye(9), atol=1e-12)

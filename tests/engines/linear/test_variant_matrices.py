@@ -1,4 +1,4 @@
-"""Cars that are varied from another one are the cars that are built: for every number of the shipped vehicle files."""
+"""Modified cars equal the cars that are built, for every number of the shipped vehicle files."""
 
 from __future__ import annotations
 
@@ -25,33 +25,35 @@ RATE = 2.5e4
 
 
 def numbers(table):
-    """Paths of all single numbers, with what stands there."""
-    found = {path: value_at(table, path) for path in paths(table)}
-    return {path: one for path, one in found.items() if isinstance(one, int | float) and not isinstance(one, bool)}
+    """Return all single numbers of a table by path."""
+    values = {path: value_at(table, path) for path in paths(table)}
+    return {
+        path: value for path, value in values.items() if isinstance(value, int | float) and not isinstance(value, bool)
+    }
 
 
-def same(varied, built, place):
-    """Arrays within 1e-9 of their largest number, all else equal."""
+def same(varied, built, path):
+    """Compare arrays within 1e-9 of their largest number, and other fields exactly."""
     if is_dataclass(built):
-        for one in fields(built):
-            # What is left of the trim is round-off.
-            if one.name != "residual":
-                same(getattr(varied, one.name), getattr(built, one.name), f"{place}.{one.name}")
+        for field in fields(built):
+            # The residual of the trim is round-off.
+            if field.name != "residual":
+                same(getattr(varied, field.name), getattr(built, field.name), f"{path}.{field.name}")
     elif isinstance(built, dict):
-        assert list(varied) == list(built), place
+        assert list(varied) == list(built), path
         for key, value in built.items():
-            same(varied[key], value, f"{place}.{key}")
+            same(varied[key], value, f"{path}.{key}")
     elif isinstance(built, np.ndarray | float):
         finite = np.isfinite(built)
-        assert np.array_equal(finite, np.isfinite(varied)) and np.shape(varied) == np.shape(built), place
+        assert np.array_equal(finite, np.isfinite(varied)) and np.shape(varied) == np.shape(built), path
         varied, built = np.asarray(varied)[finite], np.asarray(built)[finite]
-        assert np.max(np.abs(varied - built), initial=0.0) <= 1e-9 * np.max(np.abs(built), initial=0.0), place
+        assert np.max(np.abs(varied - built), initial=0.0) <= 1e-9 * np.max(np.abs(built), initial=0.0), path
     elif isinstance(built, tuple):
-        assert len(varied) == len(built), place
+        assert len(varied) == len(built), path
         for index, value in enumerate(built):
-            same(varied[index], value, f"{place}.{index}")
+            same(varied[index], value, f"{path}.{index}")
     else:
-        assert varied == built, place
+        assert varied == built, path
 
 
 def require_same(reference, file, fixed, changes):
@@ -65,7 +67,7 @@ def require_same(reference, file, fixed, changes):
 
 
 def outcome(make):
-    """What the reduced engine would march, or why there is nothing."""
+    """Return the data of the reduced engine, or the reason why there is none."""
     try:
         car = make()
         car.check("reduced")
@@ -77,11 +79,11 @@ def outcome(make):
 @pytest.mark.parametrize(("file", "beside"), [("focus", None), ("focus_road", "focus")])
 def test_every_number_of_a_vehicle_file_moves_what_it_moves_in_a_built_car(file, beside):
     reference = Car.load(file)
-    known = {} if beside is None else numbers(Car.load(beside).vehicle.table)
+    known_values = {} if beside is None else numbers(Car.load(beside).vehicle.table)
     groups: dict[str, list[str]] = {}
     for index, (path, value) in enumerate(numbers(reference.vehicle.table).items()):
-        place = "hardpoints" in path or "offset" in path
-        if path in known or (place and path.endswith((".x", ".y"))):
+        is_geometry = "hardpoints" in path or "offset" in path
+        if path in known_values or (is_geometry and path.endswith((".x", ".y"))):
             continue
         # Moments of inertia keep their proportions: the largest is at most the sum of the others.
         factor = 1.04 if "inertia" in path else 1.01 + 0.001 * (index % 37)
@@ -91,30 +93,30 @@ def test_every_number_of_a_vehicle_file_moves_what_it_moves_in_a_built_car(file,
         except VehicleError:
             # A moment alone may be refused; those of a part together are moved below.
             short = "parts" in path and "inertia" in path
-        # What takes the long way is built by the same code as any car.
+        # Other changes are built by the same code as any car.
         if short:
             groups.setdefault(path.partition(".inertia")[0].rpartition(".")[0], []).append(change)
         else:
             assert not any(word in path for word in (".stiffness", ".damping", "viscous", "friction")), path
     assert len(groups) > 20
-    # Tables of four elements at once: the matrices tell which number went astray.
+    # Tables of four elements at once: the matrices show which number is wrong.
     every = list(groups.values())
     for first in range(0, len(every), 4):
-        require_same(reference, file, (), [change for one in every[first : first + 4] for change in one])
+        require_same(reference, file, (), [change for changes in every[first : first + 4] for change in changes])
 
 
 @pytest.mark.parametrize(("file", "fixed"), [("focus", TABLES), ("sedan", ()), ("focus_road_seated", ())])
 def test_many_numbers_at_once(file, fixed):
     reference = Car.load(file, fixed)
-    own = numbers(reference.vehicle.table)
+    values = numbers(reference.vehicle.table)
     moved = [
-        path for path in own if path.endswith((".mass", ".viscous", ".torsional_stiffness")) or ".bushings." in path
+        path for path in values if path.endswith((".mass", ".viscous", ".torsional_stiffness")) or ".bushings." in path
     ]
     rng = np.random.default_rng(3)
     changes = [
-        f"{path}={own[path] * float(rng.uniform(0.8, 1.25))!r}"
+        f"{path}={values[path] * float(rng.uniform(0.8, 1.25))!r}"
         for path in moved
-        if own[path] and not path.startswith(("front.parts.main_spring_upper", "body.model"))
+        if values[path] and not path.startswith(("front.parts.main_spring_upper", "body.model"))
     ]
     assert len(changes) > 30
     require_same(reference, file, fixed, changes)
@@ -124,12 +126,12 @@ def test_a_spring_on_a_corner_of_its_table_has_its_car_built():
     def table(corner, above):
         points = [(-0.4, -0.4 * RATE), (corner, corner * RATE), (0.2, corner * RATE + (0.2 - corner) * above)]
         kinds = zip(("displacement", "force"), zip(*points, strict=True), strict=True)
-        return [f"front.main_spring.table.{kind}={list(values)!r}" for kind, values in kinds]
+        return [f"front.main_spring.table.{column}={list(values)!r}" for column, values in kinds]
 
     reference = Car.load(None, table(0.1, RATE))
     spring = reference._terms.rows.layout.springs.rows[0]
     at = -float(reference.static.preload[spring]) / RATE
-    # The two sides differ so little that the spring carries the same force, and stands on the corner.
+    # The two sides differ so little that the spring carries the same force, and is at rest on the breakpoint.
     assert reference.varied(table(at + 0.01, RATE + 1e-3))._from_terms is not None
     assert reference.varied(table(at, RATE + 1e-3))._from_terms is None
 
@@ -182,7 +184,7 @@ def test_a_star_means_what_it_means_to_a_built_car():
     varied = Car.load("focus_road", fixed).varied(stars).vehicle
     assert varied == Car.load("focus_road", [*fixed, *stars]).vehicle
     # The rear one has it too now, which had none.
-    assert [one.law.gas_force for one in varied.composition.dampers] == [100.0] * 4
+    assert [damper.law.gas_force for damper in varied.composition.dampers] == [100.0] * 4
 
 
 def test_a_varied_car_can_be_varied_and_has_a_model_where_one_is_asked_for(car):

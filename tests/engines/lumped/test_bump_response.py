@@ -28,16 +28,16 @@ def integrated(model, passage, time):
 
     edges = sorted({0.0, time[-1], *passage.arrivals, *(a + passage.contact for a in passage.arrivals)})
     edges = [e for e in edges if e <= time[-1]]
-    state, found = np.zeros(2 * n), np.zeros((2 * n, time.size))
+    state, states = np.zeros(2 * n), np.zeros((2 * n, time.size))
     for start, end in itertools.pairwise(edges):
         gap = 1e-12 * (end - start)
         inside = (time >= start) & (time <= end)
         solved = solve_ivp(
             slope, (start + gap, end - gap), state, method="DOP853", rtol=1e-10, atol=1e-13, dense_output=True
         )
-        found[:, inside] = solved.sol(np.clip(time[inside], start + gap, end - gap))
+        states[:, inside] = solved.sol(np.clip(time[inside], start + gap, end - gap))
         state = solved.y[:, -1]
-    return found
+    return states
 
 
 @pytest.mark.parametrize("speed", [20.0, 60.0])
@@ -50,26 +50,28 @@ def test_half_car_agrees_with_an_adaptive_integrator(speed):
     assert np.abs(exact.state[:, 7:].T - states[7:]).max() < 1e-7 * np.abs(states[7:]).max()
 
 
-def test_sampling_does_not_change_the_answer():
+def test_sampling_does_not_change_the_response():
     passage = bump_passage(CAR.bump, 30.0 / 3.6, 2.8)
     fine = bump_response(MODEL, passage, time_step=1e-3, duration=2.0)
     coarse = bump_response(MODEL, passage, time_step=1e-2, duration=2.0)
     # matrix exponentials of different lengths: rounding of some thousand products
-    for one, other, tolerance in (
+    for response, other, tolerance in (
         (fine.displacement("body"), coarse.displacement("body"), 1e-11),
         (fine.acceleration("body"), coarse.acceleration("body"), 1e-10),
     ):
-        assert np.abs(one[::10] - other).max() < tolerance * np.abs(one).max()
+        assert np.abs(response[::10] - other).max() < tolerance * np.abs(response).max()
 
 
 def test_undamped_oscillator_follows_its_closed_form():
     w0, w, h0 = 7.0, 11.0, 0.05
     spring = spring_damper({"x": 1.0, ROAD: -1.0}, 2.0 * w0**2, 0.0)
     model = Network(coordinates=("x",), masses=masses_of({"x": 2.0}), links=(spring,)).system()
-    found = bump_response(model, BumpPassage(height=h0, omega=w, arrivals=(0.0,)), time_step=1e-3, duration=np.pi / w)
-    t = found.time[found.time < np.pi / w]
+    response = bump_response(
+        model, BumpPassage(height=h0, omega=w, arrivals=(0.0,)), time_step=1e-3, duration=np.pi / w
+    )
+    t = response.time[response.time < np.pi / w]
     expected = h0 * w0**2 / (w0**2 - w**2) * (np.sin(w * t) - w / w0 * np.sin(w0 * t))
-    assert np.abs(found.displacement("x")[: t.size] - expected).max() < 1e-12  # h0 = 0.05: rounding only
+    assert np.abs(response.displacement("x")[: t.size] - expected).max() < 1e-12  # h0 = 0.05: rounding only
 
 
 def test_car_rests_until_the_bump_and_linearity_holds():

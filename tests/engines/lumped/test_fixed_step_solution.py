@@ -1,4 +1,4 @@
-"""The vectorised march against the stiff solver, its order, and the solvers' refusals."""
+"""The fixed-step solution of a stack compared with the stiff solver, its order, and rejected inputs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def bumpy_road(time, size):
     [{}, {"engine": "elastomer", "strut": True}, {"degressive": True}],
     ids=["friction", "engine and strut", "degressive"],
 )
-def test_the_march_converges_to_the_stiff_solution_with_second_order(parts, size):
+def test_convergence_to_the_stiff_solution_with_second_order(parts, size):
     model = quarter_car(CAR, damper="friction", **parts).first_order()
     fine = np.linspace(0.0, END, 6001)
     road = bumpy_road(fine, size)
@@ -50,7 +50,7 @@ def test_the_march_converges_to_the_stiff_solution_with_second_order(parts, size
 
 
 def relative_errors(histories, reference, name):
-    """RMS of the deviation in acceleration over RMS of the reference, for each history."""
+    """Return the RMS of the deviation in acceleration over RMS of the reference, for each history."""
     exact = reference.acceleration(name)
     return [np.sqrt(np.mean((h.acceleration(name) - exact) ** 2) / np.mean(exact**2)) for h in histories]
 
@@ -67,7 +67,7 @@ def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
     assert np.log2(rough / finest) / 2 == pytest.approx(2.0, abs=0.2)
 
 
-def test_without_friction_the_march_is_exact_for_straight_roads():
+def test_without_friction_the_solution_is_exact_for_straight_roads():
     model = quarter_car(CAR, damper="friction", engine="elastomer", vary={"friction.limit": 0.0}).first_order()
     coarse = 0.02 * np.array([0.0, 1.0, -0.5, 0.25, 0.25, 0.0])
     rough = fixed_step_solution(model, 0.1, coarse)
@@ -77,7 +77,7 @@ def test_without_friction_the_march_is_exact_for_straight_roads():
     assert rough.state == pytest.approx(smooth.state, rel=1e-7, abs=1e-9)
 
 
-def test_laws_alone_make_a_stack_too():
+def test_law_parameters_define_a_stack_too():
     model = quarter_car(CAR, damper="friction", vary={"friction.limit": np.array([0.0, 75.0, 150.0])}).first_order()
     assert model.models == (3,)
     history = fixed_step_solution(model, 1e-3, bumpy_road(np.linspace(0.0, END, 751), 0.005))
@@ -85,27 +85,27 @@ def test_laws_alone_make_a_stack_too():
     assert np.abs(history.sliding_force[:, 0]).max() == 0.0
 
 
-def test_a_stack_marches_as_the_single_cars():
+def test_a_stack_moves_as_the_single_cars():
     fine = np.linspace(0.0, END, 751)
     road = bumpy_road(fine, 0.005)
     mounts, limits = np.array([4e5, 7e5]), np.array([75.0, 150.0])
     stack = quarter_car(
         CAR, damper="friction", vary={"mount.stiffness": mounts, "friction.limit": limits}
     ).first_order()
-    together = fixed_step_solution(stack, fine[1], road)
+    stacked = fixed_step_solution(stack, fine[1], road)
     both_roads = fixed_step_solution(stack, fine[1], np.stack([road, 2 * road], axis=1))
-    assert together.acceleration("damper").shape == (751, 2)
+    assert stacked.acceleration("damper").shape == (751, 2)
     for i in range(2):
-        alone = quarter_car(
+        model = quarter_car(
             CAR, damper="friction", vary={"mount.stiffness": mounts[i], "friction.limit": limits[i]}
         ).first_order()
-        single = fixed_step_solution(alone, fine[1], road)
+        single = fixed_step_solution(model, fine[1], road)
         for output in ("body", "wheel", "damper"):
-            # The same operations in the same order, but for the summation inside the matrix products.
-            assert together.acceleration(output)[:, i] == pytest.approx(single.acceleration(output), rel=1e-6, abs=1e-8)
-        assert together.sliding_velocity()[:, i] == pytest.approx(single.sliding_velocity(), abs=1e-10)
+            # The same operations in the same order, except for the summation inside the matrix products.
+            assert stacked.acceleration(output)[:, i] == pytest.approx(single.acceleration(output), rel=1e-6, abs=1e-8)
+        assert stacked.sliding_velocity()[:, i] == pytest.approx(single.sliding_velocity(), abs=1e-10)
         assert both_roads.velocity("body")[:, i] == pytest.approx(
-            fixed_step_solution(alone, fine[1], (1 + i) * road).velocity("body"), abs=1e-10
+            fixed_step_solution(model, fine[1], (1 + i) * road).velocity("body"), abs=1e-10
         )
 
 
@@ -114,12 +114,12 @@ def test_other_stiff_methods_agree(method):
     model = quarter_car(CAR, damper="friction", engine="elastomer").first_order()
     time = np.linspace(0.0, 0.5, 501)
     road = Sampled(bumpy_road(time, 0.01), time[1])
-    one = stiff_solution(model, time, road=road)
+    default = stiff_solution(model, time, road=road)
     other = stiff_solution(model, time, road=road, method=method)
     # Each within its relative tolerance of 1e-6 per step, some thousand steps: 1e-4 of the largest value; the wheel
     # feels the friction force itself, which turns within microseconds, so single samples differ more.
     for output in ("body", "wheel", "engine"):
-        a, b = one.acceleration(output), other.acceleration(output)
+        a, b = default.acceleration(output), other.acceleration(output)
         assert a == pytest.approx(b, abs=(3e-3 if output == "wheel" else 1e-4) * np.abs(a).max())
 
 
@@ -174,13 +174,13 @@ def test_the_friction_of_every_step_is_the_law_at_its_end_however_rough_the_road
     road = np.cumsum(np.random.default_rng(3).normal(scale=2e-3, size=400))
     history = fixed_step_solution(model, 1e-3, road)
     law = Coulomb(friction_limit=limits, smoothing=1e6)
-    velocity, found = history.sliding_velocity()[1:], history.sliding_force[1:, :, 0]
+    velocity, force = history.sliding_velocity()[1:], history.sliding_force[1:, :, 0]
     slides = np.abs(velocity) > 0.05
     assert 0.3 < slides.mean() < 1.0
     # The law has a slope of up to 0.08 N s/m there: 1e-4 of the jumps of 600 N go into a pair taken for stuck by that.
-    assert found[slides] == pytest.approx(law.force(velocity)[slides], abs=0.05)
-    # What holds a stuck pair is between the forces of two steps, each within the limit.
-    assert (np.abs(found) <= limits + 1e-9).all()
+    assert force[slides] == pytest.approx(law.force(velocity)[slides], abs=0.05)
+    # The force of a stuck pair is between the forces of two steps, each within the limit.
+    assert (np.abs(force) <= limits + 1e-9).all()
 
 
 def test_the_viscous_law_is_centred():

@@ -39,7 +39,7 @@ def oscillator(friction, *, mass=1.0, stiffness=100.0, smoothing=1e5, **more):
 
 
 def den_hartog(ratio, share):
-    """Amplitude per static deflection P/k of continuous motion; ratio w/wn, share Fd/P (Den Hartog 1931)."""
+    """Return the amplitude per static deflection P/k of continuous motion; ratio w/wn, share Fd/P (Den Hartog 1931)."""
     v = 1.0 / (1.0 - ratio**2)
     u = math.sin(math.pi / ratio) / (ratio * (1.0 + math.cos(math.pi / ratio)))
     return math.sqrt(v**2 - share**2 * u**2)
@@ -80,14 +80,16 @@ def test_den_hartog_with_stops(ratio, share, kind):
     expected = exact.sample(pieces, time)
     model = oscillator(30.0 * share, smoothing=1e6)
     if kind == "smooth":
-        found = stiff_solution(model, time, force=drive).displacement("mass")
+        displacement = stiff_solution(model, time, force=drive).displacement("mass")
     else:
         law = Switch(limit=30.0 * share, band=1e-6, return_time=1e-4)
-        found = switch_solution(model, law, time, force=drive).displacement("mass")
+        displacement = switch_solution(model, law, time, force=drive).displacement("mass")
     # While stuck the atan law creeps at 1e-6 m/s times tan(pi/2 load/Fd): below 1e-4 m in all, of 0.3 m. The switch
     # model drifts by at most its band times the time.
-    assert found == pytest.approx(expected, abs=1e-4 if kind == "smooth" else 2e-5)
-    assert steady_amplitude(time, found, period) == pytest.approx(steady_amplitude(time, expected, period), rel=1e-3)
+    assert displacement == pytest.approx(expected, abs=1e-4 if kind == "smooth" else 2e-5)
+    assert steady_amplitude(time, displacement, period) == pytest.approx(
+        steady_amplitude(time, expected, period), rel=1e-3
+    )
 
 
 def test_free_decay_with_coulomb_friction():
@@ -149,7 +151,7 @@ def test_mass_on_a_belt_with_static_and_kinetic_friction():
 def test_the_locked_strut_unlocks_where_its_force_reaches_the_limit(frequency):
     """'Boulevard ride': below A(w) the strut never slides; A = Fd / |friction force of the stuck car per road metre|.
 
-    The stuck car by two equations of its own: damper mass on the wheel, mount spring above it.
+    The stuck car by two separate equations: damper mass on the wheel, mount spring above it.
     """
     s = 2j * math.pi * frequency
     k = 3e4 + 7e5

@@ -20,7 +20,7 @@ ROUNDING = 1e-12
 
 
 def lagrange_matrices():
-    """M, C, K, Bk, Bc from Lagrange's equations of energies written by hand, not from rows."""
+    """Derive M, C, K, Bk, Bc from Lagrange's equations of energies written by hand, not from rows."""
     t = sympy.Symbol("t")
     x3, x2, xse, xb, xuf, xur, theta = q = [sympy.Function(name)(t) for name in ORDER]
     zf, zr = z = [sympy.Function(name)(t) for name in ("zf", "zr")]
@@ -90,11 +90,11 @@ def test_static_loads_balance_weight_and_moment():
 
 
 def test_places_follow_equations_8_to_10_of_the_source():
-    place = output_points(CAR)
-    assert place["seat_base"] == {"heave": 1.0, "pitch": -0.65}
-    assert place["front_body"] == {"heave": 1.0, "pitch": -1.35}
-    assert place["rear_body"] == {"heave": 1.0, "pitch": 1.45}
-    assert place["front_travel"] == {"heave": 1.0, "pitch": -1.35, "front_wheel": -1.0}
+    points = output_points(CAR)
+    assert points["seat_base"] == {"heave": 1.0, "pitch": -0.65}
+    assert points["front_body"] == {"heave": 1.0, "pitch": -1.35}
+    assert points["rear_body"] == {"heave": 1.0, "pitch": 1.45}
+    assert points["front_travel"] == {"heave": 1.0, "pitch": -1.35, "front_wheel": -1.0}
 
 
 def test_printed_matrices_are_not_symmetric_and_grow():

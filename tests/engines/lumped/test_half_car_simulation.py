@@ -38,10 +38,10 @@ def test_passive_car_converges_to_the_exact_response_with_order_two():
 
 def test_runs_of_a_batch_do_not_act_on_each_other():
     heavy = dataclasses.replace(CAR, body=dataclasses.replace(CAR.body, mass=700.0))
-    together = simulate_bump([CAR, heavy], [SPEED, 12.0], law="skyhook", one_sided_tyres=True, duration=0.4)
-    alone = simulate_bump([heavy], [12.0], law="skyhook", one_sided_tyres=True, duration=0.4)[0]
+    batch = simulate_bump([CAR, heavy], [SPEED, 12.0], law="skyhook", one_sided_tyres=True, duration=0.4)
+    single = simulate_bump([heavy], [12.0], law="skyhook", one_sided_tyres=True, duration=0.4)[0]
     # batched products may add in another order
-    np.testing.assert_allclose(together[1].state, alone.state, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(batch[1].state, single.state, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -78,7 +78,7 @@ def test_engine_on_its_mount_alone(engine):
 @pytest.mark.parametrize("engine", ["none", "linear", "elastomer"])
 @pytest.mark.parametrize("strut", [False, True])
 def test_the_friction_model_follows_lagrange(strut, engine, small_mass):
-    """Equations 2.6, 2.7, 2.13 and D.28 to D.34 from T, V, the dissipation and the sliding force, by sympy."""
+    """Derive equations 2.6, 2.7, 2.13 and D.28 to D.34 from T, V, the dissipation and the sliding force, by sympy."""
     t = sp.Symbol("t")
     yb, yt, u, xt, ye, ys, w, f2, fr = (sp.Function(n)(t) for n in ("yb", "yt", "u", "xt", "ye", "ys", "w", "f2", "fr"))
     a = sp.rad(sp.Rational(42, 10)) if strut else sp.Integer(0)
@@ -154,18 +154,18 @@ def test_a_stack_of_cars_equals_the_single_ones():
     stack = quarter_car(
         CAR, damper="slip", engine="elastomer", vary={"mount.stiffness": mounts, "damper.damping": dampings}
     )
-    together = frequency_response(stack.first_order(), frequency, "body", "acceleration")
-    assert together.shape == (3, 30)
+    stacked = frequency_response(stack.first_order(), frequency, "body", "acceleration")
+    assert stacked.shape == (3, 30)
     for i in range(3):
         car = dataclasses.replace(
             CAR,
             mount=dataclasses.replace(CAR.mount, stiffness=float(mounts[i])),
             damper=dataclasses.replace(CAR.damper, damping=float(dampings[i])),
         )
-        alone = frequency_response(
+        single = frequency_response(
             quarter_car(car, damper="slip", engine="elastomer").first_order(), frequency, "body", "acceleration"
         )
-        assert together[i] == pytest.approx(alone, rel=1e-10)
+        assert stacked[i] == pytest.approx(single, rel=1e-10)
 
 
 def test_angles_can_be_stacked_and_zero_angle_is_the_vertical_car():

@@ -38,11 +38,11 @@ LAWS: dict[str, dict[str, Any]] = {
 
 
 def dampers(car, name):
-    return [dataclasses.replace(one.law, **LAWS[name]) for one in car.vehicle.composition.dampers]
+    return [dataclasses.replace(damper.law, **LAWS[name]) for damper in car.vehicle.composition.dampers]
 
 
 def with_idle_poles(model, pairs, reals):
-    """The same car with poles that nothing moves, as another car may have more of them."""
+    """Add idle poles to a car, since another car may have more poles."""
     at = [model.pairs] * pairs + [len(model.poles)] * reals
     return dataclasses.replace(
         model,
@@ -68,60 +68,60 @@ def company(car):
 
 
 @pytest.fixture(scope="module")
-def together(company):
+def batch_of_ten(company):
     models, laws, loads = company
     return run_many(models, laws, ROAD, loads)
 
 
 @pytest.mark.parametrize("order", [[9], [3, 1], [9, 8, 7, 6, 5, 4, 3, 2, 1, 0]])
-def test_a_car_does_not_know_its_neighbours(company, together, order):
+def test_a_car_is_bitwise_independent_of_the_other_cars(company, batch_of_ten, order):
     chosen = [[part[k] for k in order] for part in company]
     other = run_many(chosen[0], chosen[1], ROAD, chosen[2], channels=CHANNELS[::-1])
-    for place, k in enumerate(order):
+    for index, k in enumerate(order):
         for name in CHANNELS:
-            np.testing.assert_array_equal(other.channels[name][place], together.channels[name][k], err_msg=name)
-        assert other.statistics[place].warnings == together.statistics[k].warnings
+            np.testing.assert_array_equal(other.channels[name][index], batch_of_ten.channels[name][k], err_msg=name)
+        assert other.statistics[index].warnings == batch_of_ten.statistics[k].warnings
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_a_car_moves_as_it_does_alone(company, together, name, monkeypatch):
+def test_a_car_of_a_batch_moves_as_in_a_single_run(company, batch_of_ten, name, monkeypatch):
     models, laws, loads = company
     k = list(LAWS).index(name)
     # One car alone is of first order in the step where its law is not one of constants: an eighth of its step.
     monkeypatch.setattr("vehicle.engines.reduced.reduced_run.LONGEST_STEP", LONGEST_STEP / 8.0)
-    alone = simulate_reduced(
+    single = simulate_reduced(
         models[k], ROAD, dampers=laws[k], record_rate=1000.0, tyre_load=loads[k], channels=CHANNELS
     )
     for step, of_rail, bound in ((COARSE_STEP, 5e-3, 0.015), (LONGEST_STEP, 1e-3, 2.5e-3)):
-        found = run_many(models[k : k + 1], laws[k : k + 1], ROAD, loads, step=step)
+        batch = run_many(models[k : k + 1], laws[k : k + 1], ROAD, loads, step=step)
         for channel in CHANNELS:
-            difference = np.std(found.channels[channel][0] - alone[channel])
+            difference = np.std(batch.channels[channel][0] - single[channel])
             largest = of_rail if channel.startswith("seat_rail") else bound
             # A force jumps, and the others only where it does.
-            assert difference <= largest * np.std(alone[channel]), (channel, step)
-        assert found.recording(0).statistics.warnings == alone.statistics.warnings
+            assert difference <= largest * np.std(single[channel]), (channel, step)
+        assert batch.recording(0).statistics.warnings == single.statistics.warnings
 
 
-def test_cars_that_are_run_alone_among_others(car):
+def test_cars_of_a_batch_that_need_single_runs(car):
     """One whose dampers move each other by a tenth, as tied by a lever."""
     signal = Signal(time=ROAD.time[:301], displacement={"fr": ROAD.displacement["fr"][:301]})
     plain, load = dampers(car, "coulomb"), car.model.static.tyre_load
     force, slip = car.poles.force, car.poles.slip
     tied = dataclasses.replace(car.poles, force=force + 0.1 * force[:, ::-1], slip=slip + 0.1 * slip[::-1])
     models, laws = [car.poles, tied, car.poles], [plain, plain, dampers(car, "stribeck")]
-    found = run_many(models, laws, signal, [load] * 3)
-    alone = simulate_reduced(tied, signal, dampers=plain, record_rate=1000.0, tyre_load=load, channels=CHANNELS)
-    assert found.statistics[1].timestep == alone.statistics.timestep < COARSE_STEP
+    batch = run_many(models, laws, signal, [load] * 3)
+    single = simulate_reduced(tied, signal, dampers=plain, record_rate=1000.0, tyre_load=load, channels=CHANNELS)
+    assert batch.statistics[1].timestep == single.statistics.timestep < COARSE_STEP
     for name in CHANNELS:
         # Round-off of products of matrices, which may differ by a last digit from one call to the next.
-        bound = 1e-9 * np.max(np.abs(alone[name]))
+        bound = 1e-9 * np.max(np.abs(single[name]))
         assert np.isfinite(bound), name
-        np.testing.assert_allclose(found.channels[name][1], alone[name], rtol=0.0, atol=bound, err_msg=name)
+        np.testing.assert_allclose(batch.channels[name][1], single[name], rtol=0.0, atol=bound, err_msg=name)
     others = run_many(models[::2], laws[::2], signal, [load] * 2)
-    for own, place in enumerate((0, 2)):
-        assert found.statistics[place].timestep == COARSE_STEP
+    for row, position in enumerate((0, 2)):
+        assert batch.statistics[position].timestep == COARSE_STEP
         for name in CHANNELS:
-            np.testing.assert_array_equal(found.channels[name][place], others.channels[name][own], err_msg=name)
+            np.testing.assert_array_equal(batch.channels[name][position], others.channels[name][row], err_msg=name)
 
 
 def test_set_valued_friction_under_a_sine():
@@ -144,7 +144,7 @@ def test_set_valued_friction_under_a_sine():
     law = dataclasses.replace(load_vehicle().damper, viscous=0.0, coulomb_friction=limit)
     time = uniform_time(samples=4001, timestep=1e-3)
     plate = 0.3 * np.sin(omega * time)
-    found = run_many(
+    batch = run_many(
         [pole_model(system)],
         [[law, law]],
         Signal(time=time, displacement={"fr": plate}),
@@ -153,8 +153,8 @@ def test_set_valued_friction_under_a_sine():
     )
     exact = ExactStickSlip(1.0, stiffness, limit, 0.3 * stiffness, omega)
     pieces = exact.motion(4.0, 0.0, 0.0)
-    assert 0.1 < sum(end - start for start, end, kind, _ in pieces if kind == 0) / 4.0 < 0.9
-    position = plate - found.channels["tyre_fr_force_z"][0] / stiffness
+    assert 0.1 < sum(end - start for start, end, phase, _ in pieces if phase == 0) / 4.0 < 0.9
+    position = plate - batch.channels["tyre_fr_force_z"][0] / stiffness
     # In stick the clamped law creeps with at most 16 um/s.
     assert np.max(np.abs(position - exact.sample(pieces, time))) < 2e-5
 
@@ -172,7 +172,7 @@ def test_a_stuck_damper_is_of_third_order():
         run_many([pole_model(matrices())], [[law, law]], step=step, **run).channels[channel][0]
         for step in (1e-3, 5e-4, 1.25e-4)
     )
-    errors = [float(np.std(one - fine)) for one in (coarse, middle)]
+    errors = [float(np.std(coarser - fine)) for coarser in (coarse, middle)]
     # Eight times; four times with a force that is constant over a step.
     assert errors[0] / errors[1] > 6.0
 
@@ -181,21 +181,21 @@ def test_four_dampers_and_four_plates():
     car = Car.load("focus_road")
     late = {wheel: np.roll(ROAD.displacement["fr"], 40 * k) for k, wheel in enumerate(car.vehicle.wheels)}
     signal = Signal(time=ROAD.time[:801], displacement={wheel: z[:801] for wheel, z in late.items()})
-    laws, loads = [one.law for one in car.vehicle.composition.dampers], car.model.static.tyre_load
+    laws, loads = [damper.law for damper in car.vehicle.composition.dampers], car.model.static.tyre_load
     channels = ["seat_rail_acc_z", *(f"damper_{wheel}_velocity" for wheel in car.vehicle.wheels), "tyre_rl_force_z"]
-    alone = simulate_reduced(car.poles, signal, dampers=laws, record_rate=1000.0, tyre_load=loads, channels=channels)
-    found = run_many([car.poles], [laws], signal, [loads], channels=channels)
-    assert found.statistics[0].timestep == COARSE_STEP, "not run alone"
+    single = simulate_reduced(car.poles, signal, dampers=laws, record_rate=1000.0, tyre_load=loads, channels=channels)
+    batch = run_many([car.poles], [laws], signal, [loads], channels=channels)
+    assert batch.statistics[0].timestep == COARSE_STEP, "not run alone"
     for channel in channels:
-        assert np.std(found.channels[channel][0] - alone[channel]) < 5e-3 * np.std(alone[channel]), channel
-    assert found.statistics[0].within_validity == alone.statistics.within_validity
+        assert np.std(batch.channels[channel][0] - single[channel]) < 5e-3 * np.std(single[channel]), channel
+    assert batch.statistics[0].within_validity == single.statistics.within_validity
 
 
-def test_motion_beyond_the_matrices_is_said_of_that_car_alone(car):
+def test_only_the_car_outside_the_valid_range_is_reported(car):
     violent = Signal(time=ROAD.time, displacement={"fr": 40.0 * ROAD.displacement["fr"]})
     loads = [car.model.static.tyre_load, dict.fromkeys(("fr", "fl"), 1000000000.0)]
-    found = run_many([car.poles] * 2, [dampers(car, "coulomb")] * 2, violent, loads, channels=["seat_rail_acc_z"])
-    alone = simulate_reduced(
+    batch = run_many([car.poles] * 2, [dampers(car, "coulomb")] * 2, violent, loads, channels=["seat_rail_acc_z"])
+    single = simulate_reduced(
         car.poles,
         violent,
         dampers=dampers(car, "coulomb"),
@@ -203,6 +203,6 @@ def test_motion_beyond_the_matrices_is_said_of_that_car_alone(car):
         tyre_load=loads[0],
         channels=["seat_rail_acc_z"],
     )
-    assert len(alone.statistics.warnings) > len(found.statistics[1].warnings)
-    assert [text[:20] for text in found.statistics[0].warnings] == [text[:20] for text in alone.statistics.warnings]
-    assert not found.statistics[0].within_validity
+    assert len(single.statistics.warnings) > len(batch.statistics[1].warnings)
+    assert [text[:20] for text in batch.statistics[0].warnings] == [text[:20] for text in single.statistics.warnings]
+    assert not batch.statistics[0].within_validity

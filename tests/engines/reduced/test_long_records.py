@@ -27,7 +27,7 @@ def test_pieces_give_the_same_run(car, monkeypatch):
 
 
 def test_blocks_of_any_length_give_the_same_run(car, monkeypatch):
-    """What the blocks hand on: the dampers on both sides of a sample, the past of an acceleration, the plates."""
+    """Check the state that a block passes on: damper forces around a sample, past positions, plates."""
     road = random_road(rms=4e-3, seed=3, duration=2.0)
     names = [*car.vehicle.channels, *car.vehicle.requested_channels]
     whole = car.run(road, engine="reduced", channels=names)

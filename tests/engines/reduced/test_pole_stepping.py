@@ -17,17 +17,17 @@ CURVES = {
 
 
 def pieces_of(name, gain, width=5):
-    """The pieces of a curve as the march takes them."""
+    """Return the segments of a curve for the time stepping."""
     knots, slopes, offsets = CURVES[name]
-    found = np.zeros((4, width))
-    found[0], found[3] = np.inf, 1.0
-    found[0, : len(knots)], found[1, : len(slopes)], found[2, : len(slopes)] = knots, slopes, offsets
-    found[3] = 1.0 / (1.0 + gain * found[1])
-    return found
+    segments = np.zeros((4, width))
+    segments[0], segments[3] = np.inf, 1.0
+    segments[0, : len(knots)], segments[1, : len(slopes)], segments[2, : len(slopes)] = knots, slopes, offsets
+    segments[3] = 1.0 / (1.0 + gain * segments[1])
+    return segments
 
 
 def curve_force(name, velocity):
-    """The same curve from its corners."""
+    """Return the force of a curve from its breakpoints."""
     knots, slopes, offsets = map(np.array, CURVES[name])
     piece = int(np.sum(velocity > knots))
     return slopes[piece] * velocity + offsets[piece]
@@ -36,30 +36,30 @@ def curve_force(name, velocity):
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("limit", [0.0, 100.0])
 @pytest.mark.parametrize("g", [1e-7, 7.7e-5, 1e-2])
-def test_velocity_answers_its_own_force(name, limit, g):
+def test_velocity_and_force_of_a_damper_are_consistent(name, limit, g):
     def law(v):
         return np.clip(2.0 / np.pi * limit * SMOOTHING * v, -limit, limit) + curve_force(name, v)
 
     for start in (0, len(CURVES[name][1]) - 1):
         for a in [*np.geomspace(1e-9, 3.0, 40), *-np.geomspace(1e-9, 3.0, 40)]:
             curve = pieces_of(name, g)
-            found, piece = solve_damper(a, g, limit, 0.5 * np.pi / SMOOTHING, curve, start)
+            velocity, piece = solve_damper(a, g, limit, 0.5 * np.pi / SMOOTHING, curve, start)
             expected = brentq(lambda v, a=a: v + g * law(v) - a, -4.0, 4.0, xtol=1e-18, rtol=1e-14)
-            assert found == pytest.approx(expected, rel=1e-9, abs=1e-16)
-            assert damper_force(found, limit, SMOOTHING, curve, piece) == pytest.approx(-law(expected), rel=1e-8)
+            assert velocity == pytest.approx(expected, rel=1e-9, abs=1e-16)
+            assert damper_force(velocity, limit, SMOOTHING, curve, piece) == pytest.approx(-law(expected), rel=1e-8)
 
 
 @pytest.mark.parametrize("count", [1, 2, 4])
-def test_dampers_with_laws_of_their_own_answer_each_other(count):
+def test_coupled_dampers_with_different_laws(count):
     # Static limit, sliding limit, smoothing, slope and limit of the degressive law of each damper, by hand.
     numbers = [(65.0, 125.0, 1.0), (90.0, 90.0, 0.0), (0.0, 0.0, 0.0), (30.0, 40.0, 1.0)][:count]
     laws = np.zeros(count, dtype=RECORD)
     laws["friction_limit"], laws["static_limit"], laws["friction_law"] = np.transpose(numbers)
     laws["smoothing"], laws["stribeck_velocity"], laws["stribeck_exponent"] = 1e3, 0.03, 2.0
     generator = np.random.default_rng(7)
-    own = 7.7e-5 * (1.0 + 0.2 * np.arange(count))
-    gain = np.diag(own) + 3e-6 * (np.ones((count, count)) - np.eye(count))
-    curves = np.array([pieces_of("degressive", value) for value in own])
+    own_gain = 7.7e-5 * (1.0 + 0.2 * np.arange(count))
+    gain = np.diag(own_gain) + 3e-6 * (np.ones((count, count)) - np.eye(count))
+    curves = np.array([pieces_of("degressive", value) for value in own_gain])
     for size in (1e-6, 1e-3, 0.05, 1.0):
         arriving, start = size * generator.standard_normal((2, count))
         velocity, force = start.copy(), np.zeros(count)

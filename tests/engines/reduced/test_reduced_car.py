@@ -20,13 +20,13 @@ FINE = "solver.timestep=0.000125"
 """The step of the reduced engine, so that MuJoCo's own error stays below 0.1 %."""
 
 
-def rms_ratios(found, expected):
+def rms_ratios(values, expected):
     """RMS of every moving channel about its mean, found over expected, minus 1."""
     ratios = {}
     for name in CHANNELS:
         size = np.std(expected[name])
         if size > 0.0:
-            ratios[name] = np.std(found[name]) / size - 1.0
+            ratios[name] = np.std(values[name]) / size - 1.0
     return ratios
 
 
@@ -76,11 +76,11 @@ def test_frf_from_time_and_from_the_matrices(damper, friction):
     run = car.run(signal, engine="reduced")
     channels = ["knuckle_fr_acc_z", "seat_rail_acc_x", "engine_acc_z"]
     responses = np.array([run[name][:-1] for name in channels])
-    frequency, found = periodic_response(1e-3, run["plate_fr_displacement"][:-1], responses, period=4.0)
+    frequency, measured = periodic_response(1e-3, run["plate_fr_displacement"][:-1], responses, period=4.0)
     exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
-    error = np.sqrt(np.sum(np.abs(found - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
-    # Sliding is linear and exact at any step; a stuck damper is one that creeps, its force constant over each step.
-    # What is left of the transient after three periods is about 1e-3 for the least damped modes.
+    error = np.sqrt(np.sum(np.abs(measured - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
+    # Sliding is linear and exact at any step; a stuck damper creeps with a constant force over each step.
+    # The rest of the transient after three periods is about 1e-3 for the least damped modes.
     assert np.max(error) < (2e-3 if damper == "sliding" else 4e-3), error
 
 
@@ -106,9 +106,9 @@ def test_blocks_leave_no_seam(high_piece, monkeypatch):
 
 
 def test_the_same_run_twice_is_the_same_bit_for_bit(high_piece):
-    one, two = (Car.load().run(high_piece, engine="reduced") for _ in range(2))
+    first, second = (Car.load().run(high_piece, engine="reduced") for _ in range(2))
     for name in CHANNELS:
-        assert np.array_equal(one[name], two[name]), name
+        assert np.array_equal(first[name], second[name]), name
 
 
 def test_it_may_record_few_channels(car, high_piece):

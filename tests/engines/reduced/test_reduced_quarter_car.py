@@ -30,7 +30,7 @@ ROAD = random_road(rms=2e-3, seed=2006, duration=8.0, lower_band_edge=0.5, upper
 
 
 def matrices(tyre_damping=0.0):
-    """Two quarter cars beside each other; coordinates body, wheel, damper over wheel, for the right and the left."""
+    """Two independent quarter cars; coordinates body, wheel, damper over wheel, for the right and the left."""
     side = {
         "mass": np.diag([CAR.body.mass, CAR.wheel.mass, 0.0]),
         "stiffness": np.zeros((3, 3)),
@@ -91,10 +91,10 @@ def solved():
     return stiff_solution(friction_of_the_rows(CAR), ROAD.time, road=Sampled(ROAD.displacement["fr"], 1e-3))
 
 
-def compare(found, expected, bounds):
+def compare(reduced, expected, bounds):
     for name, bound in bounds.items():
         b = expected[name]
-        a = found[name][: b.size]
+        a = reduced[name][: b.size]
         assert np.sqrt(np.mean((a - b) ** 2)) < bound * np.sqrt(np.mean(b**2)), name
 
 
@@ -206,16 +206,16 @@ def test_a_plate_that_stands_away_from_zero_when_the_run_begins():
 
 @pytest.mark.parametrize("rate", [125.0, 1000.0])
 def test_a_short_lift_off_is_seen_at_any_recording_rate(rate):
-    # A hole of 60 ms, of which a sample in 128 ms knows nothing.
+    # A hole of 60 ms, which a sample interval of 128 ms misses.
     time = uniform_time(samples=401, timestep=1e-3)
     inside = (time > 0.15) & (time < 0.21)
     hole = np.where(inside, -5e-3 * (1.0 - np.cos(2.0 * np.pi * (time - 0.15) / 0.06)), 0.0)
     model, signal, load = pole_model(matrices()), Signal(time=time, displacement={"fr": hole}), {"fr": 1e3, "fl": 1e6}
     channels = ["tyre_fr_force_z"]
     run = simulate_reduced(model, signal, dampers=[damper()] * 2, record_rate=rate, tyre_load=load, channels=channels)
-    many = simulate_batch(
+    batch = simulate_batch(
         [model], signal, dampers=[[damper()] * 2], record_rate=rate, tyre_load=[load], channels=channels
     )
     assert min(run["tyre_fr_force_z"]) < 0.0
-    for statistics in (run.statistics, many.statistics[0]):
+    for statistics in (run.statistics, batch.statistics[0]):
         assert any("tyre fr would lift off" in warning for warning in statistics.warnings)

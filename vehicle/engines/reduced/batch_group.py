@@ -70,7 +70,7 @@ class BatchGroup:
         """
         system, segments = self.models[0].matrices.system, self.models[0].matrices.segments
         bodies = rotating_bodies(self.models[0].matrices)
-        lanes = BatchTable(self.factors, dampers, self.start)
+        batch_table = BatchTable(self.factors, dampers, self.start)
         count = len(dampers[0])
         # Rows of a sample: positions, all tyre loads and segments, damper velocities, damper forces.
         position_names = [name for name in channels if name in system.outputs]
@@ -103,9 +103,11 @@ class BatchGroup:
             for rows_of in (partial(_position_rows, names=position_names), partial(_rotation_rows, bodies=bodies))
         )
         reading = OutputTiles(
-            positions=lanes.tiles(positions),
-            levels=lanes.tiles([car.weights_of(outputs) for car, outputs in zip(self.factors, linear, strict=True)]),
-            rotations=lanes.tiles(rotations),
+            positions=batch_table.tiles(positions),
+            levels=batch_table.tiles(
+                [car.weights_of(outputs) for car, outputs in zip(self.factors, linear, strict=True)]
+            ),
+            rotations=batch_table.tiles(rotations),
             loads=len(tyre_wheels),
             every=check_stride(self.interval),
             always=bool(segments) or any(name in tyre_wheels for name in channels),
@@ -120,7 +122,7 @@ class BatchGroup:
             initial = np.hstack([outputs.height[:, columns], outputs.velocity[:, columns]]) @ self.start.ravel()
             output_buffer[(PAST - 1) * (velocity_row + 2 * count) + levels :, lane][: len(initial)] = initial
         peaks = aligned_table(len(bodies) + 2 * (velocity_row - levels))
-        self._step_blocks(lanes, reading, output_buffer, peaks, table, cars, count)
+        self._step_blocks(batch_table, reading, output_buffer, peaks, table, cars, count)
         return [
             self._validity(peaks[:, lane].astype(float), model, bodies, static)
             for lane, (model, static) in enumerate(zip(self.models, tyre_load, strict=True))
@@ -135,7 +137,7 @@ class BatchGroup:
 
     def _step_blocks(
         self,
-        lanes: BatchTable,
+        batch_table: BatchTable,
         reading: OutputTiles,
         y: Table,
         peaks: Table,
@@ -146,9 +148,9 @@ class BatchGroup:
         """Advance the cars block by block; see `batch_stepping.step_batch` for the arguments."""
         from vehicle.engines.reduced.batch_stepping import compiled_batch_stepping
 
-        stepping, m, every = compiled_batch_stepping(), lanes.plates, self.every
-        x, car_indices = aligned_table((INNER_BLOCK + 1) * lanes.states), np.array(cars, dtype=np.int64)
-        x[: len(lanes.initial)] = lanes.initial
+        stepping, m, every = compiled_batch_stepping(), batch_table.plates, self.every
+        x, car_indices = aligned_table((INNER_BLOCK + 1) * batch_table.states), np.array(cars, dtype=np.int64)
+        x[: len(batch_table.initial)] = batch_table.initial
         lengths = (0.0,) * (2 * (count + m)), (0.0,) * count
         sample, end = 1, table.shape[2] + AHEAD
         while sample < end:
@@ -159,7 +161,7 @@ class BatchGroup:
             rates[:-1, m:] = np.diff(block_plates[:, 0::2], axis=0) / self.timestep
             displacements = block_plates[::every, 0::2]
             plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(ELEMENT)
-            stepping(lanes.table, lanes.rows, lanes.laws, rates, plate_z, every, reading, x, y, peaks, table, sample,
+            stepping(batch_table.table, batch_table.rows, batch_table.laws, rates, plate_z, every, reading, x, y, peaks, table, sample,
                      car_indices, *lengths)  # fmt: skip
             sample += size
 
