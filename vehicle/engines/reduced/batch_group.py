@@ -161,8 +161,8 @@ class BatchGroup:
             rates[:-1, m:] = np.diff(block_plates[:, 0::2], axis=0) / self.timestep
             displacements = block_plates[::every, 0::2]
             plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(ELEMENT)
-            stepping(batch_table.table, batch_table.rows, batch_table.laws, rates, plate_z, every, reading, x, y, peaks, table, sample,
-                     car_indices, *lengths)  # fmt: skip
+            tables = batch_table.table, batch_table.rows, batch_table.laws
+            stepping(*tables, rates, plate_z, every, reading, x, y, peaks, table, sample, car_indices, *lengths)
             sample += size
 
     @staticmethod
