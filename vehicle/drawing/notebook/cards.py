@@ -1,4 +1,4 @@
-"""A car and a run as a notebook shows them."""
+"""Display of a car and of a run in a notebook."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from vehicle.drawing.notebook.picture import card, frame_drawing, line_drawing
 
 
 def car_card(car: Any) -> str:
-    """A `vehicle.runs.car.Car` as HTML."""
+    """Return HTML of a `vehicle.runs.car.Car`."""
     from vehicle.drawing.rendering.wireframe import car_wireframe
 
     own, static = car.vehicle, car.static
@@ -24,7 +24,7 @@ def car_card(car: Any) -> str:
 
 
 def run_card(run: Any) -> str:
-    """A `vehicle.runs.car.Run` as HTML."""
+    """Return HTML of a `vehicle.runs.car.Run`."""
     shares = {wheel: run.slip_share(wheel) for wheel in run.car.vehicle.wheels}
     rows = {
         "signal": f"{Path(run.signal.source).name}, {run.signal.duration:g} s, "

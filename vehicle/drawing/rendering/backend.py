@@ -1,7 +1,7 @@
-"""What a film needs from the machine: an off-screen OpenGL library and an ffmpeg with H.264, checked before a run.
+"""Check of the requirements of a film before a run: an off-screen OpenGL library and an ffmpeg with H.264.
 
-`choose_backend` wants to be called before `import mujoco`: MuJoCo reads MUJOCO_GL when it is imported, and PyOpenGL
-settles on one platform. `python -m vehicle.drawing.rendering.backend` tells whether films can be made.
+`choose_backend` must be called before `import mujoco`: MuJoCo reads MUJOCO_GL when it is imported, and PyOpenGL
+selects one platform. `python -m vehicle.drawing.rendering.backend` prints the reason why films cannot be made.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from functools import cache
 from vehicle.errors import MissingPartError
 
 BACKENDS = ("osmesa", "egl")
-"""In order of preference: OSMesa renders on the processor and gives the same picture on every machine."""
+"""Backends in order of preference: OSMesa renders on the processor and gives the same picture on every machine."""
 
 ENCODER = "libx264"
 PATIENCE = 120.0
-"""Longest wait [s] for a probe; importing MuJoCo and opening a context takes about one second."""
+"""Maximum time [s] of a probe; importing MuJoCo and opening a context takes about one second."""
 
 PROBE = """
 import mujoco
@@ -36,13 +36,13 @@ with mujoco.Renderer(model, 16, 16) as renderer:
 
 @cache
 def probe(backend: str) -> str | None:
-    """Render one tiny picture in a process of its own, since a missing library may end the process.
+    """Render a tiny picture in a separate process, since a missing library may end the process.
 
     Args:
         backend: value of MUJOCO_GL.
 
     Returns:
-        None if it works, else the last line that the process said.
+        None if it works, else the last error line of the process.
     """
     environment = {**os.environ, "MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
     command = [sys.executable, "-c", PROBE]
@@ -62,11 +62,11 @@ def probe(backend: str) -> str | None:
 def choose_backend(probe: Callable[[str], str | None] = probe) -> str:
     """Choose the OpenGL backend and write it into MUJOCO_GL and PYOPENGL_PLATFORM.
 
-    A working choice of the user comes first, then OSMesa, then EGL. Where PyOpenGL is loaded already, only its platform
+    A working choice of the user comes first, then OSMesa, then EGL. If PyOpenGL is already loaded, only its platform
     can be used.
 
     Args:
-        probe: gives None for a backend that works, else the reason why not.
+        probe: function that returns None for a backend that works, otherwise the reason of its failure.
 
     Returns:
         "osmesa" or "egl".
@@ -87,29 +87,31 @@ def choose_backend(probe: Callable[[str], str | None] = probe) -> str:
             os.environ["MUJOCO_GL"] = os.environ["PYOPENGL_PLATFORM"] = name
             return name
         reasons[name] = reason
-    found = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
+    failures = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
     raise MissingPartError(
-        f"video: no off-screen OpenGL library works on this machine ({found}). "
+        f"video: no off-screen OpenGL library works on this machine ({failures}). "
         "Install OSMesa, on Debian: apt-get install libosmesa6; or run without --video"
     )
 
 
 def find_ffmpeg() -> str:
-    """Find an ffmpeg program that encodes H.264: the one on PATH, else the one of the imageio-ffmpeg package.
+    """Find an ffmpeg program that encodes H.264: on PATH, else in the imageio-ffmpeg package.
 
     Returns:
         Path of the program.
 
     Raises:
-        MissingPartError: there is none, or none with the encoder.
+        MissingPartError: no ffmpeg program with the encoder is installed.
     """
-    found = [path for path in (shutil.which("ffmpeg"), _bundled_ffmpeg()) if path is not None]
-    for path in found:
+    programs = [path for path in (shutil.which("ffmpeg"), _bundled_ffmpeg()) if path is not None]
+    for path in programs:
         if _encodes(path):
             return path
-    what = f"found {', '.join(found)} without the encoder {ENCODER}" if found else "no ffmpeg program was found"
+    problem = (
+        f"found {', '.join(programs)} without the encoder {ENCODER}" if programs else "no ffmpeg program was found"
+    )
     raise MissingPartError(
-        f"video: {what}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
+        f"video: {problem}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
         "or run without --video"
     )
 
@@ -124,7 +126,7 @@ def _bundled_ffmpeg() -> str | None:
 
 
 def _encodes(path: str) -> bool:
-    """Whether a program lists the encoder."""
+    """Return True if a program lists the encoder."""
     command = [path, "-hide_banner", "-encoders"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
@@ -140,14 +142,14 @@ def require_film() -> str:
         The chosen OpenGL backend.
 
     Raises:
-        MissingPartError: something is missing; names it and how to install it.
+        MissingPartError: a part is missing; the message names the part and its installation.
     """
     find_ffmpeg()
     return choose_backend()
 
 
 def film_available() -> str | None:
-    """Reason why no film can be made on this machine; None where it can."""
+    """Return the reason why this machine cannot make films, or None if it can."""
     try:
         require_film()
     except MissingPartError as error:

@@ -27,19 +27,19 @@ from vehicle.signals.analysis.dependence import motion_words
 from vehicle.signals.analysis.motion_response import MotionResponse
 
 OUTPUTS = {"seat_rail_acc_z": "Seat rail, vertical", "engine_acc_z": "Engine, vertical"}
-"""Channels that stand for a car beside the part that carries its first driven wheel."""
+"""Representative channels of a car, in addition to the part that carries its first driven wheel."""
 
 DECADES = 1e4
-"""Range of the magnitude axis: what is smaller is the error of a plate that does not reach the channel."""
+"""Range of the magnitude axis: smaller values are errors of a plate without effect on the channel."""
 
 
 def plot_frfs(path: Path, run: RecordedRun, responses: Sequence[MotionResponse], caption: str) -> None:
-    """Write the FRF picture of a run.
+    """Plot the FRFs of a run.
 
     Args:
         path: PNG file.
         run: the run.
-        responses: to each motion of its plates, rows of all acceleration channels.
+        responses: responses to each motion of the plates, with rows of all acceleration channels.
         caption: line under the picture.
     """
     if len(responses) > 1:
@@ -52,7 +52,7 @@ def plot_frfs(path: Path, run: RecordedRun, responses: Sequence[MotionResponse],
 
 
 def _plates(motion: Mapping[str, float], wheels: Sequence[str]) -> str:
-    """The plates of a motion in words: the plate front right, or the plates with their factors."""
+    """Describe the plates of a motion: the plate front right, or the plates with their factors."""
     names = {wheel: side_of(wheel, wheels) for wheel in motion}
     if len(motion) == 1:
         return f"plate {next(iter(names.values()))}"
@@ -62,7 +62,7 @@ def _plates(motion: Mapping[str, float], wheels: Sequence[str]) -> str:
 
 
 def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResponse], caption: str) -> None:
-    """A column for each of a few channels, a line for each motion of the plates; the coherence is that with all."""
+    """Plot a column for each of a few channels, a line for each plate motion, and the multiple coherence."""
     vehicle = run.car.model.vehicle
     rows = {name: row for row, name in enumerate(vehicle.acceleration_channels)}
     hub = f"Wheel carrier {side_of(run.wheel, vehicle.wheels)}, vertical"

@@ -1,4 +1,4 @@
-"""The picture of load spectra: how many cycles reach a range, for the strongest loads of each kind."""
+"""Picture of load spectra: number of cycles over the range, for the largest loads of each type."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ PANELS = {
     "suspension travel: range [mm]": (r".*", "m", 1e3),
     "joint springs: range [N m]": (r".*", "N m", 1.0),
 }
-"""Label of each panel to the names, the unit and the scale of its loads; a load is in the first that fits."""
+"""Label of each panel to the names, the unit and the scale of its loads; a load is in the first matching panel."""
 
 FEWEST = 0.25
 """Cycles at which the pictures begin: half of the half cycle that a record may hold."""
 
 
 def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
-    """Write the picture.
+    """Write the picture of load spectra.
 
     Args:
         path: PNG file.
-        loads: with their cycles; of each panel the strongest are drawn, as many as there are colours.
-        caption: below it.
+        loads: loads with their cycles; each panel shows as many of the largest as there are colours.
+        caption: caption below the picture.
     """
     left = [one for one in loads if one.counted.ranges.size]
     panels: dict[str, list[LoadSpectrum]] = {}
@@ -41,7 +41,7 @@ def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
             axis = figure.add_subplot(2 if len(panels) > 2 else 1, 2 if len(panels) > 1 else 1, number + 1)
             scale = PANELS[label][2]
             for colour, line, one in zip(COLOURS, LINES, own, strict=False):
-                # The largest range is reached by every smaller number of cycles.
+                # Extend the largest range to smaller numbers of cycles.
                 cycles, ranges = one.counted.exceeded(), scale * one.counted.ranges
                 axis.step(
                     [*cycles, FEWEST], [*ranges, ranges[-1]], where="post", color=colour, linestyle=line, label=one.name

@@ -1,4 +1,4 @@
-"""Runs over each other: their FRFs, and on a road the densities of their accelerations."""
+"""Comparison of several runs: FRFs, and acceleration densities on a road."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def plot_responses(
     title: str = "",
     caption: str = "",
 ) -> None:
-    """Write FRFs of several runs over each other: a column for each channel.
+    """Plot FRFs of several runs over each other, with a column for each channel.
 
     Args:
         path: PNG or SVG file.
         runs: name to run and FRFs of all its acceleration channels.
-        channels: channel that all of them have to the words above its column.
+        channels: channel recorded in all runs to the title of its column.
         title, caption: above and below the figure.
     """
     with saved_figure(path, (13.0, 7.6), title, caption) as figure:
@@ -65,12 +65,12 @@ def plot_densities(
     title: str = "",
     caption: str = "",
 ) -> None:
-    """Write power spectral densities of accelerations of one or several runs.
+    """Plot power spectral densities of accelerations of one or several runs.
 
     Args:
         path: PNG or SVG file.
         runs: name to run.
-        channels: channel that all of them have to the words above its panel.
+        channels: channel recorded in all runs to the title of its panel.
         title, caption: above and below the figure.
     """
     with saved_figure(path, (13.0, 4.2), title, caption) as figure:
@@ -91,10 +91,10 @@ def plot_densities(
 
 
 def shared_channels(runs: Sequence[RecordedRun], wanted: Mapping[str, str]) -> dict[str, str]:
-    """The channels that all runs recorded.
+    """Return the wanted channels that all runs recorded.
 
     Args:
         runs: the runs.
-        wanted: channel to words.
+        wanted: channel to its label.
     """
     return {name: words for name, words in wanted.items() if all(name in run.recording.channels for run in runs)}
