@@ -12,15 +12,15 @@ def car_card(car: Any) -> str:
     """Return HTML of a `vehicle.runs.car.Car`."""
     from vehicle.drawing.rendering.wireframe import car_wireframe
 
-    own, static = car.vehicle, car.static
+    vehicle, static = car.vehicle, car.static
     rows = {
         "changes": "; ".join(car.overrides) or "none",
-        "mass of the trimmed body": f"{own.body.mass:g} kg",
+        "mass of the trimmed body": f"{vehicle.body.mass:g} kg",
         "tyre loads": ", ".join(f"{wheel} {load:.0f} N" for wheel, load in static.tyre_load.items()),
-        "channels": f"{len(own.channels)}, and {len(own.load_channels)} loads",
+        "channels": f"{len(vehicle.channels)}, and {len(vehicle.load_channels)} loads",
     }
     wire = car_wireframe(car.model)
-    return card(f"Car {own.name}", rows, frame_drawing(wire.points, wire.lines, "seen from the right"))
+    return card(f"Car {vehicle.name}", rows, frame_drawing(wire.points, wire.lines, "seen from the right"))
 
 
 def run_card(run: Any) -> str:

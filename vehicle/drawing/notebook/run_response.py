@@ -67,7 +67,7 @@ class RunResponse(FrequencyResponse):
 
 def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> RunResponse:
     """Return FRFs with channel names and a description of the input."""
-    values = {one.name: getattr(response, one.name) for one in fields(FrequencyResponse)}
+    values = {field.name: getattr(response, field.name) for field in fields(FrequencyResponse)}
     return RunResponse(**values, names=names, plate=plate)
 
 
@@ -88,7 +88,7 @@ def of_wheel(all_responses: Sequence[MotionResponse], wheel: str | None, names: 
     chosen = next(number for number, group in enumerate(all_responses) if asked in group.motion)
     note = what_moves([group.motion for group in all_responses], chosen)
     response = all_responses[chosen].response
-    plate = " and ".join(f"plate_{one}_displacement" for one in all_responses[chosen].motion)
+    plate = " and ".join(f"plate_{moved}_displacement" for moved in all_responses[chosen].motion)
     reasons = (*([note] if note else []), *response.reasons)
     return named(replace(response, reasons=reasons), names, plate)
 
@@ -113,14 +113,14 @@ def responses(
         raise DataError(
             f"{signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that moves one"
         )
-    plates = {one: f"plate_{one}_displacement" for one in moving}
+    plates = {wheel_name: f"plate_{wheel_name}_displacement" for wheel_name in moving}
     return motion_responses(
         recording.timestep,
-        {one: recording[plate] for one, plate in plates.items()},
+        {wheel_name: recording[plate] for wheel_name, plate in plates.items()},
         [recording[name] for name in names],
         labels=plates,
         names=names,
         band=band,
-        rounding={one: rounding_step(signal.displacement[one]) for one in moving},
+        rounding={wheel_name: rounding_step(signal.displacement[wheel_name]) for wheel_name in moving},
         window=window,
     )

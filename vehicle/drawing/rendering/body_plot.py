@@ -60,14 +60,14 @@ def plot_body(
     seen = np.unique(np.concatenate([edges.ravel(), places])) if len(edges) else np.arange(len(positions))
     with saved_figure(path, (4.0 * columns, 2.9 * -(-count // columns) + 0.9), title, caption) as figure:
         grid = np.atleast_1d(figure.subplots(-(-count // columns), columns, squeeze=False)).ravel()
-        for axis, shape, words in zip(grid, shapes, titles, strict=False):
+        for axis, shape, title_of_mode in zip(grid, shapes, titles, strict=False):
             size = np.linalg.norm(shape, axis=1)
             # Nodes without lines are not in the picture and must not determine its scale.
             largest = float(size[seen].max()) or 1.0
             moved = (positions + SWING * length / largest * shape) @ VIEW.T
             if len(edges):
-                rest: Any = LineCollection(flat[edges], colors="#b8b8b8", linewidths=0.3 if dense else 0.6)
-                axis.add_collection(rest)
+                at_rest: Any = LineCollection(flat[edges], colors="#b8b8b8", linewidths=0.3 if dense else 0.6)
+                axis.add_collection(at_rest)
                 shades = colours(size[edges].mean(axis=1), largest)
                 swung: Any = LineCollection(moved[edges], colors=shades, linewidths=0.6 if dense else 1.4)
                 axis.add_collection(swung)
@@ -75,7 +75,7 @@ def plot_body(
                 axis.scatter(*flat.T, s=4, color="#b8b8b8")
                 axis.scatter(*moved.T, s=16, c=colours(size, largest))
             axis.scatter(*moved[places].T, s=6, color=COLOURS[4], zorder=3)
-            axis.set_title(words, fontsize=8.5)
+            axis.set_title(title_of_mode, fontsize=8.5)
             axis.set_aspect("equal")
             axis.margins(0.04)
             axis.autoscale_view()

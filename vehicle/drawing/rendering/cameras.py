@@ -29,7 +29,7 @@ def whole_car(vehicle: Vehicle) -> mujoco.MjvCamera:
 def close_up(motion: Motion, vehicle: Vehicle, wheel: str) -> mujoco.MjvCamera:
     """Return a camera on the suspension of a wheel from the front outside, aimed between hub and highest point."""
     hub = motion.position[motion.model.body(hub_of(vehicle.composition, wheel)).id]
-    top = max((place for name, place in vehicle.points.items() if name.endswith(f"_{wheel}")), key=lambda at: at[2])
+    top = max((point for name, point in vehicle.points.items() if name.endswith(f"_{wheel}")), key=lambda at: at[2])
     camera = mujoco.MjvCamera()
     camera.lookat = np.mean([hub, top], axis=0)
     camera.distance, camera.elevation = 2.0, -7.0

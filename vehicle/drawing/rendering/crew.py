@@ -61,7 +61,7 @@ def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
             yield np.frombuffer(ends[number % count].recv_bytes(), dtype=np.uint8).reshape(shape)
     except EOFError:
         raise OutputError(
-            "the film: a process that draws ended; its own error stands above (out of memory where there is none)"
+            "the film: a drawing process ended; see its error message above (without a message, it was out of memory)"
         ) from None
     finally:
         for process in processes:

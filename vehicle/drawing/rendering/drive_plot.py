@@ -86,8 +86,8 @@ def plot_replication(
 
 def _amplitude(step: float, values: Vector) -> tuple[Vector, Vector]:
     """Return frequencies and the root of the power spectral density."""
-    found = power_spectral_density(step, values, window_s=min(WINDOW, step * (values.size - 1)))
-    return found.frequency[1:], np.sqrt(found.density[0, 1:])
+    density = power_spectral_density(step, values, window_s=min(WINDOW, step * (values.size - 1)))
+    return density.frequency[1:], np.sqrt(density.density[0, 1:])
 
 
 def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray[np.bool_], caption: str) -> None:

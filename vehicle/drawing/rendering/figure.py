@@ -183,14 +183,14 @@ def fading(
         label: legend text, of the line that is not pale.
         style: colour and line style.
     """
-    known = np.where(np.isfinite(coherence), coherence, 1.0)
+    finite = np.where(np.isfinite(coherence), coherence, 1.0)
     for lowest, highest, opacity in FADING:
-        here = (known >= lowest) & (known < highest)
+        in_range = (finite >= lowest) & (finite < highest)
         # One more point, so that the segments join.
-        joined = here | np.concatenate([[False], here[:-1]])
-        words = label if opacity == 1.0 else None
-        if words or joined.any():
-            axis.plot(frequency, np.where(joined, values, np.nan), alpha=opacity, label=words, **style)
+        joined = in_range | np.concatenate([[False], in_range[:-1]])
+        label_of_line = label if opacity == 1.0 else None
+        if label_of_line or joined.any():
+            axis.plot(frequency, np.where(joined, values, np.nan), alpha=opacity, label=label_of_line, **style)
 
 
 def shade(

@@ -70,21 +70,24 @@ def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResp
     shown |= {name: hub for name in [hub_channel(vehicle.composition, run.wheel)] if name in rows}
     shown = shown or {next(iter(rows)): next(iter(rows))}
     frequency = responses[0].response.frequency
-    levels = np.abs([one.response.response[rows[name]] for one in responses for name in shown])
+    levels = np.abs([response.response.response[rows[name]] for response in responses for name in shown])
     inside = np.asarray(np.isfinite(levels).all(axis=0))
-    single = all(len(one.motion) == 1 for one in responses)
+    single = all(len(response.motion) == 1 for response in responses)
     title = f"FRFs to each of {len(responses)} {'plates' if single else 'motions of the plates'}, which act at once"
     with saved_figure(path, (max(7.2, 5.0 * len(shown)), 8.6), title, f"{caption}; {FADED}") as figure:
         axes = figure.subplots(3, len(shown), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False)
         for (magnitude, phase, coherence), (name, heading) in zip(axes.T, shown.items(), strict=True):
-            for colour, line, one in zip(cycle(COLOURS), cycle(LINES), responses, strict=False):
-                values, error = one.response.response[rows[name]], REGION * one.response.random_error[rows[name]]
+            for colour, line, response in zip(cycle(COLOURS), cycle(LINES), responses, strict=False):
+                values, error = (
+                    response.response.response[rows[name]],
+                    REGION * response.response.random_error[rows[name]],
+                )
                 size = np.abs(values)
                 low = np.maximum(size - error, 0.01 * size)
                 magnitude.fill_between(frequency, low, size + error, alpha=0.25, linewidth=0.0, color=colour)
                 style = {"color": colour, "linestyle": line}
                 coherent = responses[0].response.coherence[rows[name]]
-                fading(magnitude, frequency, size, coherent, _plates(one.motion, vehicle.wheels), **style)
+                fading(magnitude, frequency, size, coherent, _plates(response.motion, vehicle.wheels), **style)
                 phase.plot(frequency, wrapped_phase(values), linewidth=0.8, **style)
             coherence.plot(frequency, responses[0].response.coherence[rows[name]], color=INK)
             magnitude.set_title(heading)
@@ -93,6 +96,6 @@ def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResp
         axes[0, 0].legend(loc="upper left")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
         axes[2, 0].set_ylabel("multiple coherence [-]")
-        known = levels[np.isfinite(levels) & (levels > 0.0)]
-        lowest, highest = (known.min(), known.max()) if known.size else NO_LEVELS
+        finite = levels[np.isfinite(levels) & (levels > 0.0)]
+        lowest, highest = (finite.min(), finite.max()) if finite.size else NO_LEVELS
         axes[0, 0].set_ylim(max(0.5 * lowest, highest / DECADES), 2.0 * highest)

@@ -136,13 +136,11 @@ def _course(axis: Any, picture: FrontPicture) -> None:
 
 def _bars(axis: Any, picture: FrontPicture) -> None:
     """Plot the parameters of the best car relative to their bounds as bars."""
-    places = np.arange(len(picture.parameters))
-    axis.barh(places, picture.shares[0], color=COLOURS[0], height=0.4, label="best car")
-    axis.plot(
-        picture.base_shares, places, "o", color="white", markeredgecolor=COLOURS[1], markersize=8, label="base car"
-    )
-    axis.set_yticks(places, picture.parameters)
-    axis.set(xlim=(0.0, 1.0), ylim=(-0.6, len(places) - 0.4), xlabel="place between the bounds [-]")
+    rows = np.arange(len(picture.parameters))
+    axis.barh(rows, picture.shares[0], color=COLOURS[0], height=0.4, label="best car")
+    axis.plot(picture.base_shares, rows, "o", color="white", markeredgecolor=COLOURS[1], markersize=8, label="base car")
+    axis.set_yticks(rows, picture.parameters)
+    axis.set(xlim=(0.0, 1.0), ylim=(-0.6, len(rows) - 0.4), xlabel="place between the bounds [-]")
     axis.legend(**BELOW, ncols=2)
 
 

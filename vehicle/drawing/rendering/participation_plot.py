@@ -96,19 +96,19 @@ def _bars(axis: Axes, shares: Mapping[str, float], colours: Mapping[str, str], l
     if order[MOST_BARS:]:
         shown[f"the other {len(order) - MOST_BARS}"] = sum(shares[name] for name in order[MOST_BARS:])
     values = [100.0 * share for share in shown.values()]
-    places = np.arange(len(values))
-    axis.barh(places, values, color=[colours.get(name, OTHERS) for name in shown])
+    rows = np.arange(len(values))
+    axis.barh(rows, values, color=[colours.get(name, OTHERS) for name in shown])
     axis.axvline(0.0, color=INK, linewidth=0.6)
-    axis.set_yticks(places, list(shown))
+    axis.set_yticks(rows, list(shown))
     axis.invert_yaxis()
     axis.grid(visible=False, axis="y")
     axis.margins(x=0.18)
     axis.set(xlabel=label)
-    for place, value in zip(places, values, strict=True):
+    for row, value in zip(rows, values, strict=True):
         side = 3 if value >= 0.0 else -3
         axis.annotate(
             f"{round(value) + 0:+d}",
-            (value, float(place)),
+            (value, float(row)),
             (side, 0),
             textcoords="offset points",
             va="center",

@@ -72,7 +72,7 @@ def _between(recording: Recording, start: str, end: str) -> tuple[str, ...]:
 
 def hub_of(composition: Composition, wheel: str) -> str:
     """Return the name of the part that carries a wheel."""
-    rolling = next(one.part for one in composition.wheels if one.name == wheel)
+    rolling = next(placed.part for placed in composition.wheels if placed.name == wheel)
     return next(part.parent for part in composition.parts if part.name == rolling)
 
 

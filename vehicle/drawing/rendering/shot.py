@@ -240,7 +240,7 @@ class Shot:
         recording, wheel = self.recording, self.wheel
         ahead = 0.5 * self.visible
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
-        found = []
+        traces = []
         for label, channel, scale, band in (
             ("plate [mm]" if self.road is None else "road [mm]", f"plate_{wheel}_displacement", 1e3, None),
             ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
@@ -250,8 +250,8 @@ class Shot:
                 continue
             values = scale * recording[channel]
             top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0)))
-            found.append(Trace(label=label, values=values, top=top, band=band))
-        return found
+            traces.append(Trace(label=label, values=values, top=top, band=band))
+        return traces
 
     def _lamps(self, time: float) -> dict[str, bool]:
         """Label of each damper, and whether it slipped at any sample of the time between two frames."""
