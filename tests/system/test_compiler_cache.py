@@ -18,7 +18,7 @@ SECOND_PROCESS = """
 import numpy as np
 from vehicle.model.laws.damper import RECORD
 from vehicle.model.laws.semi_active import SETTING
-from vehicle.engines.reduced.damper_control import Control
+from vehicle.engines.reduced.controlled_dampers import Control
 from vehicle.engines.reduced.pole_stepping import compiled_stepping
 from vehicle.engines.reduced.slope_force import SlopeForces
 march = compiled_stepping(2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.linear.mode_participation import REMAINDER, participation
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
@@ -21,7 +22,11 @@ def of(car, channel, *, stuck=True, wheel="fr"):
 def test_contributions_add_up_to_the_frf_by_poles(car, channel, damper):
     contributions = of(car, channel, stuck=damper == "stuck", wheel="fl")
     exact = car.matrix_frf([channel], FREQUENCY, damper=damper, wheel="fl")[0]
-    assert np.abs(contributions.total / exact - 1.0).max() < 1e-9
+    validated(
+        "Linear system", f"sum of the contributions of all modes to {channel}, dampers {damper}",
+        contributions.total, exact,
+        rel=1e-9, source="second derivation: FRF by poles",
+    )  # fmt: skip
     assert contributions.shares.sum(axis=0) == pytest.approx(np.ones(6), abs=1e-12)
     assert len(contributions.names) == 6 + 9 and len(contributions.mode_frequency) == 9
     # No single part makes the sum, otherwise the shares would prove nothing.

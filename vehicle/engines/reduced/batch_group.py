@@ -15,7 +15,7 @@ from vehicle.engines.reduced.batch_tables import BatchTable, Table, damper_nodes
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.validity import Validity, check_stride, exceeded_segments, rotating_bodies, segment_outputs
-from vehicle.engines.simulation.acceleration import AHEAD, WEIGHTS
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.model.parameters.elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
@@ -182,7 +182,7 @@ class BatchGroup:
 
 
 def _position_rows(matrices: CarMatrices, names: Sequence[str]) -> Vector:
-    """Return the rows of acceleration channels over the coordinates; see `vehicle.engines.simulation.acceleration`."""
+    """Return the rows of acceleration channels over the coordinates; see `recorded_acceleration`."""
     size = matrices.system.size
     return np.array([matrices.system.outputs[name][:size] for name in names]).reshape(-1, size)
 

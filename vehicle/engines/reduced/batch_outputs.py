@@ -13,7 +13,7 @@ from typing import Any
 from vehicle.engines.reduced.batch_layout import PAST, TILE, OutputTiles
 from vehicle.engines.reduced.batch_step import compiled_once, inlined
 from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, store
-from vehicle.engines.simulation.acceleration import AHEAD
+from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 TOGETHER = 4
 """Samples that are computed together: their tiles and inputs fill the registers."""

@@ -13,7 +13,7 @@ from vehicle.engines.reduced.batch_layout import ELEMENT, INNER_BLOCK, PAST, TIL
 from vehicle.engines.reduced.batch_outputs import fill_outputs, update_peaks, write_channels
 from vehicle.engines.reduced.batch_step import EXACT, advance_batch, compiled_once
 from vehicle.engines.reduced.simd_vector import broadcast, load, load_tuple, store
-from vehicle.engines.simulation.acceleration import AHEAD
+from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 numba = numba_module()
 

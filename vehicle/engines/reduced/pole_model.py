@@ -89,7 +89,7 @@ class PoleModel:
         )
 
     def _position(self, channel: str) -> tuple[Complex, Vector, Vector]:
-        """Return the displacement of an acceleration channel; see `vehicle.engines.simulation.acceleration`."""
+        """Return the displacement of an acceleration channel; see `simulation.recorded_acceleration`."""
         no_plates = np.zeros(len(self.matrices.system.inputs))
         return self.matrices.system.output(channel)[0] @ self.modal, no_plates, no_plates
 

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.compiler import OPTIONS, jitable, numba_module, stamp
-from vehicle.engines.reduced.damper_control import Control, record_sample, set_coefficients
+from vehicle.engines.reduced.controlled_dampers import Control, record_sample, set_coefficients
 from vehicle.engines.reduced.slope_force import SlopeForces, set_slope_forces
 from vehicle.engines.simulation.sampling import copy_row
 from vehicle.errors import MissingPartError

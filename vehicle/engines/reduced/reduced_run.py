@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.load_rows import LoadRows
-from vehicle.engines.reduced.damper_control import COEFFICIENT, FORCE, control_at_rest
+from vehicle.engines.reduced.controlled_dampers import COEFFICIENT, FORCE, control_at_rest
 from vehicle.engines.reduced.load_outputs import direct_forces, load_outputs
 from vehicle.engines.reduced.plate_samples import LongPlateSamples, plate_samples
 from vehicle.engines.reduced.pole_model import PoleModel
@@ -18,7 +18,7 @@ from vehicle.engines.reduced.readout import Readout
 from vehicle.engines.reduced.slope_force import slope_forces_at_rest
 from vehicle.engines.reduced.step_factors import StepFactors, step_factors
 from vehicle.engines.reduced.validity import ValidityWatch
-from vehicle.engines.simulation.acceleration import AHEAD, acceleration
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
 from vehicle.model.parameters.elements import Damper

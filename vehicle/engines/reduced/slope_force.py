@@ -1,7 +1,7 @@
 """Longitudinal forces of the current wheel loads on the slope of a road, constant over a step.
 
-A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling`). The poles contain the
-effect of the static load F_0, as a force b z' of the velocity of the plate. The current load adds
+A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling_tyres`). The poles
+contain the effect of the static load F_0, as a force b z' of the velocity of the plate. The current load adds
 
     b (max(0, F_z) / F_0 - 1) z',
 
