@@ -74,7 +74,8 @@ def held_box(*, twist=TWIST, carrier=True, turned=False, rotations=True, preload
 def linear(run, preload=None):
     size = run.rows.layout.row_count + 3
     static = np.zeros(size) if preload is None else preload
-    return car_matrices(run.model, StaticTrim(preload=static, tyre_load={}, support_load={}, residual=0.0)).system
+    trim = StaticTrim(preload=static, tyre_load={}, support_load={}, residual=0.0)
+    return car_matrices(run.model, trim, compiled=False).system
 
 
 def whole_frame():
