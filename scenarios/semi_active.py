@@ -242,7 +242,7 @@ def words(points: Points) -> list[str]:
         f"Groundhook changes the tyre load of the wheel hop ({WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz) by {hop:+.1f} "
         f"%, the rest by {rest:+.1f} %, the whole by {100.0 * (hooked['tyre'] / passive['tyre'] - 1.0):+.1f} %. It "
         "damps the wheel against ground at rest and leaves the body to swing: a quarter car with an ideal groundhook "
-        "does the same (docs/theory.md, semi-active dampers)."
+        "does the same (docs/theory/elements.md, semi-active dampers)."
     )
     return found
 

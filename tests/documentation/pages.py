@@ -8,9 +8,11 @@
 | `diff` with `+++ PATH` | the lines of the block are replaced in PATH |
 | `sh` | does not run (network, another machine); `test_pages.py` lists each with its reason |
 
-A line `...` stands for omitted lines of output, `...` in a line for any text. Numbers agree within 1 % or one unit of the last printed digit.
-A page starts in a folder with links to the packages, as a clone has them; one with the comment `<!-- run: in a copy of the repository -->`
-in a copy of them, so that it may change them, and its commands in processes of their own. After a change of messages, `python -m tests.documentation.pages PAGE ...` writes the new outputs.
+A line `...` stands for omitted lines of output, `...` in a line for any text. Numbers agree within 1 % or one unit of
+the last printed digit. A page starts in a folder with links to the packages, as a clone has them. A page with the
+comment `<!-- run: in a copy of the repository -->` starts in a copy of them, which it may change; its commands are
+processes of their own. After a change of messages, `python -m tests.documentation.pages PAGE ...` writes the new
+outputs.
 """
 
 from __future__ import annotations
@@ -37,7 +39,9 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 LONGEST = 12
 """Maximum number of output lines that the renewal of a page writes; the rest becomes `...`."""
 
-UNREPEATABLE = re.compile(r"[\d.]+(?= times real time)|(?<=energy residual )[\d.e-]+|[0-9a-f]{64}|\d[\d.]*e-1\d")
+UNREPEATABLE = re.compile(
+    r"[\d.]+(?= times real time)|(?<=energy residual )[\d.e-]+|(?<=results\.md; )\d+(?= s$)|[0-9a-f]{64}|\d[\d.]*e-1\d"
+)
 """Text of an output that differs from run to run, or with the platform; written as `...`."""
 
 COPIED = ("vehicle", "scenarios", "renders", "pyproject.toml", "README.md")

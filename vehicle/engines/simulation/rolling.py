@@ -7,7 +7,7 @@ the hub: a hub that pitches about e does not move it. The rows of a tyre at the 
 
     J -> J + w x (c + r - p_hub),   J_spin = e x r,
 
-and their branches along x and y are the slip (`docs/theory.md`, "The rolling tyre"): that along y is driven by
+and their branches along x and y are the slip (`docs/theory/rolling-tyre.md`): that along y is driven by
 v_y + V psi, psi being the heading of the axle, in the middle of the past step like every rate. The known part of
 
 - the slope of the road, F_z w'/V along x at the wheel centre, with the present load;

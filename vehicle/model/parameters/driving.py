@@ -27,7 +27,7 @@ class Driving(Validated):
     """A car at constant speed straight ahead, with free wheels; at speed 0 its tyres stand, as on a rig.
 
     The hold of the course stands for the driver: free rolling leaves the place of the car along x and y and its heading
-    without any stiffness. Comfort does not depend on it: `docs/theory.md`.
+    without any stiffness. Comfort does not depend on it: `docs/theory/rolling-tyre.md`.
     """
 
     speed: float = quantity(
