@@ -44,6 +44,9 @@ UNREPEATABLE = re.compile(
 )
 """Text of an output that differs from run to run, or with the platform; written as `...`."""
 
+PROGRESS = re.compile(r"\w+: +\d+ %.*")
+"""A line of progress, which a slow machine prints and a fast one does not."""
+
 COPIED = ("vehicle", "scenarios", "renders", "pyproject.toml", "README.md")
 """Files and folders in a copy of the repository."""
 
@@ -204,7 +207,9 @@ def execute(page: str, folder: Path, renew: bool = False) -> Execution:
             shown: list[str] = []
             for command in commands(block):
                 code, output = output_of(command.line, folder, in_process=not copied)
-                lines = output.rstrip("\n").split("\n") if output.strip() else []
+                lines = [
+                    line for line in output.rstrip("\n").split("\n") if line and not PROGRESS.fullmatch(line.strip())
+                ]
                 difference = first_difference(command.expected, lines)
                 assert renew or difference is None, f"{page}: {command.line}\nno line {difference!r} in\n{output}"
                 failed = any(line.startswith("error: ") for line in lines)
