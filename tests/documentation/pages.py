@@ -207,9 +207,9 @@ def execute(page: str, folder: Path, renew: bool = False) -> Execution:
             shown: list[str] = []
             for command in commands(block):
                 code, output = output_of(command.line, folder, in_process=not copied)
-                lines = [
-                    line for line in output.rstrip("\n").split("\n") if line and not PROGRESS.fullmatch(line.strip())
-                ]
+                lines = [line for line in output.rstrip("\n").split("\n") if not PROGRESS.fullmatch(line.strip())]
+                if not output.strip():
+                    lines = []
                 difference = first_difference(command.expected, lines)
                 assert renew or difference is None, f"{page}: {command.line}\nno line {difference!r} in\n{output}"
                 failed = any(line.startswith("error: ") for line in lines)

@@ -131,8 +131,8 @@ def options_of(name):
 @pytest.mark.parametrize("page", pages())
 def test_commands_in_prose_have_options_that_exist(page):
     for words in prose_commands(page):
-        name = words[words.index("-m") + 1 :] if "-m" in words else words
-        name = name[1] if name[0] == "vehicle" else name[0].removeprefix("vehicle.")
+        module, *rest = words[2:] if words[:2] == ["python", "-m"] else words
+        name = rest[0] if module == "vehicle" else module.removeprefix("vehicle.")
         if name not in COMMANDS:
             assert name.isupper() or name == "NAME", f"{page}: {' '.join(words)}"
             continue
