@@ -36,8 +36,8 @@ def readable(app: Any, what: str, name: str, target: Any, options: Any, lines: l
         pieces[::2] = [re.sub(r"([*|]|_(?=\W|$))", r"\\\1", piece) for piece in pieces[::2]]
         pieces[1::2] = [f"``{piece.strip('`')}``" for piece in pieces[1::2]]
         lines[index] = "".join(pieces)
-    if what in ("property", "attribute"):
-        lines.insert(0, "")  # else napoleon takes what is before a colon for a type
+    if what in ("property", "attribute") and lines:
+        lines[0] = lines[0].replace(": ", " - ", 1)  # napoleon takes what is before a colon for a type
 
 
 def anchors(app: Any, name: str, content: list[str]) -> None:
