@@ -31,7 +31,7 @@ stiffness = [1e5, 2e5, 3e5]
 damping = [100.0, 200.0, 300.0]
 rotational_stiffness = 0.0
 """
-ROAD = random_road(rms=1e-3, seed=1, duration=1.0)
+ROAD = random_road(rms=1e-3, seed=1, wheel="fr", duration=1.0)
 
 
 def written(folder: Path, text: str) -> Path:

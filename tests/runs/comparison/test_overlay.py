@@ -67,7 +67,7 @@ def measured(tmp_path_factory, car):
 def run(tmp_path_factory, measured):
     """A short run of the car of the vehicle file, with the measurement beside it."""
     folder = tmp_path_factory.mktemp("overlay")
-    signal = read_signal(find_input("low.csv"))
+    signal = read_signal(find_input("low.csv"), wheel="fr")
     table = [signal.time[:6001], signal.displacement["fr"][:6001]]
     write_table(folder / "short.csv", ["time [s]", "displacement [m]"], table, [])
     arguments = [

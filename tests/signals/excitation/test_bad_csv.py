@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.signals.excitation.csv_samples import HEADER, rows, with_row, write
+from tests.signals.excitation.csv_samples import HEADER, read_plain, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.plausibility import band_limited_acceleration
-from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records import text as csv_text
 
 NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
@@ -19,7 +18,7 @@ NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displace
 def refused(path: Path, **options: object) -> str:
     """Message of the refusal without the path in front."""
     with pytest.raises(DataError) as caught:
-        read_signal(path, **options)  # type: ignore[arg-type]
+        read_plain(path, **options)  # type: ignore[arg-type]
     assert caught.value.exit_code == 3
     message = str(caught.value)
     assert message.startswith(str(path))
@@ -102,7 +101,7 @@ def test_3_non_uniform_time(tmp_path):
 
 def test_3_jitter_within_the_tolerance_is_accepted(tmp_path):
     lines = with_row(100, f"0.1000005,{rows()[100].split(',')[1]}")
-    assert read_signal(write(tmp_path, lines)).notices == ()
+    assert read_plain(write(tmp_path, lines)).notices == ()
 
 
 def test_4_repeated_and_decreasing_time(tmp_path):
@@ -127,7 +126,7 @@ def test_5_no_header(tmp_path):
 def test_5_unknown_and_missing_columns(tmp_path):
     assert refused_lines(tmp_path, ["time [s],displacement [m],force [N]", "0,0,0"]) == (
         ":1: unknown column 'force [N]'; found 'time [s]', 'displacement [m]', 'force [N]'; needed are "
-        f"{NEEDED}; remove the others, or say which one drives a plate: --channel fr=NAME"
+        f"{NEEDED}; remove the others, or assign a column to a wheel: --channel fr=NAME"
     )
     assert refused_lines(tmp_path, ["zeit [s],weg [m]", "0,0"]).startswith(
         ":1: unknown column 'zeit [s]', 'weg [m]'; found"
@@ -228,7 +227,7 @@ def test_91_one_pothole_is_named_and_no_reason_to_refuse(tmp_path):
     def lines(values):
         return [HEADER, *(f"{t:.3f},{value:.8f}" for t, value in zip(time, values, strict=True))]
 
-    said = [text for text in read_signal(write(tmp_path, lines(z))).notices if "a pothole" in text]
+    said = [text for text in read_plain(write(tmp_path, lines(z))).notices if "a pothole" in text]
     # -2 A / s^2 at its deepest point, below 100 Hz
     assert len(said) == 1 and "at t = 12" in said[0] and "beyond 50 m/s2" in said[0]
     # in mm under [m] the whole record is beyond, and a spike of a logger is no pothole
@@ -362,7 +361,7 @@ def test_19_nul_behind_the_first_megabyte(tmp_path):
 
 def test_missing_file_is_a_wrong_path(tmp_path):
     with pytest.raises(ConfigurationError, match=r"none\.csv: no such file; give the path of a CSV file"):
-        read_signal(tmp_path / "none.csv")
+        read_plain(tmp_path / "none.csv")
 
 
 def test_unreadable_file(tmp_path, monkeypatch):

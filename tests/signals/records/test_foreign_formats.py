@@ -25,7 +25,7 @@ CHANNELS = (
 
 
 def signal(path, *options):
-    return read_signal(path, choice=record_choice(parser().parse_args(["--input", "x", *options]), "fr"))
+    return read_signal(path, wheel="fr", choice=record_choice(parser().parse_args(["--input", "x", *options]), "fr"))
 
 
 def exported(**quantity):

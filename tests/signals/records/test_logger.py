@@ -68,7 +68,7 @@ def test_a_logger_file_is_inspected(tmp_path, capsys):
 def test_a_logger_file_drives_the_plate_with_four_options(tmp_path):
     path = tmp_path / "logger.txt"
     time, _ = logger(path, pause=2.5, drift=4e-3, seconds=16.0)
-    with pytest.raises(DataError, match=r"9 channels: 1 'Shaker FR'.*--channel fr=NAME"):
+    with pytest.raises(DataError, match=r"9 channels: 1 'Shaker FR'.*--channel fl=NAME"):
         read_signal(path, choice=choice("--detrend"))
     pause = r"pauses for 2\.5\d* s, .* nothing is filled in; .* \(--to 107\.99\d+\) or after it \(--from 110\.5\)"
     with pytest.raises(DataError, match=pause):

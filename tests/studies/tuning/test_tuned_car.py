@@ -69,7 +69,7 @@ def made(time, histories):
 def test_stuck_and_sliding_levels_and_a_bump_in_one_fit(build, high_piece):
     true = {MOUNT.path: 6.8e5, FRICTION.path: 118.0}
     hidden = build(true)
-    short = bump(amplitude=7.5e-3, duration=1.2, start=0.3, noise_rms=0.0)
+    short = bump(amplitude=7.5e-3, wheel="fr", duration=1.2, start=0.3, noise_rms=0.0)
     record = record_of(hidden.run(short, engine="reduced"))
     targets = [target_of(hidden, None), target_of(hidden, high_piece, seed=2), record]
     result = fit([MOUNT, FRICTION], targets, build)
@@ -125,7 +125,7 @@ def test_a_run_and_its_target_have_the_same_residuals(build, car, high_piece):
     windowed = dataclasses.replace(target, window=0.5)
     np.testing.assert_allclose(windowed.residuals(run), windowed.residuals(car), atol=1e-6)
     assert len(target.rows) == len(target.residuals(car)) == 4
-    record = record_of(car.run(bump(amplitude=7.5e-3, duration=1.3, start=0.3), engine="reduced"))
+    record = record_of(car.run(bump(amplitude=7.5e-3, wheel="fr", duration=1.3, start=0.3), engine="reduced"))
     assert len(record.rows) == len(record.residuals(car)) == 2
 
 

@@ -58,6 +58,7 @@ def bump_shape(
 def bump(
     *,
     amplitude: float,
+    wheel: str,
     reading: Reading = "height",
     duration: float = 10.0,
     rate: float = 1000.0,
@@ -65,7 +66,6 @@ def bump(
     noise_rms: float = NOISE_RMS,
     seed: int = NOISE_SEED,
     noise_edge: float = SHAKER_EDGE_HZ,
-    wheel: str = "fr",
 ) -> Signal:
     """Bump with the shaker's random noise before and after it.
 
@@ -75,6 +75,7 @@ def bump(
 
     Args:
         amplitude: A of the bump [m].
+        wheel: wheel whose plate moves, such as `car.vehicle.shaker_wheel`.
         reading: 'height' (peak A) or 'literal' (peak 2 A).
         duration: length of the record [s].
         rate: samples per second [Hz].
@@ -82,7 +83,6 @@ def bump(
         noise_rms: RMS of the noise before and after the bump [m]; 0 for none.
         seed: seed of the noise.
         noise_edge: lower edge of its band [Hz].
-        wheel: driven wheel.
 
     Raises:
         ConfigurationError: a parameter is out of range.
@@ -102,11 +102,12 @@ def bump(
         noise = random_road(
             rms=noise_rms,
             seed=seed,
+            wheel=wheel,
             duration=duration,
             rate=rate,
             lower_band_edge=noise_edge,
             roll_off_order=SHAKER_ROLL_OFF_ORDER,
-        ).displacement["fr"]
+        ).displacement[wheel]
         outside = (time <= start) | (time >= start + BUMP_DURATION_S)
         z = z + noise * (noise_rms / np.std(noise[outside]))
     return Signal(

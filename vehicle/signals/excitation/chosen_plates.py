@@ -15,20 +15,23 @@ from vehicle.signals.records.integration import displacement
 from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.table import TIME, USABLE, Header, Table
 
+WHEEL_REMEDY = "pass wheel='fl' (of a car: wheel=car.vehicle.shaker_wheel), or name the column displacement_fl"
+"""Remedy for a plate displacement without a wheel, read from Python; a command takes the wheel of its car."""
+
 
 def _moves(channel: Channel) -> bool:
     """A run records the plate that it did not drive, too."""
     return not channel.name.startswith("plate_") or bool(np.ptp(channel.values) > 0.0)
 
 
-def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> tuple[Table, float]:
+def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple[Table, float]:
     """Displacements of plates as a table with the heads `time [s]`, `displacement_fr [m]`.
 
     Args:
         path: the file, of any format.
         choice: channels for wheels, and what is done to them; None, or no channel, where the file holds
             one time history alone.
-        wheel: the plate that this one drives.
+        wheel: wheel driven by a displacement channel without a wheel in its name; None if there is no such channel.
 
     Returns:
         The table, and the sampling rate that its band stands for [Hz]: the lower of those before and after resampling.
@@ -46,15 +49,16 @@ def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> tuple[Table,
         wheels = CORNERS.values()
         named = {f"displacement_{one}": one for one in wheels} | {f"plate_{one}_displacement": one for one in wheels}
         found = {named[one.name]: one.name for one in measurement.channels if one.name in named and _moves(one)}
-        if not found and len(measurement.channels) == 1:
-            found = {wheel: "1"}
-        elif not found and (plain := [one for one in measurement.channels if one.name == "displacement"]):
-            found = {wheel: plain[0].name}
+        plain = [one for one in measurement.channels if one.name == "displacement"] or measurement.channels
+        if not found and (plain[0].name == "displacement" or len(plain) == 1):
+            if wheel is None:
+                raise DataError(f"{path}: channel {plain[0].name!r} names no wheel; {WHEEL_REMEDY}")
+            found = {wheel: "1" if len(measurement.channels) == 1 else plain[0].name}
         if not found:
             names = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
             raise DataError(
                 f"{path}: {len(measurement.channels)} channels: {names}; say which one drives the plate: --channel "
-                f"{wheel}=NAME, with its number, exact name, or a pattern with *"
+                f"{wheel or 'fl'}=NAME, with its number, exact name, or a pattern with *"
             )
         choice = replace(choice, channels={**choice.channels, **found})
     chosen = choose(measurement, choice)

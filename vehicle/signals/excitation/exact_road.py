@@ -34,7 +34,13 @@ RATE_HZ = 1000.0
 
 @lru_cache(maxsize=16)
 def road(
-    *, rms: float, seed: int, duration: float = 60.0, lead: float = LEAD_S, lower_band_edge: float = ROAD_EDGE_HZ
+    *,
+    rms: float,
+    seed: int,
+    wheel: str,
+    duration: float = 60.0,
+    lead: float = LEAD_S,
+    lower_band_edge: float = ROAD_EDGE_HZ,
 ) -> Signal:
     """Road of constant velocity PSD with exact level: a lead from rest, then the record to evaluate.
 
@@ -48,12 +54,13 @@ def road(
     Args:
         rms: root mean square of the displacement [m], a^2 sum(1 / f_j^2) / 2.
         seed: seed of the PCG64 generator of the phases; one seed is one road at any level.
+        wheel: wheel whose plate moves, such as `car.vehicle.shaker_wheel`.
         duration: evaluated length T [s].
         lead: length before it [s]; the beginning rises from rest.
         lower_band_edge: f1 [Hz].
 
     Returns:
-        Signal of the right front wheel, from 0 to lead + duration.
+        Signal from 0 to lead + duration.
 
     Raises:
         ConfigurationError: a parameter is out of range.
@@ -75,7 +82,7 @@ def road(
     rise = half_cosine(samples=index.size, timestep=1.0 / RATE_HZ, length=min(RISE_S, lead))
     return Signal(
         time=uniform_time(samples=index.size, timestep=1.0 / RATE_HZ),
-        displacement={"fr": turned.real * rise},
+        displacement={wheel: turned.real * rise},
         source=(
             f"road, RMS {rms:g} m, constant velocity PSD {lower_band_edge:g} to {UPPER_BAND_EDGE_HZ:g} Hz, {duration:g}"
             f" s after a lead of {lead:g} s, seed {seed}"

@@ -61,21 +61,22 @@ def four_post(
     if name != INDEPENDENT and name not in MOTIONS:
         raise ConfigurationError(f"motion {name!r}: allowed are {', '.join(MOTIONS)} and {INDEPENDENT}")
 
-    def noise(number: int) -> Signal:
+    def noise(wheel: str, number: int) -> Signal:
         return random_road(
             rms=factor * level_rms(),
             seed=seed + number,
+            wheel=wheel,
             duration=duration,
             rate=rate,
             lower_band_edge=LOWEST_HZ,
             upper_band_edge=HIGHEST_HZ,
         )
 
-    first = noise(0)
-    wheels = MOTIONS["heave"]
+    wheels = list(MOTIONS["heave"])
+    first = noise(wheels[0], 0)
     if name == INDEPENDENT:
-        plates = {wheel: noise(number).displacement["fr"] for number, wheel in enumerate(wheels)}
+        plates = {wheel: noise(wheel, number).displacement[wheel] for number, wheel in enumerate(wheels)}
     else:
         # No -0.0 in files.
-        plates = {wheel: sign * first.displacement["fr"] + 0.0 for wheel, sign in MOTIONS[name].items()}
+        plates = {wheel: sign * first.displacement[wheels[0]] + 0.0 for wheel, sign in MOTIONS[name].items()}
     return Signal(time=first.time, displacement=plates, source=f"{name} of four plates: {first.source}")

@@ -25,13 +25,13 @@ def random_road(
     *,
     rms: float,
     seed: int,
+    wheel: str,
     duration: float = 60.0,
     rate: float = 1000.0,
     lower_band_edge: float = LOWER_BAND_EDGE_HZ,
     upper_band_edge: float = UPPER_BAND_EDGE_HZ,
     roll_off_order: int = 0,
     taper_length: float = RAMP_S,
-    wheel: str = "fr",
     level: Literal["record", "lines"] = "record",
 ) -> Signal:
     """Band-limited Gaussian displacement whose PSD falls with 1/f^2 between two band edges.
@@ -53,6 +53,7 @@ def random_road(
     Args:
         rms: root mean square of the displacement [m], over the whole record or before the taper as of `level`.
         seed: seed of the PCG64 generator; only its uniform numbers are used, the part of numpy that changes least.
+        wheel: wheel whose plate moves, such as `car.vehicle.shaker_wheel`.
         duration: length T [s].
         rate: samples per second [Hz].
         lower_band_edge: lowest frequency [Hz].
@@ -60,7 +61,6 @@ def random_road(
         roll_off_order: 0 for a sharp lower edge; n > 0 for the power 1 / (1 + (edge/f)^2n) of a Butterworth edge,
             with lines down to 1 Hz.
         taper_length: length of the half cosine at each end [s]; 0 keeps the record periodic, not at rest.
-        wheel: driven wheel.
         level: what is exact, the RMS of the "record" or the power of each of its "lines".
 
     Returns:

@@ -11,7 +11,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.names import CORNERS, in_order, is_wheel
-from vehicle.signals.excitation.chosen_plates import chosen_plates
+from vehicle.signals.excitation.chosen_plates import WHEEL_REMEDY, chosen_plates
 from vehicle.signals.excitation.plausibility import aliasing_notices, check_level, clipping, drifts, pauses
 from vehicle.signals.excitation.rest import start_from_rest
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
@@ -42,7 +42,7 @@ _OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
 def read_signal(
     path: str | Path,
     *,
-    wheel: str = "fr",
+    wheel: str | None = None,
     interpolate: bool = False,
     remove_mean: bool = False,
     accept_implausible: bool = False,
@@ -56,7 +56,8 @@ def read_signal(
 
     Args:
         path: the file, of a format of `vehicle.signals.records`.
-        wheel: wheel that a plain `displacement` column drives, as 'fr'.
+        wheel: wheel that a plain `displacement` column drives, such as `car.vehicle.shaker_wheel`; None if the columns
+            name their wheels.
         interpolate: fill missing displacements by a cubic spline over gaps up to 10 ms.
         remove_mean: subtract the mean of each column.
         accept_implausible: keep going where level or acceleration is beyond a shaker's (roads), with a notice.
@@ -71,7 +72,7 @@ def read_signal(
         DataError: bad data; the message names file, line, column, the value found, what is allowed and the remedy.
     """
     path = Path(path)
-    if not is_wheel(wheel):
+    if wheel is not None and not is_wheel(wheel):
         raise ConfigurationError(f"wheel {wheel!r} is unknown; allowed: {', '.join(CORNERS.values())}")
     resample = None if choice is None else choice.resample
     if resample is not None and not LOWEST_RATE <= resample < np.inf:
@@ -134,25 +135,26 @@ def read_signal(
     )
 
 
-def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
+def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str]]:
     """Find the time and the plates in the header of a file; nothing is mapped by position.
 
     Args:
         header: of the file.
-        wheel: the one that a plain `displacement` column drives.
+        wheel: wheel that a plain `displacement` column drives; None if the columns name their wheels.
 
     Returns:
         "time" and the wheels, in the order of files, to the index of their column and its unit.
 
     Raises:
-        DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity.
+        DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity, a
+            plain `displacement` column without `wheel`.
     """
     if any(_is_number(cell) for cell in header.cells):
         raise DataError(f"{header.where}:1: no header line: found {header.found}; needed are the columns {NEEDED}")
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
     ends = [_WHEEL_COLUMN.fullmatch(name.lower()) for _, _, name, _ in named]
     wheels = in_order({one for end in ends if end and is_wheel(one := end[1] or end[2])})
-    keys = {"time": "time", "displacement": wheel, **{f"displacement_{one}": one for one in wheels}}
+    keys = {"time": "time", "displacement": wheel or "", **{f"displacement_{one}": one for one in wheels}}
     channels = {"time": "time", **{f"plate_{one}_displacement": one for one in wheels}}
     if any(name.startswith("plate_") and name in channels for _, _, name, _ in named):
         keys, named = channels, [one for one in named if one[2] in channels]
@@ -164,10 +166,12 @@ def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
             raise DataError(
                 f"{place} is an acceleration or a velocity; the plate needs a displacement. Drift makes "
                 "integration depend on a high-pass filter that only you can choose: name the column and the corner, as "
-                f"--channel {wheel}={name!r} --highpass 0.5; "
+                f"--channel {wheel or 'fl'}={name!r} --highpass 0.5; "
                 f"or give {NEEDED}"
             )
         key = keys.get(name.lower())
+        if key == "":
+            raise DataError(f"{place} names no wheel; {WHEEL_REMEDY}")
         if key is None:
             unknown.append(repr(cell))
         elif key in columns:
@@ -181,12 +185,12 @@ def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
     if unknown:
         raise DataError(
             f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
-            "the others, or say which one drives a plate: --channel fr=NAME"
+            f"the others, or assign a column to a wheel: --channel {wheel or 'fl'}=NAME"
         )
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"
         raise DataError(f"{header.where}: no {missing} column; found {header.found}; needed are {NEEDED}")
-    return {key: columns[key] for key in ("time", *in_order({wheel, *wheels})) if key in columns}
+    return {key: columns[key] for key in ("time", *in_order({wheel or "fl", *wheels})) if key in columns}
 
 
 def _checked_unit(place: str, key: str, unit: str | None) -> str:
@@ -247,16 +251,16 @@ def _uniform_columns(
     return 1.0 / held, columns, lowest, notices
 
 
-def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = ()) -> None:
+def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = (), *, plain: bool = False) -> None:
     """Write a signal as `read_signal` reads it: comments, header, time, displacements with 7 significant digits.
 
-    Written under a temporary name and renamed when complete. A signal of the front right wheel alone gets the plain
-    column `displacement [m]`.
+    Written under a temporary name and renamed when complete. The columns name their wheels, as `displacement_fl [m]`.
 
     Args:
         path: the file.
         signal: what it holds.
         comments: lines above the header.
+        plain: name the column of the only plate `displacement [m]`; it then drives the shaker wheel of any car.
 
     Raises:
         OutputError: the file cannot be written, or a comment holds a line break.
@@ -264,7 +268,9 @@ def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = ())
     path = Path(path)
     if any("\n" in comment or "\r" in comment for comment in comments):
         raise OutputError(f"{path}: a comment holds a line break; give one line for each comment")
-    names = ["displacement"] if signal.wheels == ("fr",) else [f"displacement_{wheel}" for wheel in signal.wheels]
+    names = (
+        ["displacement"] if plain and len(signal.wheels) == 1 else [f"displacement_{wheel}" for wheel in signal.wheels]
+    )
     columns = [signal.time, *(signal.displacement[wheel] for wheel in signal.wheels)]
     # Fewest decimals that keep each time stamp within 1e-6 of a step.
     errors = {digits: np.max(np.abs(np.round(signal.time, digits) - signal.time)) for digits in range(3, 12)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -30,15 +30,18 @@ class RoadInput:
     duration: float
     lead: float
     lower_band_edge: float
-    wheel: str = "fr"
+    wheel: str
 
     def signal(self) -> Signal:
         """Generate the road."""
-        made = road(
-            rms=self.rms, seed=self.seed, duration=self.duration, lead=self.lead, lower_band_edge=self.lower_band_edge
+        return road(
+            rms=self.rms,
+            seed=self.seed,
+            wheel=self.wheel,
+            duration=self.duration,
+            lead=self.lead,
+            lower_band_edge=self.lower_band_edge,
         )
-        (plate,) = made.displacement.values()
-        return replace(made, displacement={self.wheel: plate})
 
     def identity(self) -> dict[str, object]:
         """What the runs depend on."""
@@ -62,7 +65,7 @@ class RoadMeasure:
     """
 
     lead: float
-    wheel: str = "fr"
+    wheel: str
     timestep: float = 5e-4
 
     @property
