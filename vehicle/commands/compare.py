@@ -272,7 +272,9 @@ def _measured(
     from vehicle.signals.records.measured import read_measured
 
     window = getattr(options, "window", None)
-    return read_measured(options.measured, known, choice, turned=options.turned, window=window, measurement=measurement)
+    return read_measured(
+        options.measured, known, choice, inverted=options.turned, window=window, measurement=measurement
+    )
 
 
 def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: Container[str] = ()) -> Measured | None:

@@ -93,9 +93,8 @@ def test_2_missing_time_is_never_interpolated(tmp_path, cell):
 
 def test_3_non_uniform_time(tmp_path):
     assert refused_lines(tmp_path, with_row(100, "0.100002,0.001")) == (
-        ":102: time is not uniform: the step of 0.001002 s deviates by 0.002 of the median step 0.001 s; allowed "
-        "0.001; "
-        "write the time with more digits, or set --resample 1000"
+        ":102: time is not uniform: the step of 0.001002 s deviates by 0.002 of the median step 0.001 s, "
+        "must be at most 0.001; write the time with more digits, or set --resample 1000"
     )
 
 
@@ -107,13 +106,11 @@ def test_3_jitter_within_the_tolerance_is_accepted(tmp_path):
 def test_4_repeated_and_decreasing_time(tmp_path):
     assert refused_lines(tmp_path, with_row(100, "0.099000,0.001")) == (
         ":102: time 0.099 s repeats the time 0.099 s of line 101; time must increase from row to row; were two "
-        "logs put "
-        "behind each other?"
+        "logs concatenated?"
     )
     assert refused_lines(tmp_path, [HEADER, *rows(), "# second log", *rows()]) == (
-        ":403: time 0 s goes back behind the time 0.399 s of line 401; time must increase from row to row; were "
-        "two logs "
-        "put behind each other?"
+        ":403: time 0 s is before the time 0.399 s of line 401; time must increase from row to row; were "
+        "two logs concatenated?"
     )
 
 
@@ -152,7 +149,7 @@ def test_6_decimal_comma_is_never_guessed(tmp_path):
     assert refused_lines(tmp_path, lines) == (
         ":2:3: row has 4 cells, the header 2; with decimal commas the columns must be separated by ';', in the "
         "header too; "
-        "1,5 is never guessed"
+        "1,5 is ambiguous"
     )
 
 
@@ -323,7 +320,7 @@ def test_17_too_large_is_refused_before_it_is_read(tmp_path):
     message = refused(path)
     assert message.startswith(": about ")
     assert "rows in 10 GB need" in message
-    assert "GiB of memory; allowed 2 GiB; cut the record into parts or lower its sampling rate" in message
+    assert "GiB of memory, must be at most 2 GiB; cut the record into parts or lower its sampling rate" in message
     rows_estimated = float(message.split()[2])
     assert rows_estimated == pytest.approx(10e9 / (len(block) / 50001), rel=0.01)  # rows are equally long
 

@@ -250,7 +250,7 @@ def test_resampling_limits(tmp_path):
         with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: allowed from 10 Hz on"):
             read_plain(path, choice=Choice(resample=rate))
     for rate in (-1.0, np.inf, np.nan):
-        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: allowed is above 0"):
+        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: must be above 0"):
             read_plain(path, choice=Choice(resample=rate))
 
 
@@ -322,7 +322,7 @@ def test_64_pauses_and_drift_are_mentioned(tmp_path):
     shaking = [f"{a:.3f},{b:.9e}" for a, b in zip(t, z, strict=True)]
     assert any("stands still for 2" in text and "from t = 4 s on" in text for text in _notices(tmp_path, shaking))
     with pytest.raises(
-        DataError, match=r":4002: the record pauses for 2\.001 s, from 3\.999 to 6 s; nothing is filled"
+        DataError, match=r":4002: the record pauses for 2\.001 s, from 3\.999 to 6 s; pauses are not filled"
     ):
         read_plain(write(tmp_path, [HEADER, *shaking[:4000], *shaking[6000:]]))
     drifting = [f"{a:.3f},{1e-3 * np.sin(30.0 * a) + 3e-4 * a:.9e}" for a in t]

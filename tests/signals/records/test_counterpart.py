@@ -35,7 +35,7 @@ def test_the_advice_is_obeyed_and_does_what_it_says(shift, drift):
     measured, simulated = records(shift, drift)
     (said,) = advice(measured, simulated)
     assert ("clock of the measurement is 0.2 % slow" in said) is (drift > 0.0)
-    assert ("0.2 % fast" in said) is (drift < 0.0) and "all alike" in said
+    assert ("0.2 % fast" in said) is (drift < 0.0) and "in all channels" in said
     delay = float(re.findall(r"--delay (-?[\d.e-]+)", said)[0])
     found = re.search(r"--drift (-?[\d.]+)", said)
     slow = float(found[1]) * 1e-6 if found else 0.0
@@ -83,9 +83,9 @@ def test_responses_tell_sign_and_unit_too():
     weight = np.ones(frequency.size)
     assert response_faults("seat_rail_acc_z", truth, model, weight) == []
     (said,) = response_faults("seat_rail_acc_z", -truth, model, weight)
-    assert said.endswith("give --turn seat_rail_acc_z")
+    assert said.endswith("set --turn seat_rail_acc_z")
     (said,) = response_faults("seat_rail_acc_z", truth / 9.80665, model, weight)
-    assert said.endswith("give --unit seat_rail_acc_z=g")
+    assert said.endswith("set --unit seat_rail_acc_z=g")
     # A level that is ten times too low at some frequencies alone is no unit.
     assert response_faults("seat_rail_acc_z", np.where(frequency < 12.0, truth / 9.8, truth), model, weight) == []
 

@@ -40,7 +40,7 @@ def test_damaged_files_are_refused(tmp_path, name):
     pytest.importorskip(package)
     path = tmp_path / "foreign"
     path.write_bytes(data)
-    with pytest.raises(DataError, match=r"no (HDF5|MDF|TDMS) file that can be read"):
+    with pytest.raises(DataError, match=r"cannot be read as (HDF5|MDF|TDMS)"):
         read_record(path)
 
 

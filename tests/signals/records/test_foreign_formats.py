@@ -54,7 +54,7 @@ def test_structures_of_testlab(tmp_path):
     with path.open("wb") as file:
         savemat(file, {"Signal": exported(label="g", unit_transformation={"factor": 1.0})})
     (channel,) = read_record(path).channels
-    assert channel.unit == "" and channel.remark.endswith("its factor 1 to SI: a contradiction")
+    assert channel.unit == "" and channel.remark.endswith("its factor to SI 1: a contradiction")
 
 
 @pytest.mark.parametrize("version", ["4", "5"])
@@ -63,9 +63,9 @@ def test_plain_arrays_of_matlab_have_no_unit_and_no_time(tmp_path, version):
     savemat(path, {"t": TIME, "data": np.column_stack([SINE, 2.0 * SINE])}, format=version)
     found = read_record(path)
     assert [one.name for one in found.channels] == ["t", "data(:,1)", "data(:,2)"]
-    with pytest.raises(DataError, match=r"has no unit; give --unit fr=UNIT"):
+    with pytest.raises(DataError, match=r"has no unit; set --unit fr=UNIT"):
         signal(path, "--channel", "fr=data(:,1)", "--rate", "2048")
-    with pytest.raises(DataError, match=r"has no times; give --rate HZ, or --channel time=NAME"):
+    with pytest.raises(DataError, match=r"has no times; set --rate HZ, or --channel time=NAME"):
         signal(path, "--channel", "fr=data(:,1)", "--unit", "fr=mm")
     options = ["--channel", "fr=data(:,2)", "--unit", "fr=mm", "--channel", "time=t", "--unit", "time=s"]
     found = signal(path, *options)
@@ -85,13 +85,13 @@ def test_wav_is_shares_of_full_scale(tmp_path, kind):
     share = SINE / 5.0  # half of full scale
     data = share if kind is np.float32 else share * 128 + 128 if kind is np.uint8 else share * np.iinfo(kind).max
     wavfile.write(path, int(RATE), data.astype(kind))
-    with pytest.raises(DataError, match=r"no unit: shares of full scale; .* give --unit fr=UNIT"):
+    with pytest.raises(DataError, match=r"no unit: shares of full scale; .* set --unit fr=UNIT"):
         signal(path)
     found = signal(path, "--unit", "12.5 mm")
     step = {np.uint8: 1.0 / 128, np.int16: 2.0**-15}.get(kind, 1e-7)
     np.testing.assert_allclose(found.displacement["fr"][-2000:], 12.5e-3 * share[-2000:], atol=20e-3 * step)
     path.write_bytes(path.read_bytes()[:-200])
-    with pytest.raises(DataError, match=r"chunk 'data' claims \d+ bytes of data, the file holds"):
+    with pytest.raises(DataError, match=r"chunk 'data' claims \d+ bytes of data, the file contains"):
         read_record(path)
 
 
@@ -140,7 +140,7 @@ def test_rpc_in_integers_and_groups(tmp_path, order):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"FRAMES": "5000"}, "FRAMES 5000 claims 80000 bytes of data, the file holds 96"),
+        ({"FRAMES": "5000"}, "FRAMES 5000 claims 80000 bytes of data, the file contains 96"),
         ({"SAMPLES": "21"}, "SAMPLES 21; allowed is 1 to 20"),
         ({"CHANNELS": "nan"}, "CHANNELS is 'nan'; needed is a number"),
         ({"CHANNELS": None}, "no CHANNELS in the header"),

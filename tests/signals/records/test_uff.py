@@ -125,7 +125,7 @@ TEXT = function(np.linspace(1.0, 2.0, 50))
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (GOOD[:-60], "claims 200 bytes of data, the file holds"),
+        (GOOD[:-60], "claims 200 bytes of data, the file contains"),
         (TEXT[:-60], "has no end; the file was cut off"),
         (TEXT[:300], "ends within its header|has no end"),
         (function(np.ones(N), points=2_500_000), "claims 2500000 numbers, the file holds 8"),

@@ -65,7 +65,7 @@ def compare_run(
         asked = choice or Choice()
         asked = replace(asked, channels={**asked.channels, **(channels or {})})
         known = tuple(simulated.record.channels)
-        measured = read_measured(Path(measured), known, asked, turned=turned, window=window)
+        measured = read_measured(Path(measured), known, asked, inverted=turned, window=window)
     return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
 
 

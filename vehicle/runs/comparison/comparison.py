@@ -54,7 +54,7 @@ def comparison_of(
         step = records[0].time[1] - records[0].time[0] if records else 0.0
         notices += clock_advice(parts, float(step), delay, drift, command)
         notices += [*sign_and_unit(parts), *unlike_copies(records)]
-        judged = {part.channel for part in parts if part.known}
+        judged = {part.channel for part in parts if part.reliable_shift}
     for one in responses:
         if one.channel not in judged:
             weight = np.nan_to_num(one.measured_coherence, nan=1.0) * np.nan_to_num(one.simulated_coherence, nan=1.0)

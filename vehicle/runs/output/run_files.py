@@ -115,7 +115,7 @@ def write_run(
         further, words = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
         write_whole(
             folder / "frf.csv",
-            lambda path: write_frf(path, first.response, channels, FRAME, further=further, words=words),
+            lambda path: write_frf(path, first.response, channels, FRAME, further=further, inputs=words),
         )
         caption = _caption(run, first.response)
         write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))

@@ -1,4 +1,4 @@
-"""The summary beside the time histories of a run."""
+"""Read the summary of a run."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 
 
 def run_summary(folder: Path) -> dict[str, Any]:
-    """Return the content of `summary.json` in the folder of a run; empty where there is none that can be read."""
+    """Return the content of `summary.json` in the folder of a run; empty if missing or unreadable."""
     try:
-        found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return summary if isinstance(summary, dict) else {}

@@ -182,7 +182,7 @@ def _read(
     known = (*car.vehicle.channels, *car.vehicle.load_channels)
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
-    return read_measured(file, known, asked, turned=turned, window=window)
+    return read_measured(file, known, asked, inverted=turned, window=window)
 
 
 def _signal(source: Signal | Path | str, car: Car) -> Signal:
