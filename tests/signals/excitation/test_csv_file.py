@@ -211,7 +211,7 @@ def test_resampling_keeps_the_band_and_removes_what_would_fold(tmp_path):
     # 450 Hz would fold to 50 Hz with 1e-5 m; the filter leaves 1e-4 of it. Ripple of 80 dB on 1e-3 m: 1e-7.
     np.testing.assert_allclose(signal.displacement["fr"][kept], wanted[::4][kept], rtol=0, atol=2e-7)
     assert signal.notices[-1] == (
-        "resampled from uniform times at 2000 Hz to 500 Hz by a spline of degree 7 through the samples at their own "
+        "resampled from uniform times at 2000 Hz to 500 Hz by a spline of degree 7 through the samples at their true "
         "times and a linear-phase anti-alias filter from 200 Hz on; amplitudes hold within 0.1 % up to 600 Hz, 4 % up "
         "to 800 Hz"
     )
@@ -241,13 +241,13 @@ def test_resampling_to_the_same_rate_changes_nothing(tmp_path):
 
 def test_resampling_limits(tmp_path):
     path = write(tmp_path, [HEADER, *rows(200), *(f"{float(r.split(',')[0]) + 1.0:.6f},0" for r in rows(200))])
-    with pytest.raises(DataError, match=r":202: gap of 0\.801 s behind 0\.199 s; --resample bridges at most 0\.01 s"):
+    with pytest.raises(DataError, match=r":202: gap of 0\.801 s after 0\.199 s; --resample bridges at most 0\.01 s"):
         read_plain(path, choice=Choice(resample=1000.0))
     path = write(tmp_path, [HEADER, *rows()])
-    with pytest.raises(DataError, match="makes 399000001 samples; allowed 20000000; set a lower rate"):
+    with pytest.raises(DataError, match="gives 399000001 samples, must be at most 20000000; set a lower rate"):
         read_plain(path, choice=Choice(resample=1e9))
     for rate in (5.0, 0.5):  # 0.5 looked like a time in ms
-        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: allowed from 10 Hz on"):
+        with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: must be at least 10 Hz"):
             read_plain(path, choice=Choice(resample=rate))
     for rate in (-1.0, np.inf, np.nan):
         with pytest.raises(ConfigurationError, match=rf"^--resample {rate:g} Hz: must be above 0"):
@@ -264,7 +264,7 @@ def test_roads_beyond_a_shaker_are_accepted_on_request(tmp_path):
 
 
 def test_unknown_wheel(tmp_path):
-    with pytest.raises(ConfigurationError, match="wheel 'xx' is unknown; allowed: fr, fl, rr, rl"):
+    with pytest.raises(ConfigurationError, match="wheel 'xx' is unknown; must be one of fr, fl, rr, rl"):
         read_plain(tmp_path / "signal.csv", wheel="xx")
 
 
@@ -291,7 +291,7 @@ def test_nothing_half_written_stays(tmp_path):
     (tmp_path / "taken.csv").mkdir()
     with pytest.raises(OutputError, match=r"taken\.csv: cannot be written"):
         write_signal(tmp_path / "taken.csv", signal)
-    with pytest.raises(OutputError, match="a comment holds a line break"):
+    with pytest.raises(OutputError, match="a comment contains a line break"):
         write_signal(tmp_path / "x.csv", signal, ["a\nb"])
     assert [path.name for path in tmp_path.iterdir()] == ["taken.csv"]
 

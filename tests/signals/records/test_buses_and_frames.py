@@ -193,7 +193,7 @@ def test_parquet(tmp_path):
     data = path.read_bytes()
     for broken in (data[:-20], data[:200], b"PAR1" + bytes(600)):
         path.write_bytes(broken)
-        with pytest.raises(DataError, match="no Parquet file that can be read"):
+        with pytest.raises(DataError, match="cannot be read as Parquet"):
             read_record(path)
 
 
@@ -210,9 +210,9 @@ def test_parquet_without_its_library(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("head", "said"),
     [
-        (b"LOGG" + bytes(200), r"Vector BLF\), which is not read; export MDF4 or ASC, as `python -m can.logconvert"),
+        (b"LOGG" + bytes(200), r"Vector BLF\), not supported; export MDF4 or ASC, as `python -m can.logconvert"),
         (b"\x1aE\xdf\xa3\x9fB\x86\x81\x01B\x82\x84mide" + bytes(200), r"enDAQ IDE .* endaq.ide.to_pandas\("),
-        (b"ULog\x01\x12\x35" + bytes(200), "PX4 ULog, which .* `ulog2csv"),
+        (b"ULog\x01\x12\x35" + bytes(200), "PX4 ULog, not supported.* `ulog2csv"),
     ],
 )
 def test_what_is_not_read_is_refused_with_the_line_that_exports(tmp_path, head, said):

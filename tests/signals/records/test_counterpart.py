@@ -63,7 +63,7 @@ def test_records_that_agree_and_those_that_have_nothing_in_common_are_quiet():
     )
     parts = counterparts(measured, turned, measured.time)
     outer = [part for part in parts if part.channel != NAMES[1]]  # the one in the middle is itself
-    assert all(part.known is None for part in outer) and clock_advice(outer, STEP, 0.0, 0.0) == []
+    assert all(part.reliable_shift is None for part in outer) and clock_advice(outer, STEP, 0.0, 0.0) == []
 
 
 def test_sign_and_unit_are_named_with_their_option():
@@ -72,7 +72,7 @@ def test_sign_and_unit_are_named_with_their_option():
     channels = {name: factors[name] * values for name, values in measured.channels.items()}
     wrong = Record(time=measured.time, channels=channels, units=measured.units)
     said = sign_and_unit(counterparts(wrong, simulated, wrong.time))
-    options = [re.findall(r"give (--\S+ \S+)$", text)[0] for text in said]
+    options = [re.findall(r"set (--\S+ \S+)$", text)[0] for text in said]
     assert options == [f"--turn {NAMES[0]}", f"--unit {NAMES[1]}=g", f"--unit {NAMES[2]}=mm/s2"]
 
 

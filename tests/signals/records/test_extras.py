@@ -94,7 +94,7 @@ def test_tdms(tmp_path):
     try:
         assert read_record(path).channels[0].values.size < 3000
     except DataError as error:
-        assert "cut off" in str(error)
+        assert "truncated" in str(error)
 
 
 def test_xlsx(tmp_path):

@@ -85,7 +85,7 @@ def test_wav_is_shares_of_full_scale(tmp_path, kind):
     share = SINE / 5.0  # half of full scale
     data = share if kind is np.float32 else share * 128 + 128 if kind is np.uint8 else share * np.iinfo(kind).max
     wavfile.write(path, int(RATE), data.astype(kind))
-    with pytest.raises(DataError, match=r"no unit: shares of full scale; .* set --unit fr=UNIT"):
+    with pytest.raises(DataError, match=r"no unit: fractions of full scale; .* set --unit fr=UNIT"):
         signal(path)
     found = signal(path, "--unit", "12.5 mm")
     step = {np.uint8: 1.0 / 128, np.int16: 2.0**-15}.get(kind, 1e-7)
@@ -141,13 +141,13 @@ def test_rpc_in_integers_and_groups(tmp_path, order):
     ("changes", "message"),
     [
         ({"FRAMES": "5000"}, "FRAMES 5000 claims 80000 bytes of data, the file contains 96"),
-        ({"SAMPLES": "21"}, "SAMPLES 21; allowed is 1 to 20"),
-        ({"CHANNELS": "nan"}, "CHANNELS is 'nan'; needed is a number"),
+        ({"SAMPLES": "21"}, "SAMPLES 21, must be 1 to 20"),
+        ({"CHANNELS": "nan"}, "CHANNELS is 'nan', must be a number"),
         ({"CHANNELS": None}, "no CHANNELS in the header"),
-        ({"PTS_PER_GROUP": "7"}, "7 samples a group, 4 a frame"),
+        ({"PTS_PER_GROUP": "7"}, "7 samples per group, 4 per frame"),
         ({"DELTA_T": "0"}, "DELTA_T 0 s"),
         ({"SCALE.CHAN_2": "x"}, "SCALE.CHAN_2 is 'x'"),
-        ({"FORMAT": "ASCII"}, "FORMAT is 'ASCII'; allowed are BINARY"),
+        ({"FORMAT": "ASCII"}, "FORMAT is 'ASCII', must be one of BINARY"),
         ({"NUM_PARAMS": "90000"}, "NUM_PARAMS claims"),
         ({"UPPER_LIMIT.CHAN_1": "0.001", "LOWER_LIMIT.CHAN_1": "0"}, "channel 1 reaches 0.17, its limits"),
         ({"DATA_TYPE": "FLOATING_POINT"}, "claims 192 bytes"),

@@ -118,7 +118,7 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
         ("time [s],z [mm]\n" + "0.5,1.5\n" * 3, "times must increase"),
         ("time [s],z [mm]\n0,0,1,5\n0,1,1,5\n0,2,1,5\n0,3,1,6\n", "1,5 is ambiguous"),
         ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6,x\n", "column 'z' holds 'x'"),
-        ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6\n", "the file was cut off"),
+        ("time [s],z [mm]\n0.1,1.5\n0.2,1.5\n0.3,1.5\n0.4,1.5\n0.5,1.5\n0.6\n", "the file is truncated"),
         ("time [s];z [mm]\n0,1;1.000,5\n0,2;1,5\n0,3;1,5\n", "no table of numbers|separate thousands"),
         ("time [s],z [mm]\n0.1,x\n" + "0.2,1.5\n" * 6, r"log.csv:2: a mixture of names and numbers: '0.1', 'x'"),
         ("nothing\nhere\n", "no table of numbers"),
@@ -143,7 +143,7 @@ def test_a_wrong_pick_lists_all_channels(tmp_path):
             read_signal(path, choice=choice("--channel", f"fr={wanted}"))
     with pytest.raises(ConfigurationError, match=r"--unit furlong: unknown unit"):
         choice("--unit", "furlong")
-    with pytest.raises(ConfigurationError, match=r"--channel xx=.*allowed are fr, fl, rr, rl and time"):
+    with pytest.raises(ConfigurationError, match=r"--channel xx=.*must be one of fr, fl, rr, rl, time"):
         read_signal(path, choice=choice("--channel", "xx=1"))
 
 
@@ -168,7 +168,7 @@ def test_a_chosen_channel_is_judged_by_its_own_unit_and_time(tmp_path):
         "",
     ]
     told = ("--channel", "time=t", "--unit", "time=s", "--channel", "plate", "--unit")
-    with pytest.raises(DataError, match=r"is the unit of the channel right\?; give another: --unit fr=UNIT"):
+    with pytest.raises(DataError, match=r"is the unit of the channel right\?; set another: --unit fr=UNIT"):
         read_signal(path, choice=choice(*told, "m"))
     found = read_signal(path, choice=choice(*told, "mil"))
     assert found.notices[0] == "fr: channel 2 'plate' [mil]" and "known unit" not in "".join(found.notices)
@@ -179,7 +179,7 @@ def test_a_chosen_channel_is_judged_by_its_own_unit_and_time(tmp_path):
 def test_formats_that_are_not_read_are_named(tmp_path, head):
     path = tmp_path / "foreign.raw"
     path.write_text(head + "x" * 50)
-    with pytest.raises(DataError, match=r"is (FAMOS|TDM|Dewesoft), which is not read; export "):
+    with pytest.raises(DataError, match=r"(FAMOS|TDM|Dewesoft), not supported; export "):
         read_record(path)
 
 

@@ -159,7 +159,7 @@ def test_starts_programs_and_what_is_left_out(tmp_path):
     ("text", "said"),
     [
         ("id,t [s],a\nACC,0.0,1.5\nGYR,0.1,2.5\nACC,0.2,1.5\nGYR,0.3,2.5\n" * 1 + "ACC,0.4,1\n" * 1 + "GYR,0.5,1\n" * 1,
-         "column 'id' holds 'ACC', 'GYR' in turn"),
+         "column 'id' alternates between 'ACC', 'GYR'"),
         ("a,b,c,d\n" + "0.5,1.5,2.5\n" * 8, "4 names for 3 columns"),
         (clock_file("iso").replace("10:00:00.050Z", "later"), r"log.csv:7:1: column 'time' has the cell '2026-03-01Tl"),
     ],
@@ -244,4 +244,4 @@ def test_damaged_vbox_files_are_refused(tmp_path, old, new, said):
 def test_units_of_vbox_that_fit_no_columns_are_not_used(tmp_path):
     found = read(tmp_path, VBO.replace("g\ndeg/s\n", "g\n\ndeg/s\nV\n").replace("long accel g", "x"), "x.vbo")
     assert next(one for one in found.channels if one.name == "Yaw_Rate").unit == ""
-    assert "which belongs to which is open, none is used: g, -, deg/s, V" in " ".join(found.notices)
+    assert "the assignment is ambiguous, no unit is used: g, -, deg/s, V" in " ".join(found.notices)

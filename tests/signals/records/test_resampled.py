@@ -80,7 +80,7 @@ def test_a_higher_rate_adds_no_images():
 def test_a_gap_is_refused_and_the_advice_works(tmp_path):
     time = jittered(drop=(1000, 1001, 1002))
     path = written(tmp_path / "gap.csv", time, [("z", "m/s2", motion(time))])
-    with pytest.raises(DataError, match=r"gap of 0\.0199\d* s behind 4\.99\d* s; --resample bridges at most 0\.0125"):
+    with pytest.raises(DataError, match=r"gap of 0\.0199\d* s after 4\.99\d* s; --resample bridges at most 0\.0125"):
         choose(read_record(path), Choice(channels={"z": "z"}, resample=RATE))
     assert clock_options(time)[:1] == ("--from",) and clock_options(time)[-2:] == ("--resample", "200")
     assert f"set {shlex.join(clock_options(time))} for the longest part" in time_remarks(time)[0]

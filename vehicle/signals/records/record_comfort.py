@@ -173,7 +173,7 @@ def evaluate_comfort(
     }
     summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*record.notices, *copied]}
     if seated:
-        below = _read(file, rail, rail_choice, place, offset, judged="z")
+        below = _read(file, rail, rail_choice, place, offset, checked="z")
         if "z" not in record.channels or "z" not in below.channels:
             raise ConfigurationError("--rail: the SEAT value needs z at the seat and at the rail; z is missing")
         seat_and_rail = np.array([record.channels["z"], below.channels["z"]])

@@ -108,7 +108,7 @@ def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: boo
     filtering = f" and a linear-phase anti-alias filter from {KEPT * rate:g} Hz on" if factor > 1 else ""
     return (
         f"resampled from {clock} at {1.0 / median:.6g} Hz to {rate:g} Hz by a spline of degree {DEGREE} through the "
-        f"samples at their true times{filtering}; amplitudes are accurate to 0.1 % up to {0.3 / median:.3g} Hz, 4 % up "
+        f"samples at their true times{filtering}; amplitudes hold within 0.1 % up to {0.3 / median:.3g} Hz, 4 % up "
         f"to {KEPT / median:.3g} Hz"
     )
 
