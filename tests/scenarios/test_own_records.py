@@ -63,7 +63,7 @@ def test_the_delay_that_was_forgotten_is_named(files):
     advice = re.search(r"--delay (\S+)", late)
     # The other law of friction moves the answer by 2.4 ms.
     assert advice is not None and float(advice[1]) == pytest.approx(0.2, abs=5e-3)
-    assert any(text.endswith("give --turn damper_fr_velocity") for text in found.notices)
+    assert any(text.endswith("set --turn damper_fr_velocity") for text in found.notices)
 
 
 def test_the_residuals_of_the_true_car_are_the_noise(files):

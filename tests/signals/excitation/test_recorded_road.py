@@ -134,7 +134,7 @@ def test_what_is_no_speed_is_refused(tmp_path):
         drive(path, channel="left").signal()
     with pytest.raises(ConfigurationError, match="--duration 30 s: must be at most the length of the record"):
         drive(path, duration=30.0).signal()
-    with pytest.raises(ConfigurationError, match="roles of a recorded road are left and right, or height"):
+    with pytest.raises(ConfigurationError, match="must be left, right, or height for a recorded road"):
         drive(path, choice=Choice(channels={"fr": "left"})).signal()
     options = parser().parse_args(["--road", "C", "--speed", "channel:v"])
     with pytest.raises(ConfigurationError, match="belongs to a recorded road"):
