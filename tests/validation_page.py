@@ -97,7 +97,7 @@ def alike(one: Row, other: Row) -> bool:
     sources = [re.sub(r"\d+(\.\d+)+", "#", row.source) for row in (one, other)]
     return (
         (one.subject, sources[0], words[0]) == (other.subject, sources[1], words[1])
-        and np.allclose(*numbers, rtol=2e-3, atol=0.0)
+        and np.allclose(numbers[0], numbers[1], rtol=2e-3, atol=0.0)
         and (one.agrees, one.reason) == (other.agrees, other.reason)
     )
 
