@@ -14,7 +14,7 @@ from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.records.frf import write_frf
+from vehicle.signals.records.frf_file import write_frf
 from vehicle.studies.tuning.fit import fit
 from vehicle.studies.tuning.full_steps import FullSteps
 

@@ -5,7 +5,7 @@ import pytest
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.records.frf import read_frf, write_frf
+from vehicle.signals.records.frf_file import read_frf, write_frf
 
 CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z")
 HEADER = "frequency [Hz],a_magnitude,a_phase [deg],a_coherence"

@@ -12,7 +12,7 @@ from vehicle.errors import DataError
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records import hdf_format, matlab_format
 from vehicle.signals.records.channel import Channel, uniform_axis
-from vehicle.signals.records.frf import read_frf
+from vehicle.signals.records.frf_file import read_frf
 from vehicle.signals.records.geometry import Geometry
 from vehicle.signals.records.reader import read_columns, read_record
 from vehicle.signals.records.uff_writer import write

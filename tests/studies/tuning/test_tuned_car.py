@@ -10,7 +10,7 @@ from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.bump import bump
-from vehicle.signals.records.frf import FrfData
+from vehicle.signals.records.frf_file import FrfData
 from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.fit import fit
 from vehicle.studies.tuning.frf_target import FrfTarget

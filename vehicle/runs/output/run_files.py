@@ -27,7 +27,7 @@ from vehicle.signals.analysis.peaks import resonances
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
-from vehicle.signals.records.frf import write_frf
+from vehicle.signals.records.frf_file import write_frf
 from vehicle.signals.records.measured import Measured
 from vehicle.signals.records.table import Record
 from vehicle.signals.records.text_format import write_table

@@ -256,9 +256,10 @@ def _uniform_columns(
 
 
 def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = (), *, plain: bool = False) -> None:
-    """Write a signal in the format of `read_signal`: comments, header, time, displacements with 7 significant digits.
+    """Write a signal in the format of `read_signal`.
 
-    Written under a temporary name and renamed when complete. The columns name their wheels, as `displacement_fl [m]`.
+    Comments, header, times, displacements with 7 significant digits. Written under a temporary name and renamed when
+    complete. The columns name their wheels, as `displacement_fl [m]`.
 
     Args:
         path: file to write.

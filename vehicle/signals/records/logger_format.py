@@ -13,7 +13,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Measurement
 from vehicle.signals.records.clock_text import clock_seconds, epoch_seconds, is_date
-from vehicle.signals.records.frf import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
+from vehicle.signals.records.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
 from vehicle.signals.records.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
 from vehicle.signals.records.spectrum_columns import joined
 from vehicle.signals.records.table import Header, Vector, Wanted

@@ -15,7 +15,7 @@ from vehicle.signals.analysis.frf import frequency_responses
 from vehicle.signals.analysis.local_rational import local_rational_responses
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.choice import Choice, choose, pick
-from vehicle.signals.records.frf import FrfData
+from vehicle.signals.records.frf_file import FrfData
 from vehicle.signals.records.integration import displacement, filtered
 from vehicle.signals.records.measured_frf import is_response, measured_frfs
 from vehicle.signals.records.reader import read_record

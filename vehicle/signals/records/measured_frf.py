@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Measurement
 from vehicle.signals.records.choice import Choice, pick
-from vehicle.signals.records.frf import RANDOM_ERROR, FrfData
+from vehicle.signals.records.frf_file import RANDOM_ERROR, FrfData
 from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_ratio
 
