@@ -45,7 +45,7 @@ QUICK_DURATION = 5.0
 
 
 def level_signal(level: str, wheel: str, *, quick: bool) -> Signal:
-    """The shipped input of a level, or a short one of the same spectrum and level.
+    """Return the shipped input of a level, or a short input of the same spectrum and level.
 
     Args:
         level: of `LEVELS`.
@@ -65,7 +65,7 @@ def level_signal(level: str, wheel: str, *, quick: bool) -> Signal:
 
 
 def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
-    """Every shipped input: name -> signal and the comments of its file."""
+    """Return name to signal and comments of every shipped input file."""
     band = (
         f"{SHAKER_EDGE_HZ:g} to {UPPER_BAND_EDGE_HZ:g} Hz (lower edge Butterworth of order {SHAKER_ROLL_OFF_ORDER}, "
         f"lines from {LOWEST_FREQUENCY_HZ:g} Hz)"
@@ -113,7 +113,7 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
 
 
 def main() -> None:
-    """Write all files and say what was written."""
+    """Write all files and print their names."""
     parser = argparse.ArgumentParser(
         prog="python -m scenarios.inputs.make_inputs", description="Write the shipped inputs."
     )

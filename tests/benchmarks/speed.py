@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import subprocess
 import sys
 import time
 from collections.abc import Sequence
@@ -50,6 +51,8 @@ SHOWN = {
     "four_wheel_step_ratio": "that over step_us, interleaved",
     "four_wheel_reduced_realtime_factor": "simulated over computing time of its reduced engine, all channels",
     "case_ms": "processor time of a sweep case of 30 s, ten parameters varied, everything included [ms]",
+    "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
+    "first_car_ms": "processor time of `from vehicle import Car; Car.load('focus')` in a new process [ms]",
     "reduced_rms_error": "largest RMS difference of an acceleration channel to MuJoCo at an eighth of the step",
 }
 
@@ -178,6 +181,14 @@ def batch_factor(car: Car, signal: Signal) -> float:
     return BATCH * signal.duration / (time.perf_counter() - started)
 
 
+def start_ms(statement: str, repeats: int) -> float:
+    """Return the processor time of a statement in a new process [ms]: the minimum of repetitions after a first run."""
+    code = f"import time; begin = time.process_time(); {statement}; print(time.process_time() - begin)"
+    command = [sys.executable, "-c", code]
+    times = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(repeats + 1)]
+    return 1e3 * min(float(text) for text in times)
+
+
 def accuracy(car: Car, seconds: float) -> Figures:
     """RMS of every acceleration and slip shares against an eighth of the step, and the reduced engine against both."""
     fine_car = Car.load(None, [f"solver.timestep={car.vehicle.solver.step / 8}"])
@@ -194,6 +205,8 @@ def accuracy(car: Car, seconds: float) -> Figures:
         "rms_error": errors[worst],
         "rms_error_channel": worst,
         "slip_error": max(slips),
+        "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
+        "first_car_ms": "processor time of `from vehicle import Car; Car.load('focus')` in a new process [ms]",
         "reduced_rms_error": max(reduced),
     }
 
@@ -254,6 +267,8 @@ def measure(effort: Effort) -> Figures:
         "four_wheel_step_us": median(four_wheel),
         "four_wheel_step_ratio": median(four / two for four, two in zip(four_wheel, native, strict=True)),
         "four_wheel_reduced_realtime_factor": median(four_wheel_reduced),
+        "import_ms": start_ms("import vehicle", effort.repeats),
+        "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.repeats),
         "case_ms": min(case_ms(effort.cases) for _ in range(2)),
         "parts_us": parts["native"],
         "plain_parts_us": parts["plain"],

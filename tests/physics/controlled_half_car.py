@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 
 from tests.engines.simulation.row_model import add_bushing, element_law, empty_spec
+from vehicle.model.laws.control_laws import pack as control_numbers
 from vehicle.model.laws.damper import actuator_parameters, pack
-from vehicle.model.laws.semi_active import pack as control_numbers
 
 UP = [0.0, 0.0, 1.0]
 

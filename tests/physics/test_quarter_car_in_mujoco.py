@@ -17,8 +17,8 @@ from vehicle.engines.lumped.drive import Sampled
 from vehicle.engines.lumped.quarter_car import quarter_car
 from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.errors import ConfigurationError
-from vehicle.model.assembly.quarter_car import quarter_car_spec
-from vehicle.model.parameters.quarter_car import Friction, load_quarter_car
+from vehicle.model.assembly.quarter_car_spec import quarter_car_spec
+from vehicle.model.parameters.quarter_car_parameters import Friction, load_quarter_car
 from vehicle.signals.analysis.slip import slip_share
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
@@ -216,7 +216,7 @@ def test_it_is_made_of_the_elements_of_the_complete_car():
 
 
 def test_refusals():
-    with pytest.raises(ConfigurationError, match=r"^damper: found 'none', allowed are slip, stick, friction$"):
+    with pytest.raises(ConfigurationError, match=r"^damper: found 'none', must be one of slip, stick, friction$"):
         quarter_car_spec(CAR, timestep=1e-3, damper="none")  # type: ignore[arg-type]
     with pytest.raises(ConfigurationError, match=r"^timestep: found nan s, must be finite and greater than 0\.0$"):
         quarter_car_spec(CAR, timestep=float("nan"))

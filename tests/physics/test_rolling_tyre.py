@@ -239,7 +239,7 @@ def test_varied_speed_and_tyre_are_those_of_a_car_that_is_built() -> None:
 @pytest.mark.parametrize(
     ("vehicle", "override", "message"),
     [
-        ("focus", "driving.speed=20", "does not stand on wheels alone"),
+        ("focus", "driving.speed=20", "has other ground contacts than wheels"),
         ("sedan", "front.hardpoints.tyre_patch.x=0.76", "ahead of the centre the load would drive"),
         ("sedan", "front.parts.tyre.inertia.x=0.9", "no body of revolution"),
         ("sedan", "front.parts.brake_disc.offset.z=0.01", "no body of revolution"),

@@ -19,8 +19,8 @@ from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
 from vehicle.engines.simulation.static_trim import StaticTrim
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
-from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
+from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.excitation.signal import Signal, uniform_time
 

@@ -25,13 +25,13 @@ README = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
 
 
 def named(pattern: str) -> dict[str, Any]:
-    """The only row of the table whose "study: name" matches a pattern."""
+    """Return the only row of the table whose "study: name" matches a pattern."""
     (row,) = [row for row in ROWS if fnmatchcase(row["name"], pattern)]
     return row
 
 
 def ours(pattern: str) -> list[float]:
-    """All numbers of our side of a row, the mean first where there are several values."""
+    """Return all numbers of our value of a row, the mean first."""
     return [float(text) for text in re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", str(named(pattern)["ours"]))]
 
 
@@ -72,14 +72,14 @@ QUOTES: dict[str, Callable[[], list[str]]] = {
     ],
     rf"first slip \(end of sticking[^|]*\| 5.035 s \| {N} s": lambda: first("bump: *end of stick* with Fd 125 N*", 3),
 }
-"""What README.md says, and the numbers of the table, or of the chosen set, that belong there."""
+"""Sentence of README.md to the quoted numbers of the table or of the chosen set."""
 
 
 @pytest.mark.parametrize("sentence", QUOTES)
 def test_a_number_of_the_readme_is_that_of_the_table(sentence):
-    found = re.search(sentence, README)
-    assert found, f"README.md has no sentence like {sentence}; change QUOTES with it"
-    assert list(found.groups()) == QUOTES[sentence]()
+    match = re.search(sentence, README)
+    assert match, f"README.md has no sentence like {sentence}; change QUOTES with it"
+    assert list(match.groups()) == QUOTES[sentence]()
 
 
 def test_the_page_is_that_of_the_table():

@@ -38,7 +38,7 @@ def test_level_does_not_depend_on_the_seed(seed):
     # Ten periods of the lowest line: what its broken period leaves is far below the 22 % that random amplitudes would.
     signal = road(rms=0.01, seed=seed, wheel="fr", duration=50.0, lead=LEAD, lower_band_edge=0.2)
     assert np.std(record(signal)) == pytest.approx(0.01, rel=0.02)
-    # With the edge half a line below a multiple of 1/T all lines are periods of the record: exact but for rounding.
+    # With the edge half a line below a multiple of 1/T all lines are periods of the record: exact within rounding.
     exact = road(rms=0.01, seed=seed, wheel="fr", duration=50.0, lead=LEAD, lower_band_edge=0.19)
     assert np.std(record(exact)) == pytest.approx(0.01, rel=1e-9)
 

@@ -53,12 +53,12 @@ def test_a_burst_after_break_away_is_an_extra_peak():
     assert len(phases) == 1
     assert phases[0].jump == pytest.approx(4.0)
     assert phases[0].start == pytest.approx(0.3)
-    # The burst, and the valley that it makes behind the jump.
+    # The burst, and the valley after the jump.
     valley, burst = extra_peaks(phases)
     assert 0.315 < valley.time < burst.time
     assert burst.time == pytest.approx(0.33, abs=1e-3)
     assert burst.delay == pytest.approx(0.03, abs=1e-3)
-    # The burst stands on what is left of the jump, 4 exp(-3) = 0.2.
+    # The burst is added to the remainder of the jump, 4 exp(-3) = 0.2.
     assert burst.height == pytest.approx(3.2, abs=0.05)
     assert burst.prominence == pytest.approx(3.0, abs=0.3)
     assert most_prominent(phases) in (valley, burst)

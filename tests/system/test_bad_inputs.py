@@ -74,11 +74,11 @@ SETTINGS = [
     ("26 collinear arm", "hardpoints.arm_rear=[0.842, 0.2, 0.612]", "lie on one line"),
     ("27 no such body", "body.superelement=nothing.toml", "body.superelement: no file 'nothing.toml'"),
     ("30 unknown name", "damper.coulomb_fricton=100", "the nearest is front.damper.coulomb_friction"),
-    ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, needed is a number"),
+    ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, must be a number"),
     ("31 overflow", "damper.viscous=1e400", "damper.viscous: found inf"),
-    ("31 two components", "body.cog=[1, 2]", "body.cog: found (1.0, 2.0), needed is a list of 3 numbers [m]"),
-    ("32 XML in a name", 'name="a\\"/><b"', "allowed are names of letters"),
-    ("33 path in a name", 'body.superelement="../../secret.toml"', "allowed are names of letters"),
+    ("31 two components", "body.cog=[1, 2]", "body.cog: found (1.0, 2.0), must be a list of 3 numbers [m]"),
+    ("32 XML in a name", 'name="a\\"/><b"', "must be a name of letters"),
+    ("33 path in a name", 'body.superelement="../../secret.toml"', "must be a name of letters"),
 ]
 
 

@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SECOND_PROCESS = """
 import numpy as np
 from vehicle.model.laws.damper import RECORD
-from vehicle.model.laws.semi_active import SETTING
+from vehicle.model.laws.control_laws import SETTING
 from vehicle.engines.reduced.control import Control
 from vehicle.engines.reduced.march import compiled_march
 from vehicle.engines.reduced.slope import Slope

@@ -17,7 +17,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
 
 ROAD = random_road(rms=1e-4, seed=1, wheel="fr", duration=1.0)
 

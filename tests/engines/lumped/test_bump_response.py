@@ -11,7 +11,7 @@ from vehicle.engines.linear.parts import ROAD, Network, masses_of, spring_damper
 from vehicle.engines.lumped.bump_response import BumpPassage, bump_passage, bump_response
 from vehicle.engines.lumped.half_car_rider import half_car_rider
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 
 CAR = half_car_rider_parameters()
 MODEL = half_car_rider(CAR)

@@ -11,7 +11,7 @@ from vehicle.engines.lumped.half_car_rider import half_car_rider
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.coulomb import Coulomb
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 
 CAR = half_car_rider_parameters()
 PASSAGE = bump_passage(CAR.bump, 20.0 / 3.6, 2.8, start=0.05)

@@ -16,7 +16,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.stribeck import Stribeck
 from vehicle.model.laws.switch import Switch
-from vehicle.model.parameters.quarter_car import load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 
 CAR = load_quarter_car()
 

@@ -11,7 +11,7 @@ from tests.validation import validated
 from vehicle.engines.linear.parts import Network, masses_of, spring_damper
 from vehicle.engines.lumped.half_car_rider import half_car_rider, places, static_tyre_load
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 
 CAR = half_car_rider_parameters()
 MODEL = half_car_rider(CAR)

@@ -11,8 +11,8 @@ from vehicle.engines.lumped.bump_response import bump_passage, bump_response
 from vehicle.engines.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
 from vehicle.engines.lumped.semi_active import simulate_bump
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
-from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
+from vehicle.model.parameters.semi_active_damper import LAWS
 
 CAR = half_car_rider_parameters()
 SPEED = 20.0 / 3.6

@@ -12,7 +12,7 @@ from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.laws.coulomb import Coulomb
-from vehicle.model.parameters.quarter_car import load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 
 CAR = load_quarter_car()
 END = 0.75

@@ -15,7 +15,7 @@ from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.lumped.quarter_car import quarter_car
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.kelvin import Kelvin
-from vehicle.model.parameters.quarter_car import load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 
 CAR = load_quarter_car()
 
@@ -243,7 +243,7 @@ BAD = [
     ),
     (
         {"damper": "slip", "vary": {"wheel.tyre_stiffness": float("nan")}},
-        "wheel.tyre_stiffness: found nan N/m, needed is a finite number (vertical tyre stiffness Kt)",
+        "wheel.tyre_stiffness: found nan N/m, must be a finite number (vertical tyre stiffness Kt)",
     ),
     (
         {"damper": "slip", "vary": {"mount.stifness": 1.0}},

@@ -8,7 +8,7 @@ from tests.validation import validated
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
 from vehicle.engines.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 
 TIME = np.linspace(0.0, 10.0, 10001)
 

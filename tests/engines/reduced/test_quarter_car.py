@@ -20,7 +20,7 @@ from vehicle.engines.reduced.run import simulate_reduced
 from vehicle.engines.simulation.recorded_acceleration import acceleration
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.stribeck import Stribeck
-from vehicle.model.parameters.quarter_car import load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.slip import slip_share
 from vehicle.signals.excitation.random_road import random_road

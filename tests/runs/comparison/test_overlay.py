@@ -17,7 +17,7 @@ from vehicle.commands.shaker import parser as shaker_options
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.runs.car import Car
-from vehicle.runs.comparison.comparison import comparison_of
+from vehicle.runs.comparison.compared_run import comparison_of
 from vehicle.runs.comparison.simulated import of_folder
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
@@ -127,7 +127,7 @@ def test_the_command_compares_the_files_of_a_run(run, measured, tmp_path, capsys
     arguments = [str(run), "--measured", str(measured), *MAP[:2], "--output", str(tmp_path / "found")]
     assert compare([*arguments, "--bands", "5,20,40"]) == 0
     said = capsys.readouterr().out
-    assert re.search(r"worst response: knuckle_fr_acc_z, \d+ to \d+ Hz: [+-]\d", said)
+    assert re.search(r"largest error of a response: knuckle_fr_acc_z, \d+ to \d+ Hz: [+-]\d", said)
     content = json.loads((tmp_path / "found" / "compare.json").read_text())
     assert [(row["low_hz"], row["high_hz"]) for row in sorted(content["table"], key=lambda row: row["low_hz"])] == [
         (5.0, 20.0),
@@ -251,7 +251,7 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
             "a response to a force, but the inputs of the model are plate",
         ),
         ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "must be a motion of a point over a motion"),
-        ([*MAP[:2], "--bands", "9,3"], 2, "needed are rising edges in Hz"),
+        ([*MAP[:2], "--bands", "9,3"], 2, "must be increasing edges in Hz"),
         (["--map", "3"], 2, "needed is CHANNEL=NAME"),
     ],
 )

@@ -8,7 +8,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.records.named_columns import named_columns
-from vehicle.studies.sweeps.table import read_variations
+from vehicle.studies.sweeps.sweep_table import read_variations
 
 DISTANCE = np.arange(0.0, 5.0, 0.5)
 PROFILE = "Profilometer 7\nDistance [m];Left [mm];Right [mm]\n"

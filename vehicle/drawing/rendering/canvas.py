@@ -26,7 +26,7 @@ class Canvas:
     Args:
         model: what is drawn; its off-screen buffer must be at least as large as the picture.
         size: width and height [pixel].
-        backend: "osmesa" or "egl".
+        backend: OpenGL backend, one of `BACKENDS`.
     """
 
     def __init__(self, model: mujoco.MjModel, size: tuple[int, int], backend: str) -> None:

@@ -11,6 +11,7 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 
+from vehicle.drawing.rendering.backend import variables
 from vehicle.drawing.rendering.layout import Picture
 from vehicle.drawing.rendering.shot import Shot
 from vehicle.errors import OutputError
@@ -37,7 +38,7 @@ def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
     Args:
         jobs: processes at most; a film of few frames is drawn here.
         shot: what is drawn.
-        backend: "osmesa" or "egl".
+        backend: OpenGL backend, one of `BACKENDS`.
 
     Raises:
         OutputError: a process ended before its frames were drawn.
@@ -72,7 +73,7 @@ def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
 def _draw(shot: Shot, backend: str, first: int, every: int, there: Connection) -> None:
     """Draw every so manieth frame and send it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process ends the others
-    os.environ["MUJOCO_GL"] = os.environ["PYOPENGL_PLATFORM"] = backend
+    os.environ.update(variables(backend))
     try:
         with closing(shot.frames(backend, first, every)) as frames:  # type: ignore[type-var]
             for frame in frames:

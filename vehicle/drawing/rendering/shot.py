@@ -165,7 +165,7 @@ class Shot:
         """Draw frames, (height, width, 3) each.
 
         Args:
-            backend: "osmesa" or "egl".
+            backend: OpenGL backend, one of `BACKENDS`.
             first, every: the first frame and the distance to the next; all by default.
         """
         layout, factor = self.layout, self.cut.exaggeration

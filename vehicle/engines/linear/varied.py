@@ -30,7 +30,7 @@ from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.engines.simulation.standing import require_body_modes, require_standing
 from vehicle.engines.simulation.static_trim import AtRest, StaticTrim, at_rest, settle, static_loads, unsolved
-from vehicle.model.assembly.law_numbers import TURNING, Numbers, element_numbers
+from vehicle.model.assembly.element_numbers import TURNING, Numbers, element_numbers
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.vehicle import Vehicle
 
@@ -231,8 +231,8 @@ def same_places(vehicle: Vehicle, other: Vehicle) -> bool:
     return (
         _alike(car.parts, known.parts, "numbers")
         and _alike(car.connections, known.connections, "law", "rolling")
-        and _alike(car.springs, known.springs, "stiffness", "table")
-        and _alike(car.joint_springs, known.joint_springs, "stiffness", "damping")
+        and _alike(car.springs, known.springs, "law")
+        and _alike(car.joint_springs, known.joint_springs, "law")
         and _alike(car.dampers, known.dampers, "law")
     )
 

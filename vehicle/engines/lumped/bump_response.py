@@ -19,7 +19,7 @@ from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.lumped.history import Array, History
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.half_car_rider import BumpShape
+from vehicle.model.parameters.half_car_rider_parameters import BumpShape
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -19,7 +19,7 @@ from vehicle.engines.linear.parts import Link, Network, masses_of, spring_damper
 from vehicle.engines.linear.system import LinearSystem, Row
 from vehicle.engines.lumped.history import Array, History
 from vehicle.model.parameters.axle import Axle
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters, Limb
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters, Limb
 
 GRAVITY = 9.81
 """[m/s2]."""

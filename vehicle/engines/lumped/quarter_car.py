@@ -19,7 +19,7 @@ from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.paths import full_path, quantity_of
 from vehicle.model.parameters.quantity import check
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 from vehicle.model.parameters.toml_file import as_table
 
 PUBLISHED = {"friction_limit": "limit", "smoothing": "steepness"}

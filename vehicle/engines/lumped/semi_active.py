@@ -1,7 +1,7 @@
 """Half cars with controlled dampers or tyres that can leave the road, many at once, over a bump.
 
 The controller reads body and wheel velocity once a control period and holds the damper coefficients until the next
-(`vehicle.model.laws.semi_active`); so the damper force c v opposes its velocity at every instant. In between the
+(`vehicle.model.laws.control_laws`); so the damper force c v opposes its velocity at every instant. In between the
 equations are integrated by the classical Runge-Kutta method with a fixed step. The road rate of a step is its
 difference quotient (z(t + h) - z(t)) / h: the impulse of the tyre damper is then exact where the slope of the road
 jumps. Order of the
@@ -21,9 +21,9 @@ from vehicle.engines.lumped.bump_response import bump_passage
 from vehicle.engines.lumped.half_car_rider import ENDS, half_car_rider, static_tyre_load
 from vehicle.engines.lumped.history import Array, History
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.model.laws.semi_active import PRESENT, act, at_rest, in_steps, pack
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
-from vehicle.model.parameters.semi_active import LAWS, PASSIVE
+from vehicle.model.laws.control_laws import PRESENT, act, at_rest, in_steps, pack
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
+from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 
 LARGEST_STEP = 5e-4
 """[s]: against half of it the dose values of the base case change by less than 0.1 %."""
@@ -43,7 +43,7 @@ def simulate_bump(
     Args:
         cars: one car for each run; control limits and period are those of the first, which all must share.
         speeds: one speed for each run [m/s].
-        law: "passive" or one of the laws of `vehicle.model.parameters.semi_active`; that of the parameters is not used.
+        law: "passive" or a law of `vehicle.model.parameters.semi_active_damper`; that of the parameters is not used.
         one_sided_tyres: a tyre that would pull gives no force: its load is max(0, static + k (z - x) + c (z' - x')).
         duration: [s].
         largest_step: upper limit of the integration step [s].

@@ -17,8 +17,8 @@ from vehicle.compiler import jitable
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.readout import Readout
 from vehicle.engines.reduced.step_factors import StepFactors
-from vehicle.model.laws.semi_active import PRESENT, RING, act, in_steps, pack
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.laws.control_laws import PRESENT, RING, act, in_steps, pack
+from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
 
@@ -31,7 +31,7 @@ class Control(NamedTuple):
 
     Attributes:
         dampers: which they are; (k,).
-        laws: records of `vehicle.model.laws.semi_active`; (k,).
+        laws: records of `vehicle.model.laws.control_laws`; (k,).
         states, plates, forces: rows of the sensors, wheel and body by turns, over the state of the poles without the
             forces of the last step, the plates and those forces; (2 k, 2 p + q), (2 k, m), (2 k, d).
         past: what the dampers remember; (k, ...).

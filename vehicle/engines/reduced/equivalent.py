@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.model.laws.damper import damper_law
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import phi_functions
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

@@ -16,7 +16,7 @@ from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.validity import Validity, bend_outputs, left_pieces, samples_of_a_look, turning_bodies
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]

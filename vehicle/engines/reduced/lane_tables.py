@@ -17,7 +17,7 @@ from vehicle.engines.reduced.lane_factors import CarFactors
 from vehicle.engines.reduced.lane_rows import LANES, TILE, Rows, aligned
 from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
 Table = npt.NDArray[Any]

@@ -22,7 +22,7 @@ from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.run import simulate_reduced
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.errors import ConfigurationError, MissingPartError
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 

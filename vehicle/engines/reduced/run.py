@@ -21,7 +21,7 @@ from vehicle.engines.reduced.validity import ValidityWatch
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units, wheel_channels
 from vehicle.signals.excitation.signal import Signal, uniform_time
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from vehicle.errors import DataError
 from vehicle.signals.records.choice import Choice, Chosen
@@ -96,11 +96,11 @@ def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:
             f"--highpass {corner:g} Hz: must be {2.0 / duration:.3g} to {0.4 / step:.4g} Hz for this record"
         )
     detrended = values - np.polynomial.Polynomial.fit(count, values, 1)(count)
-    size = fft.next_fast_len(values.size + int(np.ceil(PERIODS / (corner * step))), real=True)
-    frequency = fft.rfftfreq(size, step)
+    size = scipy.fft.next_fast_len(values.size + int(np.ceil(PERIODS / (corner * step))), real=True)
+    frequency = scipy.fft.rfftfreq(size, step)
     ratio = (frequency / corner) ** (2 * ORDER)
     gain = (ratio / (1.0 + ratio)).astype(complex)
     gain[1:] /= (2j * np.pi * frequency[1:]) ** order
     gain[0] = 0.0
-    result: Vector = fft.irfft(fft.rfft(detrended, size) * gain, size)[: values.size]
+    result: Vector = scipy.fft.irfft(scipy.fft.rfft(detrended, size) * gain, size)[: values.size]
     return result
