@@ -72,7 +72,9 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
     )
     inputs: dict[str, tuple[Signal, list[str]]] = {}
     for name, rms in LEVELS.items():
-        signal = random_road(rms=rms, seed=SEED, lower_band_edge=SHAKER_EDGE_HZ, roll_off_order=SHAKER_ROLL_OFF_ORDER)
+        signal = random_road(
+            rms=rms, seed=SEED, wheel="fl", lower_band_edge=SHAKER_EDGE_HZ, roll_off_order=SHAKER_ROLL_OFF_ORDER
+        )
         inputs[name] = (
             signal,
             [
@@ -84,7 +86,7 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
             ],
         )
     for name, height in HEIGHTS.items():
-        signal = bump(amplitude=height)
+        signal = bump(amplitude=height, wheel="fl")
         inputs[name] = (
             signal,
             [
@@ -119,8 +121,8 @@ def main() -> None:
     folder: Path = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
     for name, (signal, comments) in make_inputs().items():
-        write_signal(folder / f"{name}.csv", signal, comments)
-        print(f"{folder / name}.csv: RMS {signal.rms('fr'):.6e} m, {signal.duration:g} s")
+        write_signal(folder / f"{name}.csv", signal, comments, plain=True)
+        print(f"{folder / name}.csv: RMS {signal.rms(signal.wheels[0]):.6e} m, {signal.duration:g} s")
 
 
 if __name__ == "__main__":

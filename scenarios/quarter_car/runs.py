@@ -16,6 +16,7 @@ from vehicle.engines.lumped.history import History
 from vehicle.engines.lumped.input_signals import Sampled, Sine
 from vehicle.engines.lumped.quarter_car_network import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
+from vehicle.model.assembly.quarter_car_spec import WHEEL
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.switch import Switch
 from vehicle.model.parameters.quarter_car_parameters import QuarterCar
@@ -144,6 +145,7 @@ class Runs:
         return random_road(
             rms=rms * np.sqrt((self.duration - shortest) / (WHOLE - shortest)),
             seed=seed,
+            wheel=WHEEL,
             duration=self.duration,
             rate=1.0 / step,
             lower_band_edge=1.0 / self.duration,
@@ -152,7 +154,7 @@ class Runs:
 
     def road_profile(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Array:
         """Return the displacement of the road of a level [m]."""
-        return np.asarray(self.road_signal(rms, seed=seed, step=step).displacement["fr"])
+        return np.asarray(self.road_signal(rms, seed=seed, step=step).displacement[WHEEL])
 
     def road(self, rms: float, vary: Mapping[str, Any] | None = None, **parts: Any) -> History:
         """Run the friction model on a random road of an RMS displacement [m], from rest."""
@@ -301,9 +303,15 @@ class Runs:
 def rough_road(seed: int) -> Array:
     """Return the displacement [m] of the whole high road, as in figure 2.6."""
     road = random_road(
-        rms=HIGH, seed=seed, duration=WHOLE, rate=1.0 / STEP, lower_band_edge=1.0 / WHOLE, upper_band_edge=UPPER_EDGE_HZ
+        rms=HIGH,
+        seed=seed,
+        wheel=WHEEL,
+        duration=WHOLE,
+        rate=1.0 / STEP,
+        lower_band_edge=1.0 / WHOLE,
+        upper_band_edge=UPPER_EDGE_HZ,
     )
-    return np.asarray(road.displacement["fr"])
+    return np.asarray(road.displacement[WHEEL])
 
 
 def peak(frequency: Array, density: Array, band: tuple[float, float]) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -145,8 +145,10 @@ def readings(rigs: Sequence[Rig], plan: Plan, folder: Path) -> list[Readings]:
     wheel = PLATES[rigs[0].plate]
     every = [entry for rig in rigs for entry in _cars(folder, rig.hydromount, rig.brackets, rig.overrides())]
     cars = every[:: 1 + len(ENDS)]
-    shaker = np.array([[[_shares(cars, s, wheel) for s in row] for row in rows] for rows in _shaker_signals(plan)])
-    per_plan = [_bumps(cars, signals, wheel) for signals in _bump_signals(plan)]
+    shaker = np.array(
+        [[[_shares(cars, s, wheel) for s in row] for row in rows] for rows in _shaker_signals(plan, wheel)]
+    )
+    per_plan = [_bumps(cars, signals, wheel) for signals in _bump_signals(plan, wheel)]
     extremes, stick_end, fastest = (np.array([entry[part] for entry in per_plan]) for part in range(3))
     on_road = [_roads(every, plan, edge, wheel) for edge in plan.road_edges]
     comfort, road_shares, levels = (np.array([entry[part] for entry in on_road]) for part in range(3))
@@ -174,11 +176,9 @@ def _cars(folder: Path, hydromount: str, brackets: str, changes: tuple[str, ...]
 
 
 def _march(
-    cars: Sequence[Car], signal: Signal, wheel: str, channels: Sequence[str], step: float = COARSE_STEP
+    cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float = COARSE_STEP
 ) -> Iterator[tuple[slice, Mapping[str, Vector]]]:
-    """Simulate cars in batches on a signal under a wheel; yield the slice of each batch and its channels (cars, n)."""
-    (plate,) = signal.displacement.values()
-    signal = replace(signal, displacement={wheel: plate})
+    """Simulate cars in batches on a signal; yield the slice of each batch and its channels (cars, n)."""
     for first in range(0, len(cars), TOGETHER):
         batch = cars[first : first + TOGETHER]
         simulated = simulate_batch(
@@ -193,7 +193,7 @@ def _march(
         yield slice(first, first + len(batch)), simulated.channels
 
 
-def _shaker_signals(plan: Plan) -> list[list[list[Signal]]]:
+def _shaker_signals(plan: Plan, wheel: str) -> list[list[list[Signal]]]:
     """Return the shaker signals, (edges, levels, seeds)."""
     return [
         [
@@ -201,6 +201,7 @@ def _shaker_signals(plan: Plan) -> list[list[list[Signal]]]:
                 random_road(
                     rms=rms,
                     seed=seed,
+                    wheel=wheel,
                     duration=plan.shaker_s,
                     lower_band_edge=edge,
                     roll_off_order=SHAKER_ROLL_OFF_ORDER,
@@ -230,12 +231,12 @@ def _shares(cars: Sequence[Car], signal: Signal, wheel: str) -> Vector:
     return np.concatenate(
         [
             _above(np.stack([recordings[name] for name in channels], axis=1))
-            for _, recordings in _march(cars, signal, wheel, channels)
+            for _, recordings in _march(cars, signal, channels)
         ]
     )
 
 
-def _bump_signals(plan: Plan) -> list[list[list[Signal]]]:
+def _bump_signals(plan: Plan, wheel: str) -> list[list[list[Signal]]]:
     """Return the bump signals, (edges, seeds, bumps)."""
     duration = BUMP_LEAD_S + SHOWN_S + BUMP_TAIL_S
     return [
@@ -243,6 +244,7 @@ def _bump_signals(plan: Plan) -> list[list[list[Signal]]]:
             [
                 bump(
                     amplitude=size,
+                    wheel=wheel,
                     duration=duration,
                     start=BUMP_LEAD_S,
                     noise_rms=NOISE_RMS * NOISE_LEVELS[level],
@@ -271,7 +273,7 @@ def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str)
     axis /= np.linalg.norm(axis)
     for i, row in enumerate(signals):
         for j, signal in enumerate(row):
-            for cut, recordings in _march(cars, signal, wheel, [*strut, *body, *others, speed], FINE_STEP):
+            for cut, recordings in _march(cars, signal, [*strut, *body, *others, speed], FINE_STEP):
                 shown = {name: values[:, first : last + 1] for name, values in recordings.items()}
                 top, knuckle = (
                     sum(axis[n] * shown[name] for n, name in enumerate(part)) for part in (strut[:3], strut[3:])
@@ -307,8 +309,8 @@ def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[V
     largest = np.empty((*shape, round(plan.road_s * RATE_HZ) // WINDOW))
     for i, rms in enumerate(ROAD_RMS.values()):
         for seed in range(plan.seeds):
-            signal = road(rms=rms, seed=seed, duration=plan.road_s, lower_band_edge=edge)
-            for cut, recordings in _march(every, signal, wheel, [*rail, speed]):
+            signal = road(rms=rms, seed=seed, wheel=wheel, duration=plan.road_s, lower_band_edge=edge)
+            for cut, recordings in _march(every, signal, [*rail, speed]):
                 kept = np.stack([recordings[name][:, record] for name in rail], axis=1)
                 comfort[i, seed, cut] = comfort_values(1.0 / RATE_HZ, kept).overall
                 vertical = np.abs(kept[:, 2, : largest.shape[-1] * WINDOW])
@@ -331,7 +333,8 @@ def swings(edge: float, plan: Plan) -> Vector:
     record = slice(round(LEAD_S * RATE_HZ) + 1, None)
     largest = []
     for seed in range(plan.seeds):
-        plate = road(rms=SWING_RMS, seed=seed, duration=plan.road_s, lower_band_edge=edge).displacement["fr"][record]
+        signal = road(rms=SWING_RMS, seed=seed, wheel="fl", duration=plan.road_s, lower_band_edge=edge)
+        plate = signal.displacement["fl"][record]
         samples = min(round(SWING_S * RATE_HZ), plate.size)
         largest.append(np.ptp(plate[: plate.size // samples * samples].reshape(-1, samples), axis=1))
     return np.concatenate(largest)

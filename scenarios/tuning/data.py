@@ -21,7 +21,7 @@ from vehicle.runs.output.run_files import FRAME
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.records.frf import read_frf, write_frf
+from vehicle.signals.records.frf_file import read_frf, write_frf
 from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.car_fit import ranges_of
 from vehicle.studies.tuning.frf_target import FrfTarget

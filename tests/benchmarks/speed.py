@@ -104,7 +104,7 @@ def pin_to_one_core() -> None:
 
 def piece(seconds: float, level: str = "high") -> Signal:
     """Beginning of a shipped input; it starts at rest."""
-    signal = read_signal(find_input(f"{level}.csv"))
+    signal = read_signal(find_input(f"{level}.csv"), wheel="fr")
     count = int(np.searchsorted(signal.time, seconds)) + 1
     return Signal(time=signal.time[:count], displacement={"fr": signal.displacement["fr"][:count]})
 

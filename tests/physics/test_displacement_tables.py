@@ -126,7 +126,7 @@ def bent(front):
 @pytest.fixture(scope="module")
 def bump_piece():
     """The shipped bump of 7.5 mm."""
-    return read_signal(find_input("bump_7p5mm.csv"))
+    return read_signal(find_input("bump_7p5mm.csv"), wheel="fr")
 
 
 @pytest.fixture(scope="module")

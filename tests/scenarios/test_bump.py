@@ -31,7 +31,7 @@ def results(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def bump_run(car):
-    return car.run(bump(amplitude=7.5e-3, duration=1.2, start=0.3, noise_rms=0.0))
+    return car.run(bump(amplitude=7.5e-3, wheel="fr", duration=1.2, start=0.3, noise_rms=0.0))
 
 
 FIRST_SLIP = "bump 7.5 mm, first slip (end of sticking) with Fd 125 N [s]"
@@ -165,7 +165,7 @@ def test_a_film_must_be_an_mp4(tmp_path, capsys):
 def test_the_film_shows_both_bumps_in_step(car, tmp_path):
     if (reason := film_available()) is not None:
         pytest.skip(reason)
-    runs = [car.run(bump(amplitude=size, duration=1.0, start=0.3)) for size in (1.5e-3, 7.5e-3)]
+    runs = [car.run(bump(amplitude=size, wheel="fr", duration=1.0, start=0.3)) for size in (1.5e-3, 7.5e-3)]
     path = tmp_path / "film.mp4"
     side_by_side(path, runs, start=0.4, duration=0.1)
     command = [find_ffmpeg(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]

@@ -14,7 +14,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.bump import bump
 from vehicle.signals.excitation.signal import Signal
 
-SHORT = bump(amplitude=7.5e-3, duration=1.0, start=0.1)
+SHORT = bump(amplitude=7.5e-3, wheel="fr", duration=1.0, start=0.1)
 
 
 def test_a_case_is_computed_once_and_overrides_of_the_case_win():

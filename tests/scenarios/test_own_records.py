@@ -24,7 +24,7 @@ STRIBECK = ("damper.friction_law='stribeck'", "damper.stribeck_friction=160.0", 
 def files(tmp_path_factory):
     """A car with Stribeck friction over a bump; measured from 0.2 s on, at the logger's 12.5 s, in g and mm/s."""
     folder = tmp_path_factory.mktemp("records")
-    signal = bump(amplitude=6e-3, duration=1.2, start=0.3, noise_rms=0.0)
+    signal = bump(amplitude=6e-3, wheel="fr", duration=1.2, start=0.3, noise_rms=0.0)
     write_table(folder / "bump.csv", ["time [s]", "displacement_fr [m]"], [signal.time, signal.displacement["fr"]], [])
     run = Car.load(overrides=STRIBECK).run(signal, engine="reduced")
     noise = np.random.default_rng(4)
@@ -63,7 +63,7 @@ def test_the_delay_that_was_forgotten_is_named(files):
     advice = re.search(r"--delay (\S+)", late)
     # The other friction law shifts the response by 2.4 ms.
     assert advice is not None and float(advice[1]) == pytest.approx(0.2, abs=5e-3)
-    assert any(text.endswith("give --turn damper_fr_velocity") for text in measurement.notices)
+    assert any(text.endswith("set --turn damper_fr_velocity") for text in measurement.notices)
 
 
 def test_the_residuals_of_the_true_car_are_the_noise(files):

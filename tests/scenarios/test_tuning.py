@@ -14,7 +14,7 @@ from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.records.frf import write_frf
+from vehicle.signals.records.frf_file import write_frf
 from vehicle.studies.tuning.full_steps import FullSteps
 from vehicle.studies.tuning.least_squares import fit
 
@@ -86,7 +86,7 @@ def test_options_of_own_files_are_checked(tmp_path, capsys):
             ],
             "static friction must not be below sliding friction",
         ),
-        (["--channel", "engine_acc_z"], "no channel engine_acc_z; there are knuckle_fl_acc_z, seat_rail_acc_z"),
+        (["--channel", "engine_acc_z"], "no channel engine_acc_z; the file has knuckle_fl_acc_z, seat_rail_acc_z"),
     ):
         assert main([*options, *extra, "--output", str(tmp_path / "refused")]) in (2, 3)
         assert message in capsys.readouterr().err

@@ -18,7 +18,7 @@ from tests.system.conftest import csv_text
 from vehicle.signals.excitation.random_road import random_road
 
 ROOT = Path(__file__).resolve().parents[2]
-GOOD = random_road(rms=1e-4, seed=1, duration=4.0).displacement["fr"]
+GOOD = random_road(rms=1e-4, seed=1, wheel="fr", duration=4.0).displacement["fr"]
 
 
 def _with(line: int, text: str) -> str:

@@ -41,6 +41,9 @@ AXES = {
 }
 """Words for the axes."""
 
+SHAKER_WHEEL = "fl"
+"""Shaker wheel of the car `focus`, the default of the command `shaker`."""
+
 SHORTEST = 8.0
 """Shortest record for which a comfort value is worth a command [s]."""
 
@@ -178,11 +181,11 @@ def _plates(
             wheels[wheel] = number
     addition = ""
     if not wheels:
-        wheels = {"fr": moves[0][0]}
+        wheels = {SHAKER_WHEEL: moves[0][0]}
         addition = "" if len(moves) == 1 else f"; {len(moves) - 1} more displacements name no wheel"
     car = ["--vehicle", "focus_road"] if set(wheels) - {"fr", "fl"} else []
     names = {measurement.channels[number - 1].name: wheel for wheel, number in wheels.items()}
-    roles = {"displacement": "fr", **{f"displacement_{wheel}": wheel for wheel in wheels}}
+    roles = {"displacement": SHAKER_WHEEL, **{f"displacement_{wheel}": wheel for wheel in wheels}}
     picks = []
     if any(roles.get(name) != wheel for name, wheel in names.items()) or len(moves) > len(wheels):
         for wheel, number in wheels.items():
@@ -212,7 +215,7 @@ def _tried(path: Path, arguments: list[str], more: Sequence[list[str]]) -> tuple
     for extra in ([], *more):
         options = parser().parse_args([*arguments, *extra][1:])
         try:
-            read_signal(path, choice=record_choice(options, "fr"))
+            read_signal(path, wheel=SHAKER_WHEEL, choice=record_choice(options, SHAKER_WHEEL))
         except VehicleError as error:
             reason = reason or f"a displacement, but: {error}"
             continue

@@ -275,7 +275,7 @@ def _measured(
 
     window = getattr(options, "window", None)
     return read_measured(
-        options.measured, channels, choice, turned=options.turned, window=window, measurement=measurement
+        options.measured, channels, choice, inverted=options.turned, window=window, measurement=measurement
     )
 
 

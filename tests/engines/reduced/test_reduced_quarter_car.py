@@ -27,7 +27,7 @@ from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 CAR = load_quarter_car()
-ROAD = random_road(rms=2e-3, seed=2006, duration=8.0, lower_band_edge=0.5, upper_band_edge=50.0)
+ROAD = random_road(rms=2e-3, seed=2006, wheel="fr", duration=8.0, lower_band_edge=0.5, upper_band_edge=50.0)
 
 
 def matrices(tyre_damping=0.0):

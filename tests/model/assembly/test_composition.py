@@ -32,7 +32,7 @@ damping = [100.0, 200.0, 300.0]
 rotational_stiffness = 0.0
 """
 SIDES = {"right": 1e7, "left": 2e7}
-ROAD = random_road(rms=1e-3, seed=1, duration=1.0)
+ROAD = random_road(rms=1e-3, seed=1, wheel="fr", duration=1.0)
 
 
 def written(folder: Path, text: str) -> Path:

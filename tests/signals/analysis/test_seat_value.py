@@ -85,7 +85,7 @@ def test_a_run_says_what_its_seat_does(tmp_path, monkeypatch, capsys):
     assert f"notice: {NO_SEAT}" in capsys.readouterr().err
     for wrong, message in (
         (["--rail", "x=1"], "--rail x=1: the SEAT value needs axis z; set z=NAME, or an output point"),
-        (["--rail", "seat_rail", "--place", "feet"], "--place feet: --rail asks for the value of a seat"),
+        (["--rail", "seat_rail", "--place", "feet"], "--place feet: --rail is for the SEAT value of a seat"),
     ):
         assert comfort(["--input", "seated/time.npz", "--channel", "seat", "--offset", "keep", *wrong]) == 2
         assert message in capsys.readouterr().err

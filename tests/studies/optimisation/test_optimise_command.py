@@ -26,7 +26,7 @@ TRADE = ["--minimise", "comfort", "--minimise", "tyre_load"]
 @pytest.fixture(scope="module")
 def road(tmp_path_factory):
     path = tmp_path_factory.mktemp("roads") / "road.csv"
-    write_signal(path, random_road(rms=1e-3, seed=1, duration=3.0), ["a road"])
+    write_signal(path, random_road(rms=1e-3, seed=1, wheel="fl", duration=3.0), ["a road"])
     return path
 
 

@@ -33,7 +33,7 @@ class ShortRoad:
                 flag.touch()
                 os.kill(os.getpid(), signal.SIGKILL)
         time.sleep(self.wait)
-        return random_road(rms=self.rms, seed=self.seed, duration=self.duration)
+        return random_road(rms=self.rms, seed=self.seed, wheel="fr", duration=self.duration)
 
     def identity(self):
         return asdict(self)

@@ -16,9 +16,9 @@ from vehicle.studies.sweeps.sweep_table import read_variations
 def signal(tmp_path):
     from vehicle.signals.excitation.random_road import random_road
 
-    road = random_road(rms=3e-4, seed=1, duration=3.0)
+    road = random_road(rms=3e-4, seed=1, wheel="fl", duration=3.0)
     path = tmp_path / "road.csv"
-    lines = [f"{t:.3f},{z:.9g}" for t, z in zip(road.time, road.displacement["fr"], strict=True)]
+    lines = [f"{t:.3f},{z:.9g}" for t, z in zip(road.time, road.displacement["fl"], strict=True)]
     path.write_text("time [s],displacement [m]\n" + "\n".join(lines) + "\n", encoding="utf-8")
     return path
 

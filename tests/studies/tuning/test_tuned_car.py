@@ -10,7 +10,7 @@ from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.bump import bump
-from vehicle.signals.records.frf import FrfData
+from vehicle.signals.records.frf_file import FrfData
 from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import SMALL, full_steps
@@ -69,7 +69,7 @@ def in_si_units(time, histories):
 def test_stuck_and_sliding_levels_and_a_bump_in_one_fit(build, high_piece):
     true = {MOUNT.path: 6.8e5, FRICTION.path: 118.0}
     hidden = build(true)
-    short = bump(amplitude=7.5e-3, duration=1.2, start=0.3, noise_rms=0.0)
+    short = bump(amplitude=7.5e-3, wheel="fr", duration=1.2, start=0.3, noise_rms=0.0)
     record = record_of(hidden.run(short, engine="reduced"))
     targets = [target_of(hidden, None), target_of(hidden, high_piece, seed=2), record]
     result = fit([MOUNT, FRICTION], targets, build)
@@ -127,7 +127,7 @@ def test_a_run_and_its_target_have_the_same_residuals(build, car, high_piece):
     windowed = dataclasses.replace(target, window=0.5)
     np.testing.assert_allclose(windowed.residuals(run), windowed.residuals(car), atol=1e-6)
     assert len(target.rows) == len(target.residuals(car)) == 4
-    record = record_of(car.run(bump(amplitude=7.5e-3, duration=1.3, start=0.3), engine="reduced"))
+    record = record_of(car.run(bump(amplitude=7.5e-3, wheel="fr", duration=1.3, start=0.3), engine="reduced"))
     assert len(record.rows) == len(record.residuals(car)) == 2
 
 
@@ -152,7 +152,7 @@ def test_bad_targets_are_rejected(car, high_piece):
         ({"engine_acc_z": ones[:9]}, "engine_acc_z has 9 samples for 4001 times"),
         (
             {"engine_acc_z": np.where(time == 1.5, np.nan, ones)},
-            "engine_acc_z has 4001 samples .*, or one that is not finite",
+            "engine_acc_z has 4001 samples .*, or a value that is not finite",
         ),
         ({"engine_acc_z": np.where(time > 2.0, ones, 0.0)}, "engine_acc_z is zero throughout 1 to 2 s"),
     ):

@@ -67,7 +67,7 @@ def compare_run(
         asked = choice or Choice()
         asked = replace(asked, channels={**asked.channels, **(channels or {})})
         names = tuple(simulated.record.channels)
-        measured = read_measured(Path(measured), names, asked, turned=turned, window=window)
+        measured = read_measured(Path(measured), names, asked, inverted=turned, window=window)
     return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
 
 
@@ -112,7 +112,7 @@ def comparison_of(
         step = records[0].time[1] - records[0].time[0] if records else 0.0
         notices += clock_advice(parts, float(step), delay, drift, command)
         notices += [*sign_and_unit(parts), *unlike_copies(records)]
-        judged = {part.channel for part in parts if part.known}
+        judged = {part.channel for part in parts if part.reliable_shift}
     for response in responses:
         if response.channel not in judged:
             weight = np.nan_to_num(response.measured_coherence, nan=1.0) * np.nan_to_num(

@@ -113,7 +113,7 @@ def _compared(
         if spread > 0.0
         else math.nan,
         rating=rate_record(truth, curve, step),
-        clock=part.known,
+        clock=part.reliable_shift,
     )
 
 

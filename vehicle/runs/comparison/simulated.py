@@ -8,7 +8,7 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
-from vehicle.signals.records.frf import FrfData, read_frf
+from vehicle.signals.records.frf_file import FrfData, read_frf
 from vehicle.signals.records.measured import estimated_frf
 from vehicle.signals.records.reader import read_columns
 from vehicle.signals.records.run_summary import available_summary

@@ -27,7 +27,7 @@ from vehicle.signals.analysis.peaks import resonances
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
-from vehicle.signals.records.frf import write_frf
+from vehicle.signals.records.frf_file import write_frf
 from vehicle.signals.records.measured import Measured
 from vehicle.signals.records.run_summary import (
     SUMMARY_FILE,
@@ -123,7 +123,7 @@ def write_run(
         further, motions = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
         write_whole(
             folder / "frf.csv",
-            lambda path: write_frf(path, first.response, channels, FRAME, further=further, words=motions),
+            lambda path: write_frf(path, first.response, channels, FRAME, further=further, inputs=motions),
         )
         caption = _caption(run, first.response)
         write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))

@@ -15,7 +15,7 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
-from vehicle.signals.records.frf import read_frf
+from vehicle.signals.records.frf_file import read_frf
 from vehicle.signals.records.reader import read_columns
 from vehicle.signals.records.run_summary import SUMMARY_FILE, FrfSummary, RunSummary, read_summary
 

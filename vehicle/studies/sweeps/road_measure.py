@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -30,15 +30,18 @@ class RoadInput:
     duration: float
     lead: float
     lower_band_edge: float
-    wheel: str = "fr"
+    wheel: str
 
     def signal(self) -> Signal:
         """Generate the road."""
-        record = road(
-            rms=self.rms, seed=self.seed, duration=self.duration, lead=self.lead, lower_band_edge=self.lower_band_edge
+        return road(
+            rms=self.rms,
+            seed=self.seed,
+            wheel=self.wheel,
+            duration=self.duration,
+            lead=self.lead,
+            lower_band_edge=self.lower_band_edge,
         )
-        (plate,) = record.displacement.values()
-        return replace(record, displacement={self.wheel: plate})
 
     def identity(self) -> dict[str, object]:
         """Return digest of the samples and all attributes: the data that the runs depend on."""
@@ -62,7 +65,7 @@ class RoadMeasure:
     """
 
     lead: float
-    wheel: str = "fr"
+    wheel: str
     timestep: float = 5e-4
 
     @property

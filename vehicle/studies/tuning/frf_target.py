@@ -14,7 +14,7 @@ from vehicle.signals.analysis.frf import FrequencyResponse, frequency_response
 from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.local_rational import local_rational_response
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.frf import FrfData
+from vehicle.signals.records.frf_file import FrfData
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

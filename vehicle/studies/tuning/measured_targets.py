@@ -183,7 +183,7 @@ def _read(
     model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
-    return read_measured(file, model_channels, asked, turned=turned, window=window)
+    return read_measured(file, model_channels, asked, inverted=turned, window=window)
 
 
 def _signal(source: Signal | Path | str, car: Car) -> Signal:
