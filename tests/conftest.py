@@ -4,10 +4,23 @@ from __future__ import annotations
 
 import pytest
 
+from tests.validation_page import check_page
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    """Compare the rows that a test recorded with those of the validation page."""
+    try:
+        result = yield
+    except BaseException:
+        check_page(item.nodeid, passed=False)
+        raise
+    check_page(item.nodeid)
+    return result
 
 
 @pytest.fixture(scope="session")

@@ -121,7 +121,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
         car: the car.
         signal: motion of the plates.
         steps: number of steps.
-        form: "native" (Python where it cannot be had), "python", or "plain": MuJoCo's own rows hold the car.
+        form: "native", "python", or "plain": MuJoCo's own rows hold the car.
         parts: filled with the time of each part of a step [us]; MuJoCo's timers make every step some us longer.
 
     Returns:
@@ -150,8 +150,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     if form == "plain":
         spent = go()
     else:
-        found = compiled_rows(rows) if form == "native" else "not asked for"
-        native = None if isinstance(found, str) else found
+        native = compiled_rows(rows) if form == "native" else None
         with installed(rows, native):
             if native is not None:
                 native.attach(data)

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.parameters.shipped import FOCUS_FILE
@@ -48,7 +49,11 @@ def test_the_force_is_that_of_the_table_at_the_present_velocity(velocity):
     run.step(1, run.position)
     e, data = run.rows.layout.dampers, run.data
     found = -(data.actuator_force[0] + np.sum(data.efc_force[[*e.rows, *e.valves[:, 0]]]))
-    assert found == pytest.approx(table_force(velocity) + REST, rel=1e-6, abs=1e-4)
+    validated(
+        "Dampers and friction", f"force of a tabulated damper with gas at {velocity:g} m/s", found,
+        table_force(velocity) + REST, rel=1e-6, abs=1e-4, unit="N",
+        source="closed form: linear interpolation of the table",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("amplitude", [0.002, 0.02, 0.08])
@@ -69,7 +74,11 @@ def test_the_work_of_a_cycle_is_the_area_of_the_table(amplitude):
     phase = np.linspace(0.0, 2.0 * np.pi, 200001)[:-1]
     speed = amplitude * omega * np.cos(phase)
     expected = np.mean([table_force(v) * v for v in speed]) * 2.0 * np.pi / omega
-    assert expected > 0.1 and work == pytest.approx(expected, rel=1e-4)
+    assert expected > 0.1
+    validated(
+        "Dampers and friction", f"work of a tabulated damper in a cycle of 2 Hz and {1e3 * amplitude:g} mm", work,
+        expected, rel=1e-4, unit="J", source="closed form: integral of F v over the cycle",
+    )  # fmt: skip
 
 
 def swing(step, duration=0.2):
@@ -94,8 +103,16 @@ def test_against_a_stiff_solver_with_second_order():
     )
     steps = np.array([4e-3, 2e-3, 1e-3])
     errors = [np.max(np.abs(swing(step) - solution.y[0])) for step in steps]
-    assert 1.7 < np.polyfit(np.log(steps), np.log(errors), 1)[0] < 2.5, errors
-    assert errors[-1] < 2e-3 * 0.02
+    order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    radau = foreign("scipy", "Radau, tolerance 1e-10")
+    validated(
+        "Dampers and friction", "order of convergence of a tabulated damper", order, 2.0, within=(1.7, 2.5),
+        source=radau,
+    )  # fmt: skip
+    validated(
+        "Dampers and friction", "free decay on a tabulated damper, step 1 ms", errors[-1], 0.0, abs=2e-3 * 0.02,
+        unit="m", source=radau,
+    )  # fmt: skip
 
 
 def test_the_clamped_lines_are_the_curve():
@@ -105,7 +122,10 @@ def test_the_clamped_lines_are_the_curve():
     lines = np.sum(np.clip(excess * (speed[:, None] - middle), -limit, limit), axis=1)
     expected = [table_force(v) for v in speed]
     np.testing.assert_allclose(curve.least_slope * speed + lines - curve.at_rest(), expected, atol=1e-8)
-    np.testing.assert_allclose(curve.force(speed), expected, atol=1e-9)
+    validated(
+        "Dampers and friction", "force of a table of force over velocity, -3 to 3 m/s", curve.force(speed),
+        np.array(expected), abs=1e-9, unit="N", source="closed form: linear interpolation, outer lines extended",
+    )  # fmt: skip
 
 
 def table_car(folder=None, **law):

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from tests.engines.simulation.python_form import difference, python_run
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.validation import foreign, validated
 from vehicle.engines.simulation.callbacks import compiled_rows
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.model.laws.degressive import Degressive
 from vehicle.runs.car import Car
 
@@ -48,7 +50,13 @@ def test_the_force_is_the_law_at_the_present_velocity(velocity, friction):
     e, data = run.rows.layout.dampers, run.data
     rows = np.concatenate([e.rows, e.frictions, e.valves[:, 0]])
     found = -(data.actuator_force[0] + np.sum(data.efc_force[rows]))
-    assert found == pytest.approx(force_of(velocity, friction), rel=1e-5)  # m v changes by 1e-7 in the step
+    # m v changes by 1e-7 in the step
+    validated(
+        "Dampers and friction",
+        f"force of the degressive damper at {velocity:g} m/s, friction {friction[0]:g} and {friction[1]:g} N", found,
+        force_of(velocity, friction), rel=1e-5, unit="N",
+        source="closed form: Bommer 2006, appendix C.2, with Coulomb or Stribeck friction",
+    )  # fmt: skip
 
 
 def swing(step, friction, duration=0.3):
@@ -82,7 +90,12 @@ def test_against_a_stiff_solver(friction):
     fine = swing(1e-3, friction)[::4]
     # D h/m = 0.4 a step: centred, that is (D h/m)2/12 = 1 % of the motion of the first 3 ms, 5e-4 of the amplitude.
     # Stribeck friction, which follows the velocity of half a step before, adds 5e-4 at most.
-    assert np.max(np.abs(fine[: len(reference)] - reference[: len(fine)])) < 1e-3 * 0.01
+    size = min(len(fine), len(reference))
+    validated(
+        "Dampers and friction",
+        f"free decay on a degressive damper with friction {friction[0]:g} and {friction[1]:g} N", fine[:size],
+        reference[:size], abs=1e-3 * 0.01, unit="m", source=foreign("scipy", "Radau, tolerance 1e-9"),
+    )  # fmt: skip
     # A linear damper is another one.
     slack = strut(1e-3, friction, stiffness=STIFFNESS)
     slack.rows.layout.dampers.pieces[0, 2] = 1e-9
@@ -99,7 +112,10 @@ def test_the_centred_row_is_of_second_order():
     ]
     order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
     # A row that answers the velocity at the end of the step, as that of the friction does, would have order 1.
-    assert 1.7 < order < 2.5, errors
+    validated(
+        "Dampers and friction", "order of convergence of the degressive damper", order, 2.0, within=(1.7, 2.5),
+        source=foreign("scipy", "Radau, tolerance 1e-9"),
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -134,12 +150,12 @@ def test_the_damper_of_the_car_follows_its_law(degressive_car, high_piece):
 
 
 def test_both_forms_agree(degressive_car, high_piece):
-    pytest.importorskip("numba", reason="the compiled form is optional")
     model = degressive_car.model.spec.compile()
     prepare_model(model)
-    assert not isinstance(compiled_rows(Rows(model, degressive_car.model.static.preload)), str)
+    rows = Rows(model, degressive_car.model.static.preload)
+    assert difference(rows, compiled_rows(rows)) == ""
     piece = type(high_piece)(time=high_piece.time[:801], displacement={"fr": high_piece.displacement["fr"][:801]})
-    one, other = (simulate(degressive_car.model, piece, native=form) for form in (True, False))
+    one, other = (form(degressive_car.model, piece) for form in (simulate, python_run))
     for name, values in other.channels.items():
         # As in test_native: rounding, magnified by the ideal joints.
         np.testing.assert_allclose(one[name], values, rtol=0.0, atol=2e-8 * np.sqrt(np.mean(values**2)), err_msg=name)

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.parameters.shipped import FOCUS_FILE
@@ -48,7 +49,11 @@ def test_a_mass_is_thrown_back_by_a_bump_stop():
     depth = np.linspace(-0.1, 0.0, 2001)
     work = [quad(stop_force, 0.0, x, points=[p for p in GIVES if x < p < 0.0] or None)[0] for x in depth]
     expected = np.interp(-0.5 * MASS * SPEED**2, -np.array(work), depth)
-    assert deepest == pytest.approx(expected, rel=5e-3)  # sampled every 4 ms
+    # sampled every 4 ms
+    validated(
+        "Bushings, springs and stops", "turning point of a mass that hits a bump stop", deepest, expected, rel=5e-3,
+        unit="m", source="conservation: kinetic energy is the area under the table",
+    )  # fmt: skip
     # And the whole flight against quadrature in time, with second order.
     steps, speeds = np.array([4e-3, 2e-3, 1e-3, 5e-4]), SPEED * np.linspace(0.9, 1.1, 7)
     flights = [
@@ -68,17 +73,31 @@ def test_a_mass_is_thrown_back_by_a_bump_stop():
         np.mean([np.max(np.abs(dropped(step, speed) - flight)) for speed, flight in zip(speeds, flights, strict=True)])
         for step in steps
     ]
-    assert 1.6 < np.polyfit(np.log(steps), np.log(errors), 1)[0] < 2.5, errors
-    assert errors[-1] < 1e-3 * 0.06
+    order, rk45 = np.polyfit(np.log(steps), np.log(errors), 1)[0], foreign("scipy", "RK45, tolerance 1e-10")
+    validated(
+        "Bushings, springs and stops", "order of convergence at the corners of a bump stop", order, 2.0,
+        within=(1.6, 2.5), source=rk45,
+    )  # fmt: skip
+    validated(
+        "Bushings, springs and stops", "mean error of seven flights into a bump stop, step 0.5 ms", errors[-1], 0.0,
+        abs=1e-3 * 0.06, unit="m", source=rk45,
+    )  # fmt: skip
 
 
 def test_the_energy_of_a_curve_is_its_area():
     curve = Curve.through(GIVES, FORCES)
     for x in (-0.09, -0.05, -0.03, 0.0, 0.01, 0.035, 0.05):
         corners = [p for p in GIVES if min(x, 0.0) < p < max(x, 0.0)]
-        assert curve.energy(x) == pytest.approx(quad(stop_force, 0.0, x, points=corners or None)[0], abs=1e-9)
+        validated(
+            "Bushings, springs and stops", f"energy of a bump stop at {1e3 * x:g} mm", curve.energy(x),
+            quad(stop_force, 0.0, x, points=corners or None)[0], abs=1e-9, unit="J", source=foreign("scipy", "quad"),
+        )  # fmt: skip
     for force in (-9500.0, -3000.0, -10.0, 0.0, 500.0, 3000.0):
-        assert stop_force(curve.position(force)) == pytest.approx(force, abs=1e-9)
+        validated(
+            "Bushings, springs and stops", f"position at which a bump stop has {force:g} N, put into the table",
+            stop_force(curve.position(force)), force, abs=1e-9, unit="N",
+            source="closed form: linear interpolation of the table",
+        )  # fmt: skip
 
 
 FRONT = read_table(FOCUS_FILE)["front"]
@@ -123,7 +142,11 @@ def test_the_car_stands_on_its_tables(bent_car, car):
     bend = {one.name: one for one in bent_car.matrices.bends}
     load = static.tyre_load["fr"]
     # The tyre stands at -load / K on the table, so that it leaves the ground after as much.
-    assert bend["bushing/tyre_fr along z"].high == pytest.approx(load / TYRE, rel=1e-9)
+    validated(
+        "Bushings, springs and stops", "way up to which a tyre of a table keeps contact",
+        bend["bushing/tyre_fr along z"].high, load / TYRE, rel=1e-9, unit="m",
+        source="closed form: static load over stiffness",
+    )  # fmt: skip
     assert (bend["stop of damper 1"].low, bend["stop of damper 1"].high) == (-0.002, 0.002)
     assert model.nu == car.model.model.nu
 

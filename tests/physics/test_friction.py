@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
+from tests.validation import validated
 from vehicle.model.laws.stribeck import Stribeck
 
 LIMIT, SMOOTHING, VISCOUS = 125.0, 1e5, 2250.0  # the damper of Bommer 2006
@@ -41,7 +42,11 @@ def test_below_the_limit_it_sticks_at_any_step(step, force):
     run = strut(step)
     velocity = run.step(200, lambda: run.data.qvel[0], push(run, lambda _: force))
     # It creeps with the slope of the published atan, some 1e-5 m/s; an explicit law would need steps of 5 us.
-    assert velocity[-1] == pytest.approx(force / (CREEP + VISCOUS), rel=1e-6)
+    validated(
+        "Dampers and friction", f"creep of a stuck damper under {force:g} N, step {1e3 * step:g} ms", velocity[-1],
+        force / (CREEP + VISCOUS), rel=1e-6, unit="m/s",
+        source="closed form: slope 2 Fd eps / pi of the atan law of Bommer 2006 at rest",
+    )  # fmt: skip
     assert np.max(np.abs(velocity)) < 2e-5
 
 
@@ -50,7 +55,10 @@ def test_above_the_limit_it_slides(force):
     run = strut()
     # 40 kg / 2250 N s/m = 18 ms, so 0.6 s are 34 time constants.
     velocity = run.step(600, lambda: run.data.qvel[0], push(run, lambda _: force))
-    assert velocity[-1] == pytest.approx((force - np.sign(force) * LIMIT) / VISCOUS, rel=1e-6)
+    validated(
+        "Dampers and friction", f"sliding speed of a damper under {force:g} N", velocity[-1],
+        (force - np.sign(force) * LIMIT) / VISCOUS, rel=1e-6, unit="m/s", source="closed form: (F - Fd sign v) / D",
+    )  # fmt: skip
 
 
 def test_it_breaks_away_and_stops_at_the_exact_times():
@@ -60,14 +68,21 @@ def test_it_breaks_away_and_stops_at_the_exact_times():
     after = 1e-3 * np.arange(1000) - 0.5
     exact = np.where(after > 0.0, 250.0 / 40.0 * np.maximum(after, 0.0) ** 3 / 6.0, 0.0)
     # First-order error of the instant of breaking away: up to a step, of a speed that is then still zero.
-    assert np.max(np.abs(x - exact)) < 2e-3 * exact[-1]
+    validated(
+        "Dampers and friction", "motion after breaking away under a force that rises by 250 N/s", x, exact, peak=2e-3,
+        unit="m", source="closed form: F' t^3 / (6 m) from the instant F = Fd",
+    )  # fmt: skip
     # Pushed off with 0.5 m/s it stops after m v / Fd = 0.16 s, m v2 / (2 Fd) = 0.04 m further on.
     run = strut(step=1e-3, viscous=0.0)
     run.data.qvel[0] = 0.5
     x = run.step(300, run.position)[:, 0]
     stop = 40.0 * 0.5 / LIMIT
     before = int(0.9 * stop / 1e-3)
-    assert np.max(x) == pytest.approx(0.5 * stop / 2.0, rel=0.02)  # half a step of 0.5 m/s is 0.6 %
+    # half a step of 0.5 m/s is 0.6 %
+    validated(
+        "Dampers and friction", "way of a mass that friction stops from 0.5 m/s", np.max(x), 0.5 * stop / 2.0, rel=0.02,
+        unit="m", source="closed form: m v^2 / (2 Fd)",
+    )  # fmt: skip
     assert x[before] < x[before + 5] and np.ptp(x[int(stop / 1e-3) + 3 :]) < 1e-9
 
 
@@ -83,12 +98,21 @@ def test_free_decay_with_coulomb_friction_is_linear():
     turns = x[[0, *(np.flatnonzero(np.diff(np.sign(np.diff(x)))) + 1)]]
     tops = np.abs(turns[:10])
     # Half a step of turning round: x'' h2 / 8 is 2e-5 of the amplitude.
-    np.testing.assert_allclose(np.diff(tops), -loss, rtol=2e-3)
+    validated(
+        "Dampers and friction", "loss of amplitude by half cycle in free decay with Coulomb friction", -np.diff(tops),
+        loss, rel=2e-3, unit="m", source="closed form: 2 Fd / k",
+    )  # fmt: skip
     # It stays where spring and friction first balance: the tenth turn leaves 0.3 of the loss, inside Fd / k = 0.5.
-    assert abs(x[-1]) == pytest.approx(0.3 * loss, rel=0.01)
+    validated(
+        "Dampers and friction", "place where Coulomb friction holds the oscillator for good", abs(x[-1]), 0.3 * loss,
+        rel=0.01, unit="m", source="closed form: start less ten times 2 Fd / k",
+    )  # fmt: skip
     # ... but for the creep of the smooth law, k x / c.
     creep = stiffness * abs(x[-1]) / (2.0 / np.pi * limit * SMOOTHING)
-    assert np.ptp(x[-1001:]) == pytest.approx(creep * 1.0, rel=0.01)
+    validated(
+        "Dampers and friction", "creep of the stuck oscillator in 1 s", np.ptp(x[-1001:]), creep * 1.0, rel=0.01,
+        unit="m", source="closed form: k x over the slope of the smooth law at rest",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("ratio", "share"), [(0.6, 0.4), (1.5, 0.4), (0.8, 0.5)])
@@ -116,7 +140,12 @@ def test_den_hartogs_forced_oscillator(ratio, share):
     # Friction turns round half a step early (it answers the speed at the end of the step): of the order of
     # pi / period = 4e-3; without friction the amplitude would be 3 to 22 % larger.
     assert abs(direct) * amplitude / stiffness / exact > 1.03
-    assert 0.5 * np.ptp(tail) == pytest.approx(exact, rel=4e-3)
+    validated(
+        "Dampers and friction",
+        f"amplitude of a forced oscillator with Coulomb friction, w / w0 = {ratio}, Ff / F0 = {share}",
+        0.5 * np.ptp(tail), exact, rel=4e-3, unit="m",
+        source="closed form: Den Hartog, Trans. ASME 53, 1931, equation 30",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("velocity", [1e-3, 0.01, 0.03, 0.06, 0.3])
@@ -127,7 +156,10 @@ def test_stribeck_limit_follows_the_velocity(velocity):
     run.step(1, run.position)
     force = run.data.efc_force[run.rows.layout.dampers.frictions][0]
     exact = 65.0 + 60.0 * np.exp(-((velocity / 0.03) ** 3.5))
-    assert -force == pytest.approx(exact, rel=1e-5)
+    validated(
+        "Dampers and friction", f"Stribeck friction of the simulated damper at {velocity:g} m/s", -force, exact,
+        rel=1e-5, unit="N", source="closed form: Fc + (Fs - Fc) exp(-(v / vs)^n)",
+    )  # fmt: skip
     law = Stribeck(
         friction_limit=65.0, static_limit=125.0, stribeck_velocity=0.03, stribeck_exponent=3.5, smoothing=SMOOTHING
     )

@@ -15,6 +15,7 @@ from tests.engines.simulation.row_model import (
     empty_spec,
 )
 from tests.model.flexbody.box_body import box_fields
+from tests.validation import validated
 from vehicle.model.flexbody.superelement import Superelement
 
 BOX = Superelement(**box_fields())
@@ -69,7 +70,11 @@ def test_a_force_at_a_node_moves_body_and_modes(turned):
     exact = modal_step_response(load, times)
     size = np.max(np.abs(exact))
     # Second order: (w h)^2 / 8 = 3e-4 from the start of half a step, and the turn of the body.
-    assert np.max(np.abs(samples[:, 7:] - exact)) < 5e-3 * size
+    place = "turned by 90 degrees" if turned else "upright"
+    validated(
+        "Integration in MuJoCo", f"modal coordinates of a free body after a step of force, {place}", samples[:, 7:],
+        exact, abs=5e-3 * size, source="closed form: step response of q'' + 2 zeta w q' + w^2 q",
+    )  # fmt: skip
     start = samples[0, :3]
     assert np.max(np.abs(samples[:, :3] - start - np.outer(0.5 * times**2, force / BOX.mass))) < 1e-3 * np.max(
         np.abs(samples[-1, :3] - start)
@@ -95,7 +100,10 @@ def test_acceleration_of_another_node_is_rigid_plus_modal():
     rigid = force / BOX.mass + np.cross(np.linalg.solve(BOX.inertia, np.cross(arm, force)), there)
     exact = rigid + BOX.shape_at(OTHER) @ (BOX.shape_at(NODE).T @ force)
     # The armature of the scheme, w2 h2 / 12, makes the modal part smaller by at most 3e-4.
-    np.testing.assert_allclose(found, exact, atol=5e-4 * np.max(np.abs(exact)))
+    validated(
+        "Integration in MuJoCo", "acceleration of a node at the first instant of a force at another node", found, exact,
+        peak=5e-4, unit="m/s2", source="second derivation: lumped-mass body in the space of its ten shapes",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("carrier", [False, True], ids=["body moves", "body carries"])
@@ -110,7 +118,11 @@ def test_stiff_support_sees_the_flexibility_of_the_node(carrier):
     run.step(1, run.position)
     np.testing.assert_allclose(run.rows.state.residual[0], sign * with_modes, rtol=1e-12)
     np.testing.assert_allclose(run.rows.state.explicit[:3], -stiffness * sign * with_modes, rtol=1e-12)
-    np.testing.assert_allclose(run.data.qfrc_applied[6:], BOX.shape_at(NODE).T @ (-stiffness * with_modes), rtol=1e-9)
+    side = "body carries" if carrier else "body moves"
+    validated(
+        "Integration in MuJoCo", f"modal forces of a stiff support at a node, {side}", run.data.qfrc_applied[6:],
+        BOX.shape_at(NODE).T @ (-stiffness * with_modes), rel=1e-9, source="closed form: -Phi' K Phi q",
+    )  # fmt: skip
 
 
 def test_momentum_is_conserved_while_the_modes_ring():
@@ -118,6 +130,9 @@ def test_momentum_is_conserved_while_the_modes_ring():
     run = free_box(np.zeros(3))
     run.data.qpos[7:] = 0.05
     samples = run.step(200, run.position)
-    assert np.max(np.abs(samples[:, :3])) < 1e-12
+    validated(
+        "Integration in MuJoCo", "motion of the centre of gravity while free modes ring", samples[:, :3], 0.0,
+        abs=1e-12, unit="m", source="conservation: momentum",
+    )  # fmt: skip
     assert np.ptp(samples[:, 7]) > 0.05
     assert mujoco.get_mjcb_control() is None

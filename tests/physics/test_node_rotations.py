@@ -9,6 +9,7 @@ import scipy
 
 from tests.engines.simulation.row_model import QUARTER_TURN, Stepper, add_bushing, add_mode, element_law, empty_spec
 from tests.model.flexbody.box_body import MASSES, PAIRS, POSITIONS, SECTION, box_fields
+from tests.validation import validated
 from vehicle.commands import body as body_command
 from vehicle.engines.linear.matrices import car_matrices
 from vehicle.engines.simulation.static_trim import StaticTrim
@@ -105,7 +106,11 @@ def test_frequencies_are_those_of_the_whole_frame(carrier, turned):
         own[np.arange(6, 24), np.arange(6, 24)] = 1.0
         found[known] = np.sqrt(scipy.linalg.eigh(system.stiffness, own, eigvals_only=True)) / (2.0 * np.pi)
     # Central differences of the forces leave 1e-8.
-    np.testing.assert_allclose(found[True], exact, rtol=1e-6)
+    place = f"{'body carries' if carrier else 'body moves'}, {'turned' if turned else 'upright'}"
+    validated(
+        "Body models", f"frequencies of a frame with a rotational spring at a node, {place}", found[True], exact,
+        rel=1e-6, unit="Hz", source="second derivation: K and M of all six degrees of freedom of each corner",
+    )  # fmt: skip
     assert np.max(np.abs(found[False] / exact - 1.0)) > 0.01
 
 
@@ -127,7 +132,10 @@ def test_static_answer_to_a_torque_is_that_of_the_whole_frame():
     moved = np.linalg.solve(system.stiffness, force)
     rigid = moved[:3] + np.cross(moved[3:6], BOX.positions - BOX.cog)
     found = rigid + np.einsum("mni,m->ni", BOX.shapes, moved[6:])
-    np.testing.assert_allclose(found, exact, atol=1e-6 * np.abs(exact).max())
+    validated(
+        "Body models", "static displacement of a frame under a torque at a node", found, exact, peak=1e-6, unit="m",
+        source="second derivation: K of all six degrees of freedom of each corner",
+    )  # fmt: skip
 
 
 def test_the_run_vibrates_as_the_whole_frame():
@@ -145,7 +153,10 @@ def test_the_run_vibrates_as_the_whole_frame():
         swing = np.cos(np.sqrt(squares[number]) * times)
         assert swing.min() < -0.9
         # (w h)^2/8 from the start, and what the box turns by.
-        assert np.max(np.abs(found - swing)) < 2e-3
+        validated(
+            "Integration in MuJoCo", f"free vibration of a frame in its natural mode {number}", found, swing, abs=2e-3,
+            source="closed form: cos w t, w from K and M of the whole frame",
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize("carrier", [True, False], ids=["body carries", "body moves"])
@@ -160,7 +171,11 @@ def test_a_static_torque_turns_with_the_node_that_carries_it(carrier):
     # T = C p on the ground, -T on the node; d(theta x p)/dq = -[p]x Psi. The ground does not turn.
     turning = np.cross(psi, load, axisa=0, axisc=0) if carrier else np.zeros((3, 18))
     change = (with_load - without)[6:, 6:]
-    np.testing.assert_allclose(change, psi.T @ turning, atol=1e-7 * np.abs(without).max())
+    validated(
+        "Linear system",
+        f"stiffness of a static torque that turns with its node, {'body carries' if carrier else 'body moves'}", change,
+        psi.T @ turning, abs=1e-7 * np.abs(without).max(), source="closed form: d(theta x p) / dq",
+    )  # fmt: skip
     assert not carrier or np.abs(psi.T @ turning).max() > 1e-5 * np.abs(without).max()
 
 

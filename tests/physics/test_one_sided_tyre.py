@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.engines.simulation.row_model import Stepper, add_bushing, element_law, empty_spec
+from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
@@ -72,8 +73,11 @@ def test_a_wheel_falls_and_bounces():
         errors.append(np.max(np.abs(heights - reference)))
         # Where it touches the force is wrong for one step, by what the damper changes in it.
         assert np.min(force) > -1e-6 and 0.3 < np.mean(force < 1e-6) < 0.9
-    assert 1.5 < np.polyfit(np.log(steps), np.log(errors), 1)[0] < 2.5, errors
-    assert errors[-1] < 5e-5 * HEIGHT
+    order, rk45 = np.polyfit(np.log(steps), np.log(errors), 1)[0], foreign("scipy", "RK45 with events of contact")
+    validated("Tyres", "order of convergence of a wheel that bounces", order, 2.0, within=(1.5, 2.5), source=rk45)
+    validated(
+        "Tyres", "height of a bouncing wheel, step 0.25 ms", errors[-1], 0.0, abs=5e-5 * HEIGHT, unit="m", source=rk45,
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")

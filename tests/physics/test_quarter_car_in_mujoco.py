@@ -11,6 +11,7 @@ import pytest
 
 from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
 from tests.engines.simulation.row_model import poles
+from tests.validation import foreign, validated
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.lumped.drive import Sampled
 from vehicle.engines.lumped.quarter_car import quarter_car
@@ -89,10 +90,19 @@ def orders(kind, quantity, places):
 @pytest.mark.parametrize("size", [0.001, 0.005])
 def test_body_wheel_and_damper_move_as_in_the_stiff_solution_of_the_same_law(size):
     # Asked for: RMS within 1 %, slip within 0.5 points, at the default step, where the damper slips part of the time.
-    assert {place for place, gap in ratios(size, "rows").items() if abs(gap) < 0.01} == {"body", "wheel", "damper"}
+    stiff = foreign("scipy", "Radau on the lumped quarter car")
+    for place in ("body", "wheel", "damper"):
+        validated(
+            "Integration in MuJoCo",
+            f"quarter car, RMS acceleration of the {place} over that of a stiff solver, road of {1e3 * size:g} mm",
+            1.0 + ratios(size, "rows")[place], 1.0, abs=0.01, source=stiff,
+        )  # fmt: skip
     found, exact = slip_shares(size, "rows")
     assert 0.1 < exact < 0.7
-    assert abs(found - exact) < 0.005
+    validated(
+        "Integration in MuJoCo", f"quarter car, share of time in which the damper slips, road of {1e3 * size:g} mm",
+        found, exact, abs=0.005, source=stiff,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("size", [0.001, 0.005])
@@ -113,7 +123,11 @@ def test_the_linear_models_converge_with_second_order():
     # The damper's mass on its mount has 133 Hz: (w h)^2/12 is 1.5 % at 0.5 ms for its share of the acceleration.
     for quantity, limit in (("displacement", 5e-5), ("acceleration", 0.015)):
         errors, slope = orders("loose", quantity, places)
-        assert slope == pytest.approx(dict.fromkeys(places, 2.0), abs=0.15)
+        for place in places:
+            validated(
+                "Integration in MuJoCo", f"linear quarter car, order of convergence of the {quantity} of the {place}",
+                slope[place], 2.0, abs=0.15, source=foreign("scipy", "Radau"),
+            )  # fmt: skip
         assert max(gap[-1] for gap in errors.values()) < limit
     # The massless damper is a Maxwell branch, exact for a rate on a straight line: its share of the error is of higher
     # order, and that of the undamped springs of the fourth. The sampled acceleration is that of the step: order 2.
@@ -128,7 +142,12 @@ def test_the_linear_models_converge_with_second_order():
 def test_the_friction_model_converges_with_second_order():
     errors, slope = orders("rows", "displacement", ("body", "wheel", "damper"))
     # The instants of sticking fall inside the steps and scatter the single halvings: a first-order scheme has 1.0.
-    assert all(1.7 < value < 2.4 for value in slope.values()), slope
+    for place, value in slope.items():
+        validated(
+            "Integration in MuJoCo",
+            f"quarter car with friction, order of convergence of the displacement of the {place}", value, 2.0,
+            within=(1.7, 2.4), source=foreign("scipy", "Radau"),
+        )  # fmt: skip
     assert max(gap[-1] for gap in errors.values()) < 2e-4
     errors, slope = orders("rows", "acceleration", ("body", "wheel", "damper"))
     assert 1.7 < slope["body"] < 2.4
@@ -148,9 +167,15 @@ def test_stuck_the_frequencies_converge_with_fourth_order():
         found = [np.abs(poles(motion @ (masses * shape.real), step)[0]) / (2.0 * np.pi) for shape in modes.shape]
         errors.append(np.array(found) / modes.frequency - 1.0)
     slope = np.polyfit(np.log([4e-3, 2e-3, 1e-3]), np.log(np.abs(errors)), 1)[0]
-    assert slope == pytest.approx([4.0, 4.0], abs=0.1)
+    validated(
+        "Integration in MuJoCo", "stuck quarter car, order of convergence of both frequencies", slope,
+        np.array([4.0, 4.0]), abs=0.1, source="closed form: (w h)^4 / 480",
+    )  # fmt: skip
     # (w h)^4/480, which is 1.3e-6 for 25.13 Hz at 1 ms; its next term is (w h)^2 of it.
-    assert errors[-1] == pytest.approx((2.0 * np.pi * modes.frequency * 1e-3) ** 4 / 480.0, rel=0.05)
+    validated(
+        "Integration in MuJoCo", "stuck quarter car, relative error of both frequencies, step 1 ms", errors[-1],
+        (2.0 * np.pi * modes.frequency * 1e-3) ** 4 / 480.0, rel=0.05, source="closed form: (w h)^4 / 480",
+    )  # fmt: skip
 
 
 def free_vibration(damper, step):
@@ -176,7 +201,10 @@ def test_it_is_made_of_the_elements_of_the_complete_car():
     assert names == ["bushing/tyre_fr", "main_spring_fr", "bushing/suspension_mount_fr", "damper_fr"]
     assert [model.joint(index).name for index in range(model.njnt)] == ["body", "wheel", "damper_fr"]
     assert model.jnt_type.tolist() == [mujoco.mjtJoint.mjJNT_SLIDE] * 3
-    assert float(mujoco.mj_getTotalmass(model)) == pytest.approx(226.0)  # 180 + 45 + 1 kg of tables 2.1 and 2.2
+    validated(
+        "Published cars", "mass of the quarter car in MuJoCo", float(mujoco.mj_getTotalmass(model)), 226.0, rel=1e-6,
+        unit="kg", source="publication: Bommer 2006, tables 2.1 and 2.2: 180 + 45 + 1 kg",
+    )  # fmt: skip
 
 
 def test_refusals():

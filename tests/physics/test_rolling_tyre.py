@@ -25,10 +25,11 @@ from tests.physics.rolling_car import (
     rolling_car,
     single_track,
 )
+from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.iso_road import IsoRoad, drive
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -71,7 +72,11 @@ def test_rolling_corners_have_the_poles_of_the_paper(tmp_path: Path, speed: floa
     wanted = np.linalg.eigvals(pitch_plane(speed, hold_of(car)))
     # Places of wheels that turn are no states of the car: they are zero poles on paper.
     assert np.count_nonzero(np.abs(wanted) < 1e-6) == len(AXLES)
-    assert farthest(wanted[np.abs(wanted) > 1e-6], poles_of(car)) < 1e-6
+    validated(
+        "Tyres", f"largest relative distance of the poles of a car on rolling tyres at {speed:g} m/s",
+        farthest(wanted[np.abs(wanted) > 1e-6], poles_of(car)), 0.0, abs=1e-6,
+        source="second derivation: equations of the pitch plane with slip, on paper",
+    )  # fmt: skip
 
 
 def test_side_force_relaxes_over_its_length(tmp_path: Path) -> None:
@@ -93,12 +98,18 @@ def test_side_force_relaxes_over_its_length(tmp_path: Path) -> None:
             mujoco.mj_forward(model, data)
     time, cornering = 1e-2, CORNERING["front"]
     relaxed = 1.0 - np.exp(-20.0 * time * TYRE["carcass_lateral"] / cornering)
-    assert rows.state.branch_past[tyre, 1] == pytest.approx(cornering * psi * relaxed, rel=1e-4)
+    validated(
+        "Tyres", "side force 10 ms after a change of heading", rows.state.branch_past[tyre, 1],
+        cornering * psi * relaxed, rel=1e-4, unit="N", source="closed form: C psi (1 - exp(-V t k / C))",
+    )  # fmt: skip
     system = car.matrices.system
     assert system.branch_drifts is not None
     number = next(index for index, row in enumerate(system.branch_drifts) if np.any(row))
     force = system.branch_stiffness[number] * system.branch_time[number] * (system.branch_drifts[number] @ way)
-    assert force == pytest.approx(cornering * psi, rel=1e-9)
+    validated(
+        "Tyres", "steady side force of the linear system at a slip angle", force, cornering * psi, rel=1e-9, unit="N",
+        source="closed form: C psi",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("speed", "trail"), [(20.0, 0.0), (30.0, 0.0), (40.0, 0.03)])
@@ -126,7 +137,10 @@ def test_rigid_car_is_the_single_track_car(tmp_path: Path, speed: float, trail: 
     hold = np.array([WHOLE * omega**2, 2 * zeta * WHOLE * omega, about * omega**2, 2 * zeta * about * omega])
     axles = [(AXLES[axle], 2 * cornering[axle]) for axle in AXLES]
     wanted = np.linalg.eigvals(single_track(speed, WHOLE, turned, cog, hold, axles, trail)).astype(complex)
-    assert farthest(wanted, poles_of(car)) < 1e-4
+    validated(
+        "Tyres", f"largest relative distance of the poles of a rigid car at {speed:g} m/s, trail {1e3 * trail:g} mm",
+        farthest(wanted, poles_of(car)), 0.0, abs=1e-4, source="second derivation: single-track car in y, psi, v, r",
+    )  # fmt: skip
 
 
 def test_gyroscopic_moment_of_a_wheel(tmp_path: Path) -> None:
@@ -135,8 +149,11 @@ def test_gyroscopic_moment_of_a_wheel(tmp_path: Path) -> None:
     dof = int(car.model.model.joint("knuckle_fr").dofadr[0])
     moment = (SPINS["tyre"] + SPINS["brake_disc"]) * speed / RADIUS
     damping = car.matrices.system.damping - rolling_car(tmp_path, 1e-9).matrices.system.damping
-    assert damping[dof + 3, dof + 5] == pytest.approx(moment, rel=1e-6)
-    assert damping[dof + 5, dof + 3] == pytest.approx(-moment, rel=1e-6)
+    validated(
+        "Tyres", "gyroscopic moment of a wheel by yaw and by roll velocity",
+        np.array([damping[dof + 3, dof + 5], damping[dof + 5, dof + 3]]), np.array([moment, -moment]), rel=1e-6,
+        unit="N m s/rad", source="closed form: spin inertia times V / R",
+    )  # fmt: skip
 
 
 def test_locked_wheel_at_no_speed_is_the_standing_tyre() -> None:
@@ -158,7 +175,11 @@ def test_locked_wheel_at_no_speed_is_the_standing_tyre() -> None:
     found = np.linalg.eigvals(first_order(locked).state)
     wanted = np.linalg.eigvals(first_order(still.matrices.system).state)
     assert np.count_nonzero(np.abs(found) > 1e-3) == np.count_nonzero(np.abs(wanted) > 1e-3)
-    assert farthest(wanted[np.abs(wanted) > 1e-3], found.astype(complex)) < 1e-6
+    validated(
+        "Tyres", "largest relative distance of the poles of a sedan on locked wheels at no speed",
+        farthest(wanted[np.abs(wanted) > 1e-3], found.astype(complex)), 0.0, abs=1e-6,
+        source="second derivation: standing tyres as springs of the carcass",
+    )  # fmt: skip
 
 
 def ramp(car: Car, speed: float) -> Signal:
@@ -174,11 +195,14 @@ def ramp(car: Car, speed: float) -> Signal:
 def test_energy_of_free_rolling_over_a_ramp(tmp_path: Path) -> None:
     speed = 15.0
     car = rolling_car(tmp_path, speed, gravity=9.81, tyre={"trail": 0.03}, overrides=["solver.timestep=0.0005"])
-    run = simulate(car.model, ramp(car, speed), native=False)
+    run = simulate(car.model, ramp(car, speed))
     energies = run.statistics.energies
     assert energies is not None
     residual = energies.work_in - energies.dissipated - energies.stored
-    assert abs(residual) < 1e-4 * energies.dissipated
+    validated(
+        "Tyres", "energy that is missing after rolling over a ramp, of the dissipated one",
+        residual / energies.dissipated, 0.0, abs=1e-4, source="conservation: work in = dissipated + stored",
+    )  # fmt: skip
     # Up the ramp the wheels are pushed back, +x, by the load on the slope.
     assert np.max(run.channels["knuckle_fr_acc_x"]) > 1.0
     rolled = run.poses[:, car.model.model.joint("spin_fr").qposadr[0]]
@@ -196,7 +220,7 @@ def test_engines_agree_on_a_road() -> None:
     }
     road = IsoRoad(level=1e-8, seed=1, track=1.5, patch=0.1)
     signal = drive(road, speed=speed, wheels=wheels, duration=0.5)  # type: ignore[arg-type]
-    whole, few = simulate(car.model, signal, native=False), car.run(signal, engine="reduced").recording
+    whole, few = simulate(car.model, signal), car.run(signal, engine="reduced").recording
     for name in car.vehicle.acceleration_channels:
         if name.startswith(("knuckle", "seat", "engine")):
             assert np.std(few[name] - whole.channels[name]) < 0.01 * np.std(whole.channels[name]), name

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.physics.controlled_half_car import half_car_spec
+from tests.validation import validated
 from vehicle.engines.linear.matrices import car_matrices
 from vehicle.engines.lumped.bump_response import bump_passage
 from vehicle.engines.lumped.semi_active import simulate_bump
@@ -105,10 +106,17 @@ def test_both_engines_are_the_lumped_half_car(law):
     expected, (stepped, coefficient), run = lumped(car), in_mujoco(car), reduced(car)
     # Point by point. MuJoCo at 1 ms knows the instant of a switch from velocities half a step old: it may be one late.
     for name, values in expected.items():
-        assert gap(stepped[name], values) < (1e-2 if "on_off" in law else 4e-3), name
+        validated(
+            "Semi-active dampers", f"half car under {law} in MuJoCo, RMS error of the velocity of {name}",
+            gap(stepped[name], values), 0.0, abs=1e-2 if "on_off" in law else 4e-3,
+            source="second derivation: lumped half car",
+        )  # fmt: skip
     for number, wheel in enumerate(("fr", "rr")):
         velocity, setting = -run[f"damper_{wheel}_velocity"], run[f"damper_{wheel}_coefficient"]
-        assert gap(velocity, expected[f"damper_{wheel}"]) < 4e-3
+        validated(
+            "Semi-active dampers", f"half car under {law}, reduced engine, RMS error of the velocity of damper {wheel}",
+            gap(velocity, expected[f"damper_{wheel}"]), 0.0, abs=4e-3, source="second derivation: lumped half car",
+        )  # fmt: skip
         # Passive at every sample: the force is a coefficient of the damper times its velocity.
         force = -run[f"damper_{wheel}_force"]
         np.testing.assert_allclose(force, setting * velocity, atol=1e-9 * np.max(np.abs(force)))

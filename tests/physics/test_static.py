@@ -8,8 +8,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from vehicle.engines.simulation.law_numbers import law_names
-from vehicle.engines.simulation.layout import read_layout
+from tests.validation import validated
+from vehicle.engines.simulation.law_arrays import law_names
+from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -20,7 +21,10 @@ def at_rest(seconds):
 
 
 def test_the_residual_is_below_a_micrometre(car):
-    assert car.model.static.residual < 1e-6
+    validated(
+        "Static equilibrium", "rest of the car: displacement that is left after the trim", car.model.static.residual,
+        0.0, abs=1e-6, unit="m", source="conservation: equilibrium of all forces",
+    )  # fmt: skip
 
 
 def test_the_loads_carry_the_weight(car):
@@ -28,7 +32,10 @@ def test_the_loads_carry_the_weight(car):
     loads = np.array([*static.tyre_load.values(), *static.support_load.values()])
     # The modal coordinates have 9e-9 kg of MuJoCo's own.
     weight = car.vehicle.gravity * model.body_mass.sum()
-    assert loads.sum() == pytest.approx(weight, rel=1e-9)
+    validated(
+        "Static equilibrium", "sum of all wheel and support loads is the weight", loads.sum(), weight, rel=1e-9,
+        unit="N", source="conservation: m g from the masses of all bodies",
+    )  # fmt: skip
     assert np.all(loads > 1000.0)
 
 
@@ -53,8 +60,15 @@ def test_ground_forces_and_weight_are_in_equilibrium(car):
         force += weight
         moment += np.cross(data.xipos[body], weight)
     total = car.vehicle.gravity * model.body_mass.sum()
-    assert np.max(np.abs(force)) < 1e-9 * total
-    assert np.max(np.abs(moment)) < 1e-8 * total
+    law = "conservation: forces of tyres and supports at their points, weight of every body at its place"
+    validated(
+        "Static equilibrium", "forces on the parked car are in equilibrium", force, np.zeros(3), abs=1e-9 * total,
+        unit="N", source=law,
+    )  # fmt: skip
+    validated(
+        "Static equilibrium", "moments on the parked car are in equilibrium", moment, np.zeros(3), abs=1e-8 * total,
+        unit="N m", source=law,
+    )  # fmt: skip
 
 
 def test_the_ground_pulls_nowhere_sideways(car):
@@ -69,13 +83,19 @@ def test_the_ground_pulls_nowhere_sideways(car):
     place = np.sum(model.body_mass * data.xipos[:, 0]) / model.body_mass.sum()
     axle = weight * (rear - place) / (rear - front)
     # One per cent for the torques of the 100 N m/rad bushings.
-    assert sum(static.tyre_load.values()) == pytest.approx(axle, rel=0.01)
+    validated(
+        "Static equilibrium", "load of the front axle", sum(static.tyre_load.values()), axle, rel=0.01, unit="N",
+        source="closed form: lever of the weight between front tyres and rear supports",
+    )  # fmt: skip
 
 
 def test_left_and_right_carry_nearly_the_same(car):
     # Only engine mounts and torque arm stand off the middle plane, and they are inner forces: the masses are mirrored.
     static = car.model.static
-    assert static.tyre_load["fr"] == pytest.approx(static.tyre_load["fl"], rel=1e-3)
+    validated(
+        "Static equilibrium", "right front wheel carries as much as the left one", static.tyre_load["fr"],
+        static.tyre_load["fl"], rel=1e-3, unit="N", source="conservation: masses mirrored at the middle plane",
+    )  # fmt: skip
     assert static.support_load["rear_support_right"] == pytest.approx(
         static.support_load["rear_support_left"], rel=1e-3
     )
@@ -87,7 +107,10 @@ def test_left_and_right_carry_nearly_the_same(car):
 def test_without_input_nothing_moves(settings):
     run = Car.load(None, settings).run(at_rest(1.0))
     largest = max(np.max(np.abs(run[channel])) for channel in run.car.vehicle.acceleration_channels)
-    assert largest < 1e-6
+    validated(
+        "Static equilibrium", f"without input nothing accelerates, {settings or 'nominal car'}", largest, 0.0, abs=1e-6,
+        unit="m/s2", source="conservation: a car at rest stays at rest",
+    )  # fmt: skip
     assert max(np.max(np.abs(run[f"damper_{wheel}_velocity"])) for wheel in ("fr", "fl")) < 1e-9
     static = run.car.model.static
     np.testing.assert_allclose(run["tyre_fr_force_z"], static.tyre_load["fr"], rtol=1e-6)

@@ -10,6 +10,7 @@ import pytest
 from scipy import stats
 
 from scenarios.interval_probability import interval_probability
+from tests.validation import validated
 
 TICKS = np.arange(-6.0, 7.0, 2.0)
 """Labels of an axis, in standard deviations from the true mean."""
@@ -37,7 +38,11 @@ def mean_error(distribution, size, samples=1500):
 )
 def test_mean_error_over_an_axis(distribution, size, limit):
     # 1500 samples know a mean probability to 0.2 / sqrt(1500) = 0.005.
-    assert mean_error(distribution, size) < limit
+    validated(
+        "Statistics and intervals",
+        f"mean error of the probability of an interval, {distribution.dist.name}, {size} values",
+        mean_error(distribution, size), 0.0, abs=limit, source="second derivation: Monte Carlo, 1500 samples",
+    )  # fmt: skip
 
 
 def test_rank_of_a_further_normal_value_is_uniform():
@@ -51,7 +56,11 @@ def test_two_ends_of_a_known_sample():
     # t with 7 degrees of freedom: 2.365 is its 97.5 % quantile.
     values = np.array([-1.0, 1.0] * 4)
     half = stats.t.ppf(0.975, 7) * np.std(values, ddof=1) * math.sqrt(9.0 / 8.0)
-    assert interval_probability(values, (-half, half)) == pytest.approx(0.95)
+    validated(
+        "Statistics and intervals", "probability between the 2.5 % and 97.5 % quantiles of a further value",
+        interval_probability(values, (-half, half)), 0.95, rel=1e-6,
+        source="closed form: t with 7 degrees of freedom, s sqrt(1 + 1 / n)",
+    )  # fmt: skip
     assert interval_probability(values, (half, math.inf)) == pytest.approx(0.025)
     assert interval_probability(values, (-math.inf, math.inf)) == 1.0
 
@@ -72,7 +81,11 @@ def test_equal_values_are_compared_and_an_error_of_another_cause_spreads_them():
     assert interval_probability([0.1] * 9, (0.1, 0.2)) == 1.0
     assert interval_probability([0.1] * 9, (0.11, 0.2)) == 0.0
     assert interval_probability([0.1], (0.0, 0.2)) == 1.0
-    assert interval_probability([0.1], (0.11, math.inf), error=0.01) == pytest.approx(stats.norm.sf(1.0))
+    validated(
+        "Statistics and intervals", "probability beyond one standard error of the model",
+        interval_probability([0.1], (0.11, math.inf), error=0.01), stats.norm.sf(1.0), rel=1e-6,
+        source="closed form: normal distribution",
+    )  # fmt: skip
     assert 0.1 < interval_probability([0.1] * 9, (0.11, 0.2), error=0.01) < 0.25
 
 

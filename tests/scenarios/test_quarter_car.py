@@ -14,6 +14,7 @@ from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import HIGH, LEVELS, STEP, UPPER_EDGE_HZ, Runs, peak
 from scenarios.quarter_car.sine_claims import stuck_bound
+from tests.validation import validated
 from vehicle.model.parameters.quarter_car import load_quarter_car
 from vehicle.runs.output.written_files import MARKER
 
@@ -113,8 +114,16 @@ def test_the_table_holds_every_published_row(tmp_path):
     assert exact["slip mode 1 [Hz]"] == pytest.approx(1.99, abs=0.005)
     assert exact["stick mode 2 [Hz]"] == pytest.approx(25.13, abs=0.005)
     assert exact["engine alone, damping [%]"] == pytest.approx(15.0, abs=0.05)
-    assert exact["elastomer, loss angle at 9 Hz [deg]"] == pytest.approx(9.93, abs=0.005)
-    assert exact["elastomer, K2 / (2 pi De) [Hz]"] == pytest.approx(8.93, abs=0.005)
+    validated(
+        "Bushings, springs and stops", "loss angle of the elastomer mount of Bommer 2006 at 9 Hz",
+        exact["elastomer, loss angle at 9 Hz [deg]"], 9.93, abs=0.005, unit="deg",
+        source="closed form: printed parameters of section 2.3.3.1, by hand",
+    )  # fmt: skip
+    validated(
+        "Bushings, springs and stops", "corner frequency of the elastomer mount of Bommer 2006",
+        exact["elastomer, K2 / (2 pi De) [Hz]"], 8.93, abs=0.005, unit="Hz",
+        source="closed form: printed parameters of section 2.3.3.1, by hand",
+    )  # fmt: skip
     bound = next(row for row in results["rows"] if "bound of the body" in row["name"])
     assert bound["within"] is True
     assert "8.30 times the 0.0524 m/s2" in next(
@@ -125,7 +134,10 @@ def test_the_table_holds_every_published_row(tmp_path):
 def test_a_stuck_strut_passes_what_the_friction_holds():
     # At |u| = Fd / Kd spring and mount pull the body: (Km + Kd) Fd / Kd / Mb.
     car = load_quarter_car()
-    assert stuck_bound(car) == pytest.approx((30e3 + 700e3) * 75.0 / 700e3 / 180.0)
+    validated(
+        "Quarter and half cars", "largest body acceleration over a stuck strut", stuck_bound(car),
+        (30e3 + 700e3) * 75.0 / 700e3 / 180.0, rel=1e-6, unit="m/s2", source="closed form: (Km + Kd) Fd / (Kd Mb)",
+    )  # fmt: skip
     assert stuck_bound(car) == pytest.approx(0.4345, abs=5e-5)
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.engines.simulation.python_form import PythonRows
 from tests.system.conftest import csv_text
 from vehicle.signals.excitation.random_road import random_road
 
@@ -139,7 +140,7 @@ def test_item_36_a_lost_state_gives_no_numbers(shaker, short_signal, tmp_path, m
             data.qfrc_applied[0] = np.nan
 
     monkeypatch.setattr(Rows, "__call__", break_down)
-    monkeypatch.setattr("vehicle.engines.simulation.run.compiled_rows", lambda rows: "the test breaks the Python form")
+    monkeypatch.setattr("vehicle.engines.simulation.stepping.compiled_rows", PythonRows)
     outcome = shaker("--input", "short.csv")
     assert outcome.code == 4
     assert "no longer finite at t = 1.50" in outcome.err and "joint" in outcome.err

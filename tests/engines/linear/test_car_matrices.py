@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.linear.first_order import free_basis
 from vehicle.engines.linear.matrices import car_matrices
 from vehicle.engines.simulation.callbacks import installed
@@ -64,7 +65,10 @@ def test_without_gravity_the_stiffness_is_that_of_the_elements():
     found = in_free_motions(weightless, weightless.matrices.system.stiffness)
     elements = in_free_motions(weightless, element_stiffness(weightless))
     # Two derivations: central differences of the forces, and J' K J. Differences of 1e-6 leave 1e-8.
-    assert np.max(np.abs(found - elements)) < 1e-6 * np.abs(elements).max()
+    validated(
+        "Linear system", "stiffness of the weightless car, mass-normalised", found, elements, peak=1e-6, unit="1/s2",
+        source="second derivation: J' K J of all elements",
+    )  # fmt: skip
 
 
 def test_matrices_are_symmetric_and_positive(car):
@@ -76,7 +80,10 @@ def test_matrices_are_symmetric_and_positive(car):
     free = in_free_motions(car, matrices.system.stiffness)
     assert np.linalg.eigvalsh((free + free.T) / 2.0)[0] > 0.0
     # Preloads are in equilibrium, so the tangent is that of a potential: symmetric among the free motions.
-    assert np.max(np.abs(free - free.T)) < 1e-4 * np.abs(free).max()
+    validated(
+        "Linear system", "stiffness of the free motions is symmetric", free, free.T, peak=1e-4, unit="1/s2",
+        source="conservation: gravity and elements have a potential",
+    )  # fmt: skip
 
 
 def test_ideal_joints_are_eliminated(car):
@@ -87,7 +94,10 @@ def test_ideal_joints_are_eliminated(car):
     assert free_basis(matrices.system, stuck=False).shape == (63, 57)
     stuck = free_basis(matrices.system, stuck=True)
     assert stuck.shape == (63, 55)
-    np.testing.assert_allclose(matrices.system.constraints @ stuck, 0.0, atol=1e-12)
+    validated(
+        "Linear system", "free motions of the car violate no ideal joint", matrices.system.constraints @ stuck, 0.0,
+        abs=1e-12, source="closed form: A B = 0 for a basis B of the null space of A",
+    )  # fmt: skip
     np.testing.assert_allclose(stuck[matrices.dampers], 0.0, atol=1e-12)
     rigid = Car.load(None, ["body.attachment_flexibility=false"])
     # Three more balls a side become ideal.
@@ -106,7 +116,10 @@ def test_energies_of_every_mode_sum_to_one(car):
     matrices = car.matrices
     total = sum(rows.T @ matrices.body_masses[name] @ rows for name, rows in matrices.body_rows.items())
     total[matrices.modal, matrices.modal] += np.eye(9)
-    np.testing.assert_allclose(total, matrices.system.mass, atol=1e-8 * np.abs(matrices.system.mass).max())
+    validated(
+        "Linear system", "mass matrix of the car", matrices.system.mass, total, peak=1e-8,
+        source="second derivation: kinetic energy of every part and mode",
+    )  # fmt: skip
 
 
 def test_published_modes_with_stuck_dampers(car):
@@ -114,14 +127,20 @@ def test_published_modes_with_stuck_dampers(car):
     rigid = [mode for mode in modes if mode.frequency < 9.0]
     assert len(rigid) == 6
     (roll,) = [mode for mode in modes if mode.description.startswith("body roll")]
-    assert roll.frequency == pytest.approx(6.5, abs=0.3)
+    validated(
+        "Published cars", "frequency of body roll, dampers stuck", roll.frequency, 6.5, abs=0.3, unit="Hz",
+        source="publication: Bommer 2006, section 3.2.1.1",
+    )  # fmt: skip
     engine = [mode.frequency for mode in modes if mode.description.startswith("engine")]
     assert len(engine) == 6 and min(engine) >= 9.0 and max(engine) <= 20.0
     # Five modes of the body share the wheels' vertical motion; the longitudinal wheel modes are damped by half.
     light = [mode for mode in modes if 20.0 < mode.frequency < 40.0 and mode.damping_ratio < 0.2]
     wheel = max(light, key=lambda mode: mode.energy["wheel_fr"])
     assert wheel.energy["wheel_fr"] > 0.25
-    assert wheel.frequency == pytest.approx(28.0, abs=1.0)
+    validated(
+        "Published cars", "frequency of the vertical wheel mode, dampers stuck, fitted", wheel.frequency, 28.0, abs=1.0,
+        unit="Hz", source="publication: Bommer 2006, section 3.2.1",
+    )  # fmt: skip
 
 
 def test_more_inertia_rolls_slower():
@@ -173,4 +192,7 @@ def test_static_deflection_of_plate_and_car(car):
     rear, front = 3.465, 0.85
     lever = (rear - np.array([2.05, 0.45])) / (rear - front)
     # A rigid tilt, but for the soft horizontal supports.
-    np.testing.assert_allclose(together[:2], lever, rtol=0.03)
+    validated(
+        "Linear system", "response at 0.01 Hz of seat rail and body front to both plates", together[:2], lever,
+        rel=0.03, unit="m/m", source="closed form: rigid tilt about the rear supports",
+    )  # fmt: skip

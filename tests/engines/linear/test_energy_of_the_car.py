@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.engines.linear.energy_car import EnergyCar
+from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 
 HIGHEST = 100.0
@@ -33,7 +34,14 @@ def test_modes_with_gravity_are_those_of_the_energies(car, second, stuck):
     assert below.sum() > 25
     found, expected = found[: below.sum()], expected[below]
     # Without the modal displacement in the lines of the springs and in the levers: 363 ppm and 0.26 %.
-    frequency = np.abs(found) / np.abs(expected) - 1.0
-    assert np.max(np.abs(frequency)) < 5e-6
+    energies = "second derivation: Lagrange equations from energies, no row shared"
+    state = "stuck" if stuck else "sliding"
+    validated(
+        "Linear system", f"natural frequencies of the car below 100 Hz, dampers {state}", np.abs(found) / (2.0 * np.pi),
+        np.abs(expected) / (2.0 * np.pi), rel=5e-6, unit="Hz", source=energies,
+    )  # fmt: skip
     ratio = (found.real / np.abs(found)) / (expected.real / np.abs(expected)) - 1.0
-    assert np.max(np.abs(ratio)) < 5e-5
+    validated(
+        "Linear system", f"damping ratios of the car below 100 Hz over those of the energies, dampers {state}",
+        1.0 + ratio, 1.0, abs=5e-5, source=energies,
+    )  # fmt: skip

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.linear.modal_scale import modal_a
 
 
@@ -20,7 +21,10 @@ def test_modal_a_is_the_slope_of_the_dynamic_stiffness(car):
         pole = complex(mode.growth, np.sqrt(size**2 - mode.growth**2))
         step = 1e-5 * size
         up, down = (mode.shape @ stiffness(system, pole + side * step) @ mode.shape for side in (1.0, -1.0))
-        assert modal_a(system, pole, mode.shape) == pytest.approx((up - down) / (2.0 * step), rel=1e-6)
+        validated(
+            "Linear system", f"modal A of the mode at {mode.frequency:.2f} Hz", modal_a(system, pole, mode.shape),
+            (up - down) / (2.0 * step), rel=1e-6, source="second derivation: slope of the dynamic stiffness",
+        )  # fmt: skip
         assert mode.modal_a == pytest.approx(modal_a(system, pole, mode.shape), rel=1e-9)
         # A mode is a motion that the dynamic stiffness balances: it is the pole of D that was taken.
         balance = abs(mode.shape @ stiffness(system, pole) @ mode.shape)

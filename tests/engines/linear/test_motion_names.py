@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.drawing.rendering.mode_film import ModeMotion
 from vehicle.engines.linear.motion_names import NAMED, description, motion_shares
 from vehicle.engines.linear.part_motions import group_of, rigid_rows
@@ -103,7 +104,10 @@ def test_rigid_rows_of_a_unit_against_its_bodies():
     motion = np.linalg.solve(normal, sum(six[body].T @ masses[body] @ velocity[body] for body in bodies))
     rigid = sum(v @ masses[body] @ v for body in bodies for v in [six[body] @ motion])
     total = sum(velocity[body] @ masses[body] @ velocity[body] for body in bodies)
-    assert np.sum(coordinates**2) == pytest.approx(rigid, rel=1e-12)
+    validated(
+        "Linear system", "kinetic energy of the rigid share of a motion of three parts", np.sum(coordinates**2), rigid,
+        rel=1e-12, source="second derivation: least squares in M",
+    )  # fmt: skip
     assert rigid < 0.9 * total
     # Exactly rigid: nothing is left, and the rotation alone has no translation of the centre.
     centre = sum(masses[body][0, 0] * places[body] for body in bodies) / sum(masses[body][0, 0] for body in bodies)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.linear.participation import REST, participation
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
@@ -21,7 +22,10 @@ def of(car, place, *, stuck=True, wheel="fr"):
 def test_contributions_add_up_to_the_frf_by_poles(car, place, damper):
     found = of(car, place, stuck=damper == "stuck", wheel="fl")
     exact = car.matrix_frf([place], FREQUENCY, damper=damper, wheel="fl")[0]
-    assert np.abs(found.total / exact - 1.0).max() < 1e-9
+    validated(
+        "Linear system", f"sum of the contributions of all modes to {place}, dampers {damper}", found.total, exact,
+        rel=1e-9, source="second derivation: FRF by poles",
+    )  # fmt: skip
     assert found.shares.sum(axis=0) == pytest.approx(np.ones(6), abs=1e-12)
     assert len(found.names) == 6 + 9 and len(found.mode_frequency) == 9
     # No part alone makes the sum, or the shares would say nothing.

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.engines.linear.plain_matrices import plain_matrices
+from tests.validation import validated
 from vehicle.engines.linear import response
 from vehicle.engines.linear.first_order import first_order, free_basis
 from vehicle.engines.linear.modes import car_modes
@@ -47,8 +48,14 @@ def quarter_car(*, branch=(), tyre_damping=0.0, links=()):
 def test_stuck_is_one_mass_on_the_tyre():
     (mode,) = car_modes(quarter_car(tyre_damping=TYRE_DAMPING), stuck=True)
     omega = np.sqrt(TYRE / (SPRUNG + UNSPRUNG))
-    assert mode.frequency == pytest.approx(omega / (2.0 * np.pi), rel=1e-12)
-    assert mode.damping_ratio == pytest.approx(TYRE_DAMPING / (2.0 * omega * (SPRUNG + UNSPRUNG)), rel=1e-12)
+    validated(
+        "Linear system", "frequency of a stuck quarter car", mode.frequency, omega / (2.0 * np.pi), rel=1e-12,
+        unit="Hz", source="closed form: sqrt(k / m)",
+    )  # fmt: skip
+    validated(
+        "Linear system", "damping ratio of a stuck quarter car", mode.damping_ratio,
+        TYRE_DAMPING / (2.0 * omega * (SPRUNG + UNSPRUNG)), rel=1e-12, source="closed form: c / (2 sqrt(k m))",
+    )  # fmt: skip
     # Locked: shares of the kinetic energy are those of the masses.
     assert mode.energy["body"] == pytest.approx(SPRUNG / (SPRUNG + UNSPRUNG), rel=1e-12)
     assert mode.description == "body heave (z)"
@@ -64,8 +71,15 @@ def test_sliding_has_the_roots_of_the_characteristic_polynomial():
     exact = sorted((abs(root) / (2.0 * np.pi), -root.real / abs(root)) for root in roots if root.imag > 0.0)
     assert len(modes) == len(exact) == 2
     for mode, (frequency, ratio) in zip(modes, exact, strict=True):
-        assert mode.frequency == pytest.approx(frequency, rel=1e-10)
-        assert mode.damping_ratio == pytest.approx(ratio, rel=1e-9)
+        roots_of = "closed form: roots of the characteristic polynomial"
+        validated(
+            "Linear system", f"frequency of a sliding quarter car, {mode.description}", mode.frequency, frequency,
+            rel=1e-10, unit="Hz", source=roots_of,
+        )  # fmt: skip
+        validated(
+            "Linear system", f"damping ratio of a sliding quarter car, {mode.description}", mode.damping_ratio, ratio,
+            rel=1e-9, source=roots_of,
+        )  # fmt: skip
         assert sum(mode.energy.values()) == pytest.approx(1.0, rel=1e-12)
     assert modes[1].description == "right front wheel hop"
     assert (
@@ -90,7 +104,11 @@ def test_a_maxwell_branch_adds_a_real_pole_and_the_right_limits():
         )
     )
     exact = sorted(abs(root) / (2.0 * np.pi) for root in hand if root.imag > 0.0)
-    assert [mode.frequency for mode in slow] == pytest.approx(exact, rel=1e-6)
+    validated(
+        "Linear system", "frequencies of a quarter car with a slow Maxwell branch",
+        np.array([mode.frequency for mode in slow]), np.array(exact), rel=1e-6, unit="Hz",
+        source="closed form: the branch is a spring in parallel",
+    )  # fmt: skip
 
 
 def test_constraints_are_eliminated():
@@ -119,7 +137,10 @@ def test_frequency_response_by_hand(stuck):
         sprung = SPRUNG * s**2 + strut
         wheel = drive / (UNSPRUNG * s**2 + strut + drive - strut**2 / sprung)
         body = wheel * strut / sprung
-    np.testing.assert_allclose(found, [s**2 * body, s**2 * wheel], rtol=1e-10)
+    validated(
+        "Linear system", f"FRF of body and wheel of a {'stuck' if stuck else 'sliding'} quarter car", found,
+        np.array([s**2 * body, s**2 * wheel]), rel=1e-10, unit="(m/s2)/m", source="closed form: transfer function",
+    )  # fmt: skip
     # The left plate drives nothing here.
     assert not frequency_response(form, frequency, places, "acceleration", driven=[0.0, 1.0]).any()
 
@@ -155,4 +176,8 @@ def test_newtons_beside_metres_are_no_dependent_vectors(monkeypatch):
     for line, ours in zip(2j * np.pi * lines, found, strict=True):
         damper = line * (VISCOUS + stiffness * time / (1.0 + line * time))
         dynamic = line**2 * system.mass + np.diag([TYRE, SUSPENSION + damper])
-        assert ours == pytest.approx(np.linalg.solve(dynamic, [TYRE, 0.0]).sum(), rel=1e-9)
+        validated(
+            "Linear system", f"FRF with a stiff Maxwell branch at {line.imag / (2.0 * np.pi):g} Hz", ours,
+            np.linalg.solve(dynamic, [TYRE, 0.0]).sum(), rel=1e-9, unit="m/m",
+            source="closed form: dynamic stiffness at the line",
+        )  # fmt: skip

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from tests.validation import foreign, validated
 from vehicle.engines.linear.parts import ROAD, Network, masses_of, spring_damper
 from vehicle.engines.lumped.bump_response import BumpPassage, bump_passage, bump_response
 from vehicle.engines.lumped.half_car_rider import half_car_rider
@@ -46,8 +47,15 @@ def test_half_car_agrees_with_an_adaptive_integrator(speed):
     exact = bump_response(MODEL, passage, time_step=2e-3, duration=1.5)
     states = integrated(MODEL, passage, exact.time)
     # the integrator is asked for 1e-10 and errors add up over a few hundred steps
-    assert np.abs(exact.state[:, :7].T - states[:7]).max() < 1e-8 * np.abs(states[:7]).max()
-    assert np.abs(exact.state[:, 7:].T - states[7:]).max() < 1e-7 * np.abs(states[7:]).max()
+    dop853 = foreign("scipy", "DOP853, tolerance 1e-10")
+    validated(
+        "Quarter and half cars", f"displacements of the half car on a bump at {speed:g} km/h", exact.state[:, :7].T,
+        states[:7], peak=1e-8, unit="m", source=dop853,
+    )  # fmt: skip
+    validated(
+        "Quarter and half cars", f"velocities of the half car on a bump at {speed:g} km/h", exact.state[:, 7:].T,
+        states[7:], peak=1e-7, unit="m/s", source=dop853,
+    )  # fmt: skip
 
 
 def test_sampling_does_not_change_the_answer():
@@ -69,7 +77,11 @@ def test_undamped_oscillator_follows_its_closed_form():
     found = bump_response(model, BumpPassage(height=h0, omega=w, arrivals=(0.0,)), time_step=1e-3, duration=np.pi / w)
     t = found.time[found.time < np.pi / w]
     expected = h0 * w0**2 / (w0**2 - w**2) * (np.sin(w * t) - w / w0 * np.sin(w0 * t))
-    assert np.abs(found.displacement("x")[: t.size] - expected).max() < 1e-12  # h0 = 0.05: rounding only
+    # h0 = 0.05: rounding only
+    validated(
+        "Quarter and half cars", "undamped oscillator on a half-sine bump", found.displacement("x")[: t.size], expected,
+        abs=1e-12, unit="m", source="closed form: h0 w0^2 / (w0^2 - w^2) (sin w t - w / w0 sin w0 t)",
+    )  # fmt: skip
 
 
 def test_car_rests_until_the_bump_and_linearity_holds():
@@ -89,7 +101,10 @@ def test_acceleration_obeys_the_equation_of_motion():
     moved = {q: np.array([h.of(n, q) for n in MODEL.coordinates]) for q in ("displacement", "velocity", "acceleration")}
     left = MODEL.mass @ moved["acceleration"] + MODEL.damping @ moved["velocity"]
     left += MODEL.stiffness @ moved["displacement"]
-    assert np.abs(left - force).max() < 1e-9 * np.abs(force).max()
+    validated(
+        "Quarter and half cars", "M x'' + C x' + K x of the half car on a bump is the force of the road", left, force,
+        peak=1e-9, unit="N", source="conservation: equation of motion at every sample",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.lumped.bump_response import bump_passage
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.half_car_rider import BumpShape
@@ -20,7 +21,10 @@ def test_rear_wheel_follows_after_the_wheelbase(speed):
     # evaluated at shifted times: rounding of the times, steep for short bumps
     np.testing.assert_allclose(rear, front, atol=1e-11)
     assert front.max() == pytest.approx(0.05, rel=1e-3)  # 4001 samples need not hit the crest
-    assert passage.heights(0.1 + 0.25 / speed)[0] == pytest.approx(0.05, rel=1e-12)
+    validated(
+        "Roads and excitation", f"height of the half-sine bump at its crest at {3.6 * speed:.3g} km/h",
+        passage.heights(0.1 + 0.25 / speed)[0], 0.05, rel=1e-12, unit="m", source="closed form: h0 sin(pi x / length)",
+    )  # fmt: skip
 
 
 def test_height_is_zero_off_the_bump():

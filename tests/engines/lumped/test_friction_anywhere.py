@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.system import Slide
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
@@ -46,8 +47,11 @@ def test_without_a_limit_it_is_the_exact_linear_response():
     exact = bump_response(half_car_rider(CAR), PASSAGE, time_step=1e-3, duration=1.0)
     for place in ("upper_limb", "heave", "front_wheel", "rear_wheel"):
         # The solver steps over the jumps of the road rate: 1e-5 of the motion.
-        error = np.abs(found.displacement(place) - exact.displacement(place)).max()
-        assert error < 1e-4 * np.abs(exact.displacement(place)).max(), place
+        validated(
+            "Quarter and half cars", f"half car without friction limit, stiff solver, displacement of {place}",
+            found.displacement(place), exact.displacement(place), peak=1e-4, unit="m",
+            source="second derivation: exact response of the linear car",
+        )  # fmt: skip
 
 
 def test_beyond_every_force_both_ends_are_locked():
@@ -59,8 +63,11 @@ def test_beyond_every_force_both_ends_are_locked():
         assert np.abs(found.sliding_velocity(pair)).max() < 1e-5
         assert np.abs(found.displacement(f"{end}_travel")).max() < 1e-5
     for place in ("upper_limb", "front_wheel", "rear_wheel"):
-        size = np.abs(locked.displacement(place)).max()
-        assert found.displacement(place) == pytest.approx(locked.displacement(place), abs=2e-3 * size)
+        validated(
+            "Quarter and half cars", f"half car with locked suspensions, displacement of {place}",
+            found.displacement(place), locked.displacement(place), peak=2e-3, unit="m",
+            source="second derivation: linear car with the sliding motion eliminated",
+        )  # fmt: skip
 
 
 def test_each_end_has_its_own_friction():

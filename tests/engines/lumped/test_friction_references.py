@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.engines.lumped.stick_slip import ExactStickSlip
+from tests.validation import validated
 from vehicle.engines.lumped.drive import Sine
 from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
@@ -60,9 +61,12 @@ def test_den_hartog_without_stops(ratio, share):
     )
     # The atan law is below Fd by 2/(pi eps v) = 1e-5 at the speeds met (1 m/s); 40 periods leave a transient below
     # 1e-3, and 200 samples a period miss the peak by (2 pi/200)^2/8 = 1.2e-4.
-    assert steady_amplitude(time, history.displacement("mass"), period) == pytest.approx(
-        0.3 * den_hartog(ratio, share), rel=2e-3
-    )
+    validated(
+        "Dampers and friction",
+        f"lumped oscillator with Coulomb friction, amplitude, w / w0 = {ratio}, Ff / F0 = {share}",
+        steady_amplitude(time, history.displacement("mass"), period), 0.3 * den_hartog(ratio, share), rel=2e-3,
+        unit="m", source="closed form: Den Hartog, Trans. ASME 53, 1931",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("ratio", "share"), [(0.3, 0.7), (0.5, 0.8), (0.25, 0.5)])
@@ -86,7 +90,12 @@ def test_den_hartog_with_stops(ratio, share, kind):
         found = switch_solution(model, law, time, force=drive).displacement("mass")
     # While stuck the atan law creeps at 1e-6 m/s times tan(pi/2 load/Fd): below 1e-4 m in all, of 0.3 m. The switch
     # model drifts by at most its band times the time.
-    assert found == pytest.approx(expected, abs=1e-4 if kind == "smooth" else 2e-5)
+    validated(
+        "Dampers and friction",
+        f"lumped oscillator that stops in every cycle, {kind} law, w / w0 = {ratio}, Ff / F0 = {share}", found,
+        expected, abs=1e-4 if kind == "smooth" else 2e-5, unit="m",
+        source="closed form: harmonic motion between the stops, instants by root finding",
+    )  # fmt: skip
     assert steady_amplitude(time, found, period) == pytest.approx(steady_amplitude(time, expected, period), rel=1e-3)
 
 
@@ -100,7 +109,10 @@ def test_free_decay_with_coulomb_friction():
     for count in range(1, 10):
         peak = np.interp(count * half, time, x)
         # Creep and the missing tail of the atan law: 2/(pi eps) per second of sliding, below 1e-5 m.
-        assert peak == pytest.approx((-1) ** count * (0.1013 - count * 0.01), abs=1e-5)
+        validated(
+            "Dampers and friction", f"lumped oscillator, Coulomb decay, extreme after {count} half cycles", peak,
+            (-1) ** count * (0.1013 - count * 0.01), abs=1e-5, unit="m", source="closed form: loss of 2 Fd / k each",
+        )  # fmt: skip
     # 0.1013 - 10 * 0.01 = 0.0013 < Fd/K: it stops there for good, creeping at 1e-5 tan(pi/2 0.13/0.5) m/s for 5 s.
     assert x[-1] == pytest.approx(0.0013, abs=5e-5)
 
@@ -111,7 +123,11 @@ def test_energy_lost_in_free_decay_is_friction_times_path():
     v, x = history.sliding_velocity(), history.displacement("mass")
     work = np.trapezoid(history.sliding_force[:, 0] * v, time)
     # The trapezoid rule sees 3000 samples a half cycle and a few jumps of 1 N at a velocity of 1e-4 m/s: 1e-7 J.
-    assert work == pytest.approx(0.5 * 100 * 0.1**2 - 0.5 * 100 * x[-1] ** 2 - 0.5 * v[-1] ** 2, rel=1e-5)
+    validated(
+        "Dampers and friction", "work of Coulomb friction in free decay", work,
+        0.5 * 100 * 0.1**2 - 0.5 * 100 * x[-1] ** 2 - 0.5 * v[-1] ** 2, rel=1e-5, unit="J",
+        source="conservation: loss of energy of spring and mass",
+    )  # fmt: skip
 
 
 def test_mass_on_a_belt_with_kinetic_friction_alone():
@@ -123,7 +139,10 @@ def test_mass_on_a_belt_with_kinetic_friction_alone():
     expected = 0.02 + 0.5 * belt / natural * np.sin(natural * time)
     # At a slip of 0.05 to 0.15 m/s the atan law is 2/(pi eps v) = 1.3e-5 below Fd: 3e-7 m on K, and its slope feeds
     # the oscillation: (2/pi) Fd/(eps v^2) = 5e-4 N s/m, over 4 s at most a part in 1e3 of 5 mm.
-    assert history.displacement("mass") == pytest.approx(expected, abs=6e-6)
+    validated(
+        "Dampers and friction", "mass on a belt with kinetic friction alone", history.displacement("mass"), expected,
+        abs=6e-6, unit="m", source="closed form: Fd / k + v / (2 w) sin w t",
+    )  # fmt: skip
 
 
 def test_mass_on_a_belt_with_static_and_kinetic_friction():
@@ -141,8 +160,15 @@ def test_mass_on_a_belt_with_static_and_kinetic_friction():
     period = slip + 2.0 * a / belt
     rising = time[1:][(x[:-1] < kinetic / 100.0) & (x[1:] >= kinetic / 100.0)]
     # The limit falls within 5e-4 m/s, 0.5 % of the belt speed, and the product with the atan peaks at 0.99 Fs: 1 %.
-    assert np.diff(rising)[2:] == pytest.approx(period, rel=1e-2)
-    assert x[time > 3.0].max() == pytest.approx(kinetic / 100.0 + math.hypot(a, b), rel=1e-2)
+    belted = "closed form: stick until k x = Fs, then half a sine about Fk / k"
+    validated(
+        "Dampers and friction", "period of stick-slip on a belt", np.diff(rising)[2:], period, rel=1e-2, unit="s",
+        source=belted,
+    )  # fmt: skip
+    validated(
+        "Dampers and friction", "peak of stick-slip on a belt", x[time > 3.0].max(), kinetic / 100.0 + math.hypot(a, b),
+        rel=1e-2, unit="m", source=belted,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("frequency", [1.0, 3.0, 8.0, 15.0, 40.0])
@@ -190,9 +216,15 @@ def test_switch_and_smooth_law_agree_above_the_published_velocity():
     assert np.abs(v - vs)[fast].max() < 4.5e-5
     assert np.abs(smooth.sliding_force - switched.sliding_force)[fast].max() < 0.0128 * p.friction_limit
     # (110 - 50)/15000 = 4e-3 m/s, less what the inertia costs (w m/D)^2 = 1e-6.
-    assert np.abs(vs).max() == pytest.approx(4e-3, rel=1e-4)
+    validated(
+        "Published cars", "mass on the damper: peak velocity with the switch model", np.abs(vs).max(), 4e-3, rel=1e-4,
+        unit="m/s", source="publication: Bommer 2006, figures 2.9 and 2.10",
+    )  # fmt: skip
     # It sticks while |F| < 50 N: (2/pi) asin(50/110) of the time, to two samples at each of four ends.
-    assert np.mean(np.abs(vs) <= p.stick_band) == pytest.approx(2 / math.pi * math.asin(50 / 110), abs=8 / 5001)
+    validated(
+        "Dampers and friction", "share of time in which a mass on a damper sticks", np.mean(np.abs(vs) <= p.stick_band),
+        2 / math.pi * math.asin(50 / 110), abs=8 / 5001, source="closed form: 2 / pi asin(Fd / F)",
+    )  # fmt: skip
 
 
 def test_the_switch_model_gives_up_after_its_evaluations():

@@ -7,6 +7,7 @@ import pytest
 import sympy
 
 from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
+from tests.validation import validated
 from vehicle.engines.linear.parts import Network, masses_of, spring_damper
 from vehicle.engines.lumped.half_car_rider import half_car_rider, places, static_tyre_load
 from vehicle.errors import ConfigurationError
@@ -55,11 +56,17 @@ def test_matrices_are_those_of_lagranges_equations():
     mass, damping, stiffness, road_stiffness, road_damping = lagrange_matrices()
     assert MODEL.coordinates == ORDER
     scale = np.abs(stiffness).max()
-    np.testing.assert_allclose(MODEL.mass, mass, atol=ROUNDING * scale)
-    np.testing.assert_allclose(MODEL.damping, damping, atol=ROUNDING * scale)
-    np.testing.assert_allclose(MODEL.stiffness, stiffness, atol=ROUNDING * scale)
-    np.testing.assert_allclose(MODEL.input_stiffness, road_stiffness, atol=ROUNDING * scale)
-    np.testing.assert_allclose(MODEL.input_damping, road_damping, atol=ROUNDING * scale)
+    for name, ours, theirs in (
+        ("mass", MODEL.mass, mass),
+        ("damping", MODEL.damping, damping),
+        ("stiffness", MODEL.stiffness, stiffness),
+        ("road stiffness", MODEL.input_stiffness, road_stiffness),
+        ("road damping", MODEL.input_damping, road_damping),
+    ):
+        validated(
+            "Quarter and half cars", f"{name} matrix of the half car with rider", ours, theirs, abs=ROUNDING * scale,
+            source="second derivation: Lagrange equations by sympy",
+        )  # fmt: skip
 
 
 def test_matrices_are_symmetric_and_the_car_stands_on_its_tyres():
@@ -83,10 +90,17 @@ def test_static_loads_balance_weight_and_moment():
     front, rear = static_tyre_load(CAR)
     limbs = CAR.seat.mass + CAR.lower_limb.mass + CAR.upper_limb.mass
     wheels = CAR.front.unsprung_mass + CAR.rear.unsprung_mass
-    assert front + rear == pytest.approx(9.81 * (CAR.body.mass + limbs + wheels), rel=1e-10)
+    validated(
+        "Static equilibrium", "half car with rider: sum of the wheel loads", front + rear,
+        9.81 * (CAR.body.mass + limbs + wheels), rel=1e-10, unit="N", source="conservation: weight",
+    )  # fmt: skip
     a1, a2, a3 = CAR.body.front_arm, CAR.body.rear_arm, CAR.body.seat_arm
     about_rear = CAR.body.mass * a2 + limbs * (a2 + a3) + CAR.front.unsprung_mass * (a1 + a2)
-    assert front == pytest.approx(9.81 * about_rear / (a1 + a2), rel=1e-10)  # linear solve: rounding only
+    # linear solve: rounding only
+    validated(
+        "Static equilibrium", "half car with rider: front wheel load", front, 9.81 * about_rear / (a1 + a2), rel=1e-10,
+        unit="N", source="closed form: moment about the rear axle",
+    )  # fmt: skip
 
 
 def test_places_follow_equations_8_to_10_of_the_source():
@@ -99,17 +113,30 @@ def test_places_follow_equations_8_to_10_of_the_source():
 
 def test_printed_matrices_are_not_symmetric_and_grow():
     system = printed_system(CAR)
-    for printed in (system.damping, system.stiffness):
-        assert np.abs(printed - printed.T).max() > 0.0
+    for name, printed in (("C", system.damping), ("K", system.stiffness)):
+        validated(
+            "Published cars", f"half car with rider: printed matrix {name} is symmetric", printed, printed.T, abs=0.0,
+            source="publication: half car with rider, below equation 16",
+            reason="misprint: our matrices follow from the energies and are symmetric",
+        )  # fmt: skip
     assert growth_rate(system) > 1.0
     assert growth_rate(MODEL) < -1.0
 
 
 def test_printed_diagonals_agree_but_for_the_pitch_damping():
-    assert np.diag(printed_system(CAR).stiffness) == pytest.approx(np.diag(MODEL.stiffness), rel=1e-12)
+    validated(
+        "Published cars", "half car with rider: diagonal of K", np.diag(MODEL.stiffness),
+        np.diag(printed_system(CAR).stiffness), rel=1e-12, unit="N/m",
+        source="publication: half car with rider, equation 16",
+    )  # fmt: skip
     ours, printed = np.diag(MODEL.damping), np.diag(printed_system(CAR).damping)
     assert printed[:6] == pytest.approx(ours[:6], rel=1e-12)
     assert printed[6] == pytest.approx(-ours[6], rel=1e-12)
+    validated(
+        "Published cars", "half car with rider: pitch damping on the diagonal of C", ours[6], printed[6], rel=1e-12,
+        unit="N m s/rad", source="publication: half car with rider, equation 16",
+        reason="misprint: with the printed negative sign the equations of motion grow without bound",
+    )  # fmt: skip
 
 
 def test_unknown_coordinate_in_an_element_is_refused():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from tests.validation import foreign, validated
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
 from vehicle.engines.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
 from vehicle.engines.lumped.semi_active import simulate_bump
@@ -32,7 +33,11 @@ def test_passive_car_converges_to_the_exact_response_with_order_two():
         (history,) = simulate_bump([CAR], [SPEED], duration=1.0, largest_step=step)
         errors.append(np.abs(displacements(history)[:: round(1e-3 / history.time[1])] - displacements(exact)).max())
     orders = np.log2(np.divide(errors[:-1], errors[1:]))
-    np.testing.assert_allclose(orders, 2.0, atol=0.1)  # jumps of the road slope fall anywhere within a step
+    # jumps of the road slope fall anywhere within a step
+    validated(
+        "Quarter and half cars", "order of convergence of the stepped half car", orders, 2.0, abs=0.1,
+        source="second derivation: exact response of the linear car",
+    )  # fmt: skip
     assert errors[1] < 1e-5 * np.abs(displacements(exact)).max()
 
 
@@ -49,7 +54,10 @@ def test_damper_without_range_is_a_passive_damper(law):
     fixed = at(CAR, minimum_damping=1000.0, maximum_damping=1000.0)
     (controlled,) = simulate_bump([fixed], [SPEED], law=law, duration=0.5)
     (passive,) = simulate_bump([CAR], [SPEED], duration=0.5)
-    np.testing.assert_allclose(displacements(controlled), displacements(passive), rtol=0, atol=1e-15)
+    validated(
+        "Semi-active dampers", f"half car, damper without range under {law}, displacements", displacements(controlled),
+        displacements(passive), abs=1e-15, unit="m", source="second derivation: passive car",
+    )  # fmt: skip
 
 
 def test_settings_are_held_for_a_control_period():
@@ -112,7 +120,10 @@ def test_one_sided_tyre_agrees_with_forces_written_out():
     (history,) = simulate_bump([CAR], [SPEED], one_sided_tyres=True, duration=0.8)
     reference = one_sided_reference(CAR, bump_passage(CAR.bump, SPEED, 2.8), history.time)
     # the reference crosses the jumps of the road rate with steps of up to 1 ms: about 1e-4 of the motion
-    assert np.abs(displacements(history).T - reference[:7]).max() < 3e-4 * np.abs(reference[:7]).max()
+    validated(
+        "Quarter and half cars", "half car whose wheels leave the road, displacements", displacements(history).T,
+        reference[:7], peak=3e-4, unit="m", source=foreign("scipy", "RK45 on forces written out element by element"),
+    )  # fmt: skip
     glued = simulate_bump([CAR], [SPEED], duration=0.8)[0]
     assert np.abs(displacements(glued).T - reference[:7]).max() > 0.05 * np.abs(reference[:7]).max()
 
@@ -132,7 +143,11 @@ def test_wheel_in_the_air_is_pulled_by_nothing_but_its_suspension():
     air = (history.time > start) & (history.time < end)
     pull = 16812.0 * history.displacement("front_travel") + 1000.0 * history.velocity("front_travel")
     pull -= static_tyre_load(CAR)[0]
-    np.testing.assert_allclose(60.0 * history.acceleration("front_wheel")[air], pull[air], rtol=1e-9)
+    validated(
+        "Quarter and half cars", "force on a wheel in the air", 60.0 * history.acceleration("front_wheel")[air],
+        pull[air], rel=1e-9, unit="N",
+        source="conservation: Newton, spring, damper and static load of the suspension alone",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

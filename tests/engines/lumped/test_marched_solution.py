@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import foreign, validated
 from vehicle.engines.lumped.drive import Sampled
 from vehicle.engines.lumped.marched_solution import marched_solution
 from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
@@ -64,7 +65,10 @@ def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
     reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
     histories = [marched_solution(model, fine[n], road[::n], every=8 // n) for n in (4, 2, 1)]
     rough, _, finest = relative_errors(histories, reference, name)
-    assert np.log2(rough / finest) / 2 == pytest.approx(2.0, abs=0.2)
+    validated(
+        "Quarter and half cars", f"order of convergence of the march with a gentle friction law, {name}",
+        np.log2(rough / finest) / 2, 2.0, abs=0.2, source=foreign("scipy", "stiff solver"),
+    )  # fmt: skip
 
 
 def test_without_friction_the_march_is_exact_for_straight_roads():
@@ -120,7 +124,11 @@ def test_other_stiff_methods_agree(method):
     # feels the friction force itself, which turns within microseconds, so single samples differ more.
     for output in ("body", "wheel", "engine"):
         a, b = one.acceleration(output), other.acceleration(output)
-        assert a == pytest.approx(b, abs=(3e-3 if output == "wheel" else 1e-4) * np.abs(a).max())
+        validated(
+            "Quarter and half cars", f"acceleration of the {output} of a quarter car with friction, against {method}",
+            a, b, abs=(3e-3 if output == "wheel" else 1e-4) * np.abs(a).max(), unit="m/s2",
+            source=foreign("scipy", method),
+        )  # fmt: skip
 
 
 def test_velocity_and_acceleration_are_derivatives_of_the_displacement():
@@ -197,4 +205,7 @@ def test_the_viscous_law_is_centred():
         error = marched_solution(bent, fine[stride], road[::stride]).acceleration("body") - exact
         errors.append(np.sqrt(np.mean(error**2) / np.mean(exact**2)))
     # Smooth motion: the order is 2 and shows clearly; taken at the end of the step it would be 1.
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
+    validated(
+        "Quarter and half cars", "order of convergence of the centred viscous law", np.log2(errors[0] / errors[1]), 2.0,
+        abs=0.1, source="second derivation: the same damper in the exact propagator",
+    )  # fmt: skip

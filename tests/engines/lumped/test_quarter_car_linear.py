@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from tests.validation import validated
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.parts import ROAD, Link, Mass, Network
 from vehicle.engines.linear.response import frequency_response
@@ -25,9 +26,22 @@ def model(**parts):
 
 def test_published_modes():
     # Printed parameters to 0.01 Hz, half of it for rounding; the slip modes are undamped frequencies |lambda|/2 pi.
-    assert natural_modes(model(damper="slip")).frequency == pytest.approx([1.99, 12.86], abs=0.005)
+    by_hand = "closed form: frequencies of the printed parameters to 0.01 Hz, by hand"
+    about = "publication: Bommer 2006, section 2.2.4, printed with 'about'"
+    for damper, rounded in (("slip", [2.0, 12.5]), ("stick", [4.8, 25.0])):
+        validated(
+            "Published cars", f"quarter car, frequencies with the damper in {damper}",
+            natural_modes(model(damper=damper)).frequency, np.array(rounded), rel=0.05, unit="Hz", source=about,
+        )  # fmt: skip
+    validated(
+        "Quarter and half cars", "frequencies of the quarter car of Bommer 2006 with a sliding damper",
+        natural_modes(model(damper="slip")).frequency, np.array([1.99, 12.86]), abs=0.005, unit="Hz", source=by_hand,
+    )  # fmt: skip
     stick = natural_modes(model(damper="stick"))
-    assert stick.frequency == pytest.approx([4.78, 25.13], abs=0.005)
+    validated(
+        "Quarter and half cars", "frequencies of the quarter car of Bommer 2006 with a stuck damper", stick.frequency,
+        np.array([4.78, 25.13]), abs=0.005, unit="Hz", source=by_hand,
+    )  # fmt: skip
     assert stick.damping_ratio == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
@@ -35,7 +49,10 @@ def test_the_stick_model_has_the_frequencies_of_its_two_by_two_matrices():
     k = 3e4 + 7e5
     squares = np.linalg.eigvals(np.diag([1 / 180, 1 / 45]) @ np.array([[k, -k], [-k, k + 2.5e5]]))
     expected = np.sort(np.sqrt(squares)) / (2 * np.pi)
-    assert natural_modes(model(damper="stick")).frequency == pytest.approx(expected, rel=1e-12)
+    validated(
+        "Quarter and half cars", "stuck quarter car, frequencies", natural_modes(model(damper="stick")).frequency,
+        expected, rel=1e-12, unit="Hz", source="closed form: eigenvalues of two by two matrices",
+    )  # fmt: skip
 
 
 def test_the_slip_model_follows_2_1_written_as_dynamic_stiffness():
@@ -47,8 +64,12 @@ def test_the_slip_model_follows_2_1_written_as_dynamic_stiffness():
     body, wheel = z * 2.5e5 / determinant, (180 * s**2 + z) * 2.5e5 / determinant
     slip = model(damper="slip")
     # Fifteen digits less what the largest condition of the matrices (1e4) costs.
-    assert frequency_response(slip, frequency, "body") == pytest.approx(body, rel=1e-10)
-    assert frequency_response(slip, frequency, "wheel") == pytest.approx(wheel, rel=1e-10)
+    for place, exact in (("body", body), ("wheel", wheel)):
+        validated(
+            "Quarter and half cars", f"sliding quarter car, FRF of the {place}",
+            frequency_response(slip, frequency, place), exact, rel=1e-10, unit="m/m",
+            source="closed form: dynamic stiffness with Kd D s / (Kd + D s)",
+        )  # fmt: skip
     assert frequency_response(slip, frequency, "wheel", "acceleration") == pytest.approx(s**2 * wheel, rel=1e-10)
 
 
@@ -64,13 +85,28 @@ def test_engine_on_its_mount_alone(engine):
     engine_share = np.abs(modes.shape[:, heavy.coordinates.index("engine")])
     mode = int(np.argmax(engine_share - np.abs(modes.shape[:, heavy.coordinates.index("wheel")])))
     if engine == "linear":
-        assert modes.frequency[mode] == pytest.approx(12.73, abs=0.005)
-        assert modes.damping_ratio[mode] == pytest.approx(0.15, abs=0.0005)
+        printed = "publication: Bommer 2006, section 2.3.3.1"
+        validated(
+            "Published cars", "engine on its linear mount, frequency", modes.frequency[mode], 12.7, abs=0.05, unit="Hz",
+            source=printed,
+        )  # fmt: skip
+        validated(
+            "Quarter and half cars", "engine on its linear mount, frequency", modes.frequency[mode], 12.73, abs=0.005,
+            unit="Hz", source="closed form: sqrt(k / m) / (2 pi) of the printed parameters",
+        )  # fmt: skip
+        validated(
+            "Published cars", "engine on its linear mount, damping ratio", modes.damping_ratio[mode], 0.15, abs=0.0005,
+            source=printed,
+        )  # fmt: skip
     else:
         # The pole of s^2 Me + K(s) = 0 itself.
         s = np.roots([125 * 6057, 125 * 3.4e5, (8e5 + 3.4e5) * 6057, 8e5 * 3.4e5])
         pole = s[np.argmax(s.imag)]
-        assert modes.frequency[mode] == pytest.approx(abs(pole) / 2 / np.pi, rel=1e-6)  # the body moves by 125/1e9
+        # the body moves by 125/1e9
+        validated(
+            "Quarter and half cars", "engine on its elastomer mount, frequency", modes.frequency[mode],
+            abs(pole) / 2 / np.pi, rel=1e-6, unit="Hz", source="closed form: root of s^2 m + K(s) = 0",
+        )  # fmt: skip
         assert modes.damping_ratio[mode] == pytest.approx(-pole.real / abs(pole), rel=1e-5)
 
 
@@ -141,7 +177,12 @@ def test_the_friction_model_follows_lagrange(strut, engine, small_mass):
     branch = ours.state[n : 2 * n, 2 * n :] if engine == "elastomer" else np.zeros((n, 1))
     assembled = np.hstack([ours.state[n : 2 * n, : 2 * n], branch, ours.input[n : 2 * n], -ours.friction[n : 2 * n]])
     # A handful of operations: rounding of the largest entry.
-    assert assembled == pytest.approx(lagrange, rel=1e-12, abs=1e-9)
+    words = f"{'oblique' if strut else 'upright'} strut, engine {engine}" + (", small mass" if small_mass else "")
+    validated(
+        "Quarter and half cars", f"equations of motion of the quarter car, {words}", assembled, lagrange, rel=1e-12,
+        abs=1e-9,
+        source="second derivation: Lagrange equations by sympy, Bommer 2006, equations 2.6 to 2.13 and D.28 to D.34",
+    )  # fmt: skip
     if engine == "elastomer":  # F2' = Ke2 (xe' - xb') - (Ke2/De) F2, below 2.13
         expected = np.zeros(2 * n + 1)
         expected[n + names.index("engine")], expected[n], expected[-1] = 3.4e5, -3.4e5, -3.4e5 / 6057

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import solve_continuous_lyapunov
 
+from tests.validation import foreign, validated
 from vehicle.engines.lumped import road_holding
 from vehicle.engines.lumped.road_holding import (
     half_car_model,
@@ -70,7 +71,10 @@ def test_physical_measure_is_the_integral_of_the_complex_difference():
         return 4.85e-4 * np.exp(-0.19 * f) * np.abs(1.0 - model.response(f)[0, 0]) ** 2
 
     expected = 297160.0 * np.sqrt(quad(spectrum, 0.0, 25.0, limit=200)[0]) / ((290.15 + 62.01) * 9.81)
-    assert tyre_load_ratio(model, P.highway, P.bands)[0] == pytest.approx(expected, rel=1e-3)
+    validated(
+        "Quarter and half cars", "dynamic wheel load of the choice of dampers, of the static one",
+        tyre_load_ratio(model, P.highway, P.bands)[0], expected, rel=1e-3, source=foreign("scipy", "quad"),
+    )  # fmt: skip
 
 
 def stationary_variances(damping, intensity):
@@ -104,9 +108,16 @@ def test_ride_measures_agree_with_lyapunovs_equation(damping):
     tyre, travel, acceleration = stationary_variances(damping, intensity)
     load = 2e5 * np.sqrt(tyre) / ((300.0 + 40.0) * 9.81)
     # the spectra fall as 1/f^2: beyond 2000 Hz lies less than 0.5 % of the variance, the midpoint rule is closer
-    assert found.tyre_load == pytest.approx(load, rel=3e-3)
-    assert found.travel == pytest.approx(np.sqrt(travel), rel=3e-3)
-    assert found.acceleration == pytest.approx(np.sqrt(acceleration), rel=5e-3)
+    lyapunov = foreign("scipy", "Lyapunov equation under white road velocity")
+    for name, value, exact, rel in (
+        ("dynamic wheel load", found.tyre_load, load, 3e-3),
+        ("RMS travel", found.travel, np.sqrt(travel), 3e-3),
+        ("RMS body acceleration", found.acceleration, np.sqrt(acceleration), 5e-3),
+    ):
+        validated(
+            "Quarter and half cars", f"quarter car on a road of class C, {damping:g} N s/m, {name}", value, exact,
+            rel=rel, source=lyapunov,
+        )  # fmt: skip
 
 
 def test_weight_acts_on_the_acceleration_alone():
@@ -123,4 +134,8 @@ def test_tyre_damping_enters_the_tyre_force():
     model = quarter_car_model(damped)
     response = model.response(lines)[0, 0]
     expected = abs((2e5 + 2j * np.pi * 15.0 * 2000.0) * (1.0 - response)) / model.tyres[0].static_load
-    assert tyre_load_ratio_of_density(model, lines, np.ones(1), 1.0)[0] == pytest.approx(expected, rel=1e-12)
+    validated(
+        "Quarter and half cars", "dynamic wheel load with tyre damping at 15 Hz",
+        tyre_load_ratio_of_density(model, lines, np.ones(1), 1.0)[0], expected, rel=1e-12,
+        source="closed form: |(k + i w c) (1 - H)| / static load",
+    )  # fmt: skip

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from scenarios.half_car_rider.runs import settling_time
+from tests.validation import validated
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
 from vehicle.engines.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
 from vehicle.errors import ConfigurationError
@@ -13,7 +14,11 @@ TIME = np.linspace(0.0, 10.0, 10001)
 
 
 def test_exponential_settles_after_ln_of_the_band():
-    assert settling_time(TIME, np.exp(-TIME), 0.05) == pytest.approx(np.log(20.0), abs=1e-3)  # one sample
+    # one sample
+    validated(
+        "Quarter and half cars", "settling time of an exponential to 5 %", settling_time(TIME, np.exp(-TIME), 0.05),
+        np.log(20.0), abs=1e-3, unit="s", source="closed form: ln 20",
+    )  # fmt: skip
 
 
 def test_last_exit_counts_not_the_first_entry():
@@ -64,4 +69,7 @@ def test_tyre_loads_carry_all_inertia():
     accelerations = np.array([history.acceleration(name) for name in model.coordinates])
     expected = masses @ accelerations + 9.81 * masses.sum()
     total = linear_tyre_load(car, history).sum(axis=0)
-    np.testing.assert_allclose(total, expected, atol=1e-7 * np.abs(expected).max())
+    validated(
+        "Quarter and half cars", "sum of the tyre loads of the half car on a bump", total, expected, peak=1e-7,
+        unit="N", source="conservation: Newton, weight and sum of m a",
+    )  # fmt: skip

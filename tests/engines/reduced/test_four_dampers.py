@@ -12,6 +12,7 @@ from argparse import Namespace
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.runs.car import Car
@@ -38,7 +39,12 @@ def test_every_channel_of_class_a_agrees(car):
         worst[channel] = abs(ours / theirs - 1.0)
     turning = {name for name in worst if name.startswith("knuckle") and not name.endswith("z")}
     assert len(turning) == 8 and len(worst) > 50
-    assert {name: value for name, value in worst.items() if value > (0.02 if name in turning else 0.005)} == {}
+    for few, words in ((True, "wheel carriers along and across"), (False, "all other channels")):
+        group = np.array([value for name, value in worst.items() if (name in turning) == few])
+        validated(
+            "Reduced engine", f"RMS of {words} on a road of class A over that of MuJoCo", 1.0 + group, 1.0,
+            abs=0.02 if few else 0.005, source="second derivation: MuJoCo, step 0.25 ms",
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize(("road_class", "said"), [("B", "turned by"), ("C", "would lift off its plate")])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle.engines.reduced import plate_samples, run
-from vehicle.engines.simulation import acceleration
+from vehicle.engines.simulation import recorded_acceleration
 from vehicle.engines.simulation.judgement import require_samples
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
@@ -32,7 +32,7 @@ def test_blocks_of_any_length_give_the_same_run(car, monkeypatch):
     names = [*car.vehicle.channels, *car.vehicle.requested_channels]
     whole = car.run(road, engine="reduced", channels=names)
     monkeypatch.setattr(run, "BLOCK", 333)
-    monkeypatch.setattr(acceleration, "BLOCK", 77)
+    monkeypatch.setattr(recorded_acceleration, "BLOCK", 77)
     blocks = car.run(road, engine="reduced", channels=names)
     for name in names:
         size = np.max(np.abs(whole[name]))

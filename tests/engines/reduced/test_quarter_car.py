@@ -10,13 +10,14 @@ import scipy
 
 from scenarios.quarter_car.in_mujoco import friction_of_the_rows
 from tests.engines.linear.plain_matrices import plain_matrices
+from tests.validation import foreign, validated
 from vehicle.engines.lumped.drive import Sampled
 from vehicle.engines.lumped.quarter_car import quarter_car
 from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.engines.reduced.many import simulate_many
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.run import simulate_reduced
-from vehicle.engines.simulation.acceleration import acceleration
+from vehicle.engines.simulation.recorded_acceleration import acceleration
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.stribeck import Stribeck
 from vehicle.model.parameters.quarter_car import load_quarter_car
@@ -91,11 +92,15 @@ def solved():
     return stiff_solution(friction_of_the_rows(CAR), ROAD.time, road=Sampled(ROAD.displacement["fr"], 1e-3))
 
 
-def compare(found, expected, bounds):
+def compare(found, expected, bounds, law):
     for name, bound in bounds.items():
         b = expected[name]
         a = found[name][: b.size]
-        assert np.sqrt(np.mean((a - b) ** 2)) < bound * np.sqrt(np.mean(b**2)), name
+        validated(
+            "Reduced engine", f"quarter car with {law} friction, RMS error of {name}",
+            np.sqrt(np.mean((a - b) ** 2)) / np.sqrt(np.mean(b**2)), 0.0, abs=bound,
+            source=foreign("scipy", "Radau on the lumped quarter car"),
+        )  # fmt: skip
 
 
 def test_friction_against_the_stiff_solver(solved):
@@ -119,11 +124,16 @@ def test_friction_against_the_stiff_solver(solved):
             "damper_fr_velocity": 3e-3,
             "damper_top_fr_acc_z": 5e-2,
         },
+        "Coulomb",
     )
     size = expected["damper_top_fr_acc_z"].size
     ratio = np.std(run["damper_top_fr_acc_z"][:size]) / np.std(expected["damper_top_fr_acc_z"])
     assert ratio == pytest.approx(1.0, abs=5e-3)
-    assert slip_share(run["damper_fr_velocity"], 1e-3) == pytest.approx(share, abs=2e-3)
+    validated(
+        "Reduced engine", "quarter car, share of time in which the damper slips",
+        slip_share(run["damper_fr_velocity"], 1e-3), share, abs=2e-3,
+        source=foreign("scipy", "Radau on the lumped quarter car"),
+    )  # fmt: skip
     # The left car stands still; equal poles of two equal cars mix them in the last digits.
     assert np.max(np.abs(run["knuckle_fl_acc_z"])) < 1e-9 * np.max(np.abs(run["knuckle_fr_acc_z"]))
 
@@ -173,6 +183,7 @@ def test_stribeck_against_the_stiff_solver():
         run.channels,
         {"knuckle_fr_acc_z": solved.acceleration("wheel"), "suspension_mount_fr_acc_z": solved.acceleration("body")},
         {"knuckle_fr_acc_z": 1e-2, "suspension_mount_fr_acc_z": 5e-3},
+        "Stribeck",
     )
 
 
@@ -201,7 +212,10 @@ def test_a_plate_that_stands_away_from_zero_when_the_run_begins():
     )
     expected = 1e6 + CAR.wheel.tyre_stiffness * (height - wheel) - damping * rate
     # Everything is linear: exact to the round-off of the load.
-    np.testing.assert_allclose(run["tyre_fr_force_z"], expected, rtol=0.0, atol=1e-6)
+    validated(
+        "Reduced engine", "wheel load after a start on a raised plate", run["tyre_fr_force_z"], expected, abs=1e-6,
+        unit="N", source="second derivation: matrix exponential of the physical coordinates",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("rate", [125.0, 1000.0])

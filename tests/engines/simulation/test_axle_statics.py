@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.engines.simulation.strut import camber_and_toe, strut_geometry
+from tests.validation import validated
 from vehicle.engines.simulation.axle_statics import AxleStatics
 from vehicle.errors import SimulationError
 
@@ -22,8 +23,16 @@ def test_ideal_kinematics_of_the_strut(car, travel):
     pose, other = axle(car, ideal=True).solve([travel, travel])
     moved, turn = strut_geometry(car.vehicle.points, travel)
     assert pose.wheel_travel_m == pytest.approx(travel, abs=1e-9)
-    assert (pose.longitudinal_m, pose.lateral_m) == pytest.approx(tuple(moved[:2]), abs=1e-6)
-    assert (pose.camber_deg, pose.toe_deg) == pytest.approx(camber_and_toe(turn), abs=1e-4)
+    own = "second derivation: own solver of the rigid linkage"
+    validated(
+        "Suspension kinematics",
+        f"MacPherson strut at {1e3 * travel:g} mm: longitudinal and lateral motion of the wheel",
+        np.array([pose.longitudinal_m, pose.lateral_m]), moved[:2], abs=1e-6, unit="m", source=own,
+    )  # fmt: skip
+    validated(
+        "Suspension kinematics", f"MacPherson strut at {1e3 * travel:g} mm: camber and toe",
+        np.array([pose.camber_deg, pose.toe_deg]), np.array(camber_and_toe(turn)), abs=1e-4, unit="deg", source=own,
+    )  # fmt: skip
     assert abs(pose.camber_deg) > 0.1 and abs(pose.lateral_m) > 1e-4
     for name in ("lateral_m", "longitudinal_m", "camber_deg", "toe_deg", "strut_length_m"):
         assert getattr(other, name) == pytest.approx(getattr(pose, name), abs=1e-8), name
@@ -81,7 +90,11 @@ def test_small_travel_and_load_are_those_of_the_matrices(car):
     }
     for name, value in linear.items():
         # Half the difference: what bends the curves drops out.
-        assert 0.5 * (getattr(up, name) - getattr(down, name)) == pytest.approx(value, rel=1e-4), name
+        validated(
+            "Suspension kinematics", f"compliance of the axle on its bushings at small travel, {name}",
+            0.5 * (getattr(up, name) - getattr(down, name)), value, rel=1e-4,
+            source="second derivation: K and joints of the linear car",
+        )  # fmt: skip
 
 
 def test_a_travel_that_the_linkage_does_not_reach_is_refused(car):

@@ -15,6 +15,7 @@ from tests.engines.simulation.row_model import (
     empty_spec,
     stiffness_and_damping,
 )
+from tests.validation import validated
 
 K = np.array([1e5, 2e5, 4e5])
 B = np.array([100.0, 200.0, 400.0])
@@ -56,7 +57,10 @@ def test_static_deflection_is_reached_from_rest(mass, step):
     run.data.xfrc_applied[1, :3] = force
     steps = int(30.0 * np.sqrt(mass / K[0]) / 0.7 / step)
     last = run.step(steps, run.position)[-1, :3]
-    np.testing.assert_allclose(last, force / K, rtol=1e-6)
+    validated(
+        "Bushings, springs and stops", f"static deflection of a bushing under {mass:g} kg", last, force / K, rel=1e-6,
+        unit="m", source="closed form: F / K",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("mass", "step"), BODIES)
@@ -65,8 +69,12 @@ def test_stiffness_and_damping_from_the_free_vibration(mass, step, axis):
     run = on_ground(mass, step)
     run.data.qpos[axis] = 1e-4
     stiffness, damping = stiffness_and_damping(run.step(60, run.position)[:, axis], step, mass)
-    assert stiffness == pytest.approx(K[axis], rel=WITHIN)
-    assert damping == pytest.approx(B[axis], rel=WITHIN)
+    for name, value, exact, unit in (("stiffness", stiffness, K, "N/m"), ("damping", damping, B, "N s/m")):
+        validated(
+            "Bushings, springs and stops",
+            f"{name} of a bushing from the free vibration of {mass:g} kg, axis {'xyz'[axis]}", value, exact[axis],
+            rel=WITHIN, unit=unit, source="closed form: pole of m s^2 + B s + K",
+        )  # fmt: skip
 
 
 def test_between_a_light_and_a_heavy_body():
@@ -84,7 +92,10 @@ def test_between_a_light_and_a_heavy_body():
         assert damping == pytest.approx(B[axis], rel=WITHIN)
     # No force from outside: the common centre of gravity stays where it is.
     centre = (light * x[:, :3] + heavy * x[:, 7:10]) / (light + heavy)
-    np.testing.assert_allclose(centre, np.broadcast_to(centre[0], centre.shape), atol=1e-15)
+    validated(
+        "Bushings, springs and stops", "centre of gravity of two bodies that a bushing connects", centre,
+        np.array(np.broadcast_to(centre[0], centre.shape)), abs=1e-15, unit="m", source="conservation: momentum",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("mass", "step"), BODIES)
@@ -95,7 +106,10 @@ def test_rotational_stiffness(mass, step):
     x = run.step(60, run.position)
     for axis in range(3):
         stiffness, damping = stiffness_and_damping(x[:, 4 + axis], step, 0.4 * mass)
-        assert stiffness == pytest.approx(100.0, rel=WITHIN)
+        validated(
+            "Bushings, springs and stops", f"rotational stiffness of a bushing under {mass:g} kg, axis {'xyz'[axis]}",
+            stiffness, 100.0, rel=WITHIN, unit="N m/rad", source="closed form: pole of J s^2 + K",
+        )  # fmt: skip
         assert abs(damping) < 1e-3  # "rotational damping is 0": 1e-3 N m s/rad on 100 N m/rad is nothing
     # Static: 1 N m about x gives 0.01 rad; the quaternion holds half the angle.
     run = on_ground(mass, step)

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from vehicle.engines.simulation.run import record_every
+from vehicle.engines.simulation.stepping import record_every
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from tests.engines.simulation.strut import camber_and_toe, strut_geometry
+from tests.validation import validated
 from vehicle.engines.simulation.axle_statics import AxleStatics, WheelPose
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.shipped import VEHICLES
@@ -38,16 +39,23 @@ def lifted(car: Car, axle: str) -> AxleStatics:
     return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=True)
 
 
-def require_pose(pose: WheelPose, moved: Vector, turn: Vector) -> None:
-    assert (pose.longitudinal_m, pose.lateral_m) == pytest.approx(tuple(moved[:2]), abs=1e-6)
-    assert (pose.camber_deg, pose.toe_deg) == pytest.approx(camber_and_toe(turn), abs=1e-4)
+def require_pose(words: str, pose: WheelPose, moved: Vector, turn: Vector) -> None:
+    own = "second derivation: own solver of the rigid linkage"
+    validated(
+        "Suspension kinematics", f"{words}: longitudinal and lateral motion of the wheel",
+        np.array([pose.longitudinal_m, pose.lateral_m]), moved[:2], abs=1e-6, unit="m", source=own,
+    )  # fmt: skip
+    validated(
+        "Suspension kinematics", f"{words}: camber and toe", np.array([pose.camber_deg, pose.toe_deg]),
+        np.array(camber_and_toe(turn)), abs=1e-4, unit="deg", source=own,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("travel", [-0.06, 0.04, 0.07])
 def test_the_strut_of_the_sedan(sedan, travel):
     right, left = lifted(sedan, "front").solve([travel, travel])
     moved, turn = strut_geometry(sedan.vehicle.points, travel)
-    require_pose(right, moved, turn)
+    require_pose(f"strut of the sedan at {1e3 * travel:g} mm", right, moved, turn)
     assert abs(right.toe_deg) > 0.5 and abs(right.lateral_m) > 1e-3
     assert [getattr(left, name) for name in FREEDOMS] == pytest.approx([getattr(right, name) for name in FREEDOMS])
 
@@ -69,7 +77,7 @@ def about(point: Vector, axis: Vector, place: Vector, height: float) -> tuple[Ve
 def test_the_beam_swings_about_its_pivots(sedan, travel):
     pivot, center = (np.array(sedan.vehicle.points[f"{name}_rr"]) for name in ("pivot", "wheel_center"))
     moved, turn = about(pivot, np.array([0.0, 1.0, 0.0]), center, travel)
-    require_pose(lifted(sedan, "rear").solve([travel, travel])[0], moved, turn)
+    require_pose(f"twist beam at {1e3 * travel:g} mm", lifted(sedan, "rear").solve([travel, travel])[0], moved, turn)
     assert abs(moved[0]) > 1e-4
 
 
@@ -84,7 +92,7 @@ def test_the_beam_twists_about_its_shear_centre(sedan):
     middle = beam * [1.0, 0.0, 1.0]
     moved, turn = about(pivot, middle - pivot, center, travel)
     pose = lifted(sedan, "rear").solve([travel, -travel])[0]
-    require_pose(pose, moved, turn)
+    require_pose("twist beam, wheels 1 mm against each other", pose, moved, turn)
     assert abs(pose.camber_deg) > 0.02 and abs(pose.toe_deg) > 1e-3
     with pytest.raises(SimulationError, match=r"leave a gap of 0\.0.* mm .*: ask for less travel, or let its bushings"):
         lifted(sedan, "rear").solve([0.03, -0.03])
@@ -140,8 +148,11 @@ def test_five_rods_on_the_places_of_a_strut_have_its_kinematics(sedan):
         return np.array([getattr(pose, name) for name in FREEDOMS])
 
     slopes = [found(axle, 1e-3) - found(axle, -1e-3) for axle in (strut, *axles)]
-    for slope in slopes[1:]:
-        np.testing.assert_allclose(slope, slopes[0], rtol=1e-4)
+    for reach, slope in zip((1.25, 2.5), slopes[1:], strict=True):
+        validated(
+            "Suspension kinematics", f"slopes of five rods of {reach:g} m on the places of a strut", slope, slopes[0],
+            rel=1e-4, source="second derivation: the strut",
+        )  # fmt: skip
     exact, short, long = (found(axle, 0.02) for axle in (strut, *axles))
     asked = np.array([1e-6, 1e-6, 1e-4, 1e-4])
     seen = np.abs(short - exact) > 10.0 * asked

@@ -6,7 +6,7 @@ import pytest
 
 from vehicle.engines.simulation.judgement import judge_energy
 from vehicle.engines.simulation.recording import Energies
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.vehicle import load_vehicle
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vehicle.engines.simulation import run
+from tests.validation import validated
+from vehicle.engines.simulation import stepping
 from vehicle.engines.simulation.car_model import build_model
 from vehicle.engines.simulation.run_model import prepared, run_model
 from vehicle.runs.car import Car
@@ -39,15 +40,18 @@ def test_modes_beside_the_solver_are_modes_in_it(car, monkeypatch):
     time = np.arange(0.0, 0.4, 1e-3)
     signal = Signal(time=time, displacement={"fr": 4e-3 * np.sin(2.0 * np.pi * (3.0 + 40.0 * time) * time)})
     loads = tuple(car.vehicle.load_channels)
-    found = run.simulate(car, signal, requested=loads)
+    found = stepping.simulate(car, signal, requested=loads)
     model, space = run_model(car)
     assert space is not None and model.nv == car.model.nv - MODES + 3 * (NODES + TURNING)
-    monkeypatch.setattr(run, "run_model", lambda car: (prepared(car.spec, car.model.qpos_spring), None))
-    expected = run.simulate(car, signal, requested=loads)
+    monkeypatch.setattr(stepping, "run_model", lambda car: (prepared(car.spec, car.model.qpos_spring), None))
+    expected = stepping.simulate(car, signal, requested=loads)
     size = np.abs(expected.poses).max(axis=0)
     assert np.max(np.abs(expected.poses[:, 7 : 7 + MODES])) > 1e-3
     # The solver stops where its tolerance of 1e-12 lets it.
-    assert np.max(np.abs(found.poses - expected.poses)) < 1e-9 * size.max()
+    validated(
+        "Integration in MuJoCo", "poses of a car on 84 body modes, modes integrated beside the solver", found.poses,
+        expected.poses, abs=1e-9 * size.max(), source="second derivation: MuJoCo with all modes as joints",
+    )  # fmt: skip
     for name, channel in expected.channels.items():
         error = np.max(np.abs(found.channels[name] - channel))
         # An acceleration is a difference of positions over 1 ms2, and along some axes next to nothing.

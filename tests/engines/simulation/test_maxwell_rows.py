@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
+from tests.validation import validated
 from vehicle.engines.simulation.step_weights import implicit_share
 from vehicle.model.laws.maxwell import Maxwell
 
@@ -52,7 +53,11 @@ def test_complex_stiffness_against_the_transfer_function(frequency):
     law = Maxwell(stiffness=K1, branch_stiffness=K2, branch_damping=D2)
     assert exact == pytest.approx(complex(law.complex_stiffness(omega)), rel=1e-12)
     # The branch is averaged with 1/4 instead of 1/12: (w h)^2 / 6 of it is missing, 5.4e-4 of K at 20 Hz.
-    assert abs(found - exact) / abs(exact) < 6e-4 * (frequency / 20.0) ** 2
+    validated(
+        "Bushings, springs and stops", f"complex stiffness of the hydromount in a run at {frequency:g} Hz", found,
+        exact, rel=6e-4 * (frequency / 20.0) ** 2, unit="N/m",
+        source="closed form: K1 + K2 D i w / (D i w + K2), Bommer 2006, appendix F",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("time", [1e-5, 1e-4, 1e-3])
@@ -64,14 +69,21 @@ def test_a_fast_branch_is_the_damper_it_stands_for(time):
     turn = 2j * np.pi * frequency * time
     exact = K1 + stiff * turn / (1.0 + turn)
     # (w h)^2 = 1e-3 of the force of the branch; a first-order step would be off by w h = 3e-2 of it.
-    assert abs(found - exact) < 1e-3 * abs(exact - K1) + 1e-5 * K1
+    validated(
+        "Bushings, springs and stops", f"complex stiffness of a fast Maxwell branch, {1e3 * time:g} ms", found, exact,
+        abs=1e-3 * abs(exact - K1) + 1e-5 * K1, unit="N/m", source="closed form: K1 + K2 i w T / (1 + i w T)",
+    )  # fmt: skip
 
 
 def test_loss_angle_of_the_source():
     # Section 3.1: 6.5 degrees at 7 Hz; the formula gives 6.4 at 7.1.
     mass = 5.0
     found = complex_stiffness(elastomer(mass=mass), 1.0 / 0.141, mass)  # 141 steps a period
-    assert np.degrees(np.angle(found)) == pytest.approx(6.4, abs=0.1)
+    validated(
+        "Bushings, springs and stops", "loss angle of the hydromount of Bommer 2006 at 7.1 Hz",
+        np.degrees(np.angle(found)), 6.4, abs=0.1, unit="deg",
+        source="closed form: loss angle of the printed parameters; printed are 6.5 deg at 7 Hz",
+    )  # fmt: skip
 
 
 def test_slow_and_fast_limits():
@@ -83,13 +95,20 @@ def test_slow_and_fast_limits():
     shift = 1e-4 * K2 / (K1 + K2)  # equilibrium of the frozen branch
     crossings = np.flatnonzero(np.diff(np.sign(x - shift)))
     half_period = np.mean(np.diff(crossings)) * STEP
-    assert half_period == pytest.approx(np.pi * np.sqrt(220.0 / (K1 + K2)), rel=0.02)  # one step in 66
+    # one step in 66
+    validated(
+        "Bushings, springs and stops", "half period on a frozen Maxwell branch", half_period,
+        np.pi * np.sqrt(220.0 / (K1 + K2)), rel=0.02, unit="s", source="closed form: pi sqrt(m / (K1 + K2))",
+    )  # fmt: skip
 
     relaxed = elastomer(time=1e-9)
     relaxed.data.qpos[2] = 1e-4
     x = relaxed.step(200, relaxed.position)[:, 2]
     half_period = np.mean(np.diff(np.flatnonzero(np.diff(np.sign(x))))) * STEP
-    assert half_period == pytest.approx(np.pi * np.sqrt(220.0 / K1), rel=0.02)
+    validated(
+        "Bushings, springs and stops", "half period on a relaxed Maxwell branch", half_period,
+        np.pi * np.sqrt(220.0 / K1), rel=0.02, unit="s", source="closed form: pi sqrt(m / K1)",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("time", [1e-9, 1e-6, 1e-5, 1e-4, 1e-3])
@@ -117,7 +136,10 @@ def test_a_light_part_behind_a_strong_branch_does_not_ring():
     # m v' = -B v: (m + theta B h) a = -B v must leave exp(-z) of the velocity after a step, z = B h/m.
     for z in (1e-6, 5e-5, 2e-4, 1e-2, 1.0, 5.0):
         share = float(implicit_share(np.array([z]))[0])
-        assert 1.0 - z / (1.0 + share * z) == pytest.approx(np.exp(-z), rel=1e-9)
+        validated(
+            "Bushings, springs and stops", f"velocity that a strong branch leaves in a step, B h / m = {z:g}",
+            1.0 - z / (1.0 + share * z), np.exp(-z), rel=1e-9, source="closed form: exp(-B h / m)",
+        )  # fmt: skip
     # Second order: the half of the centred damping, and a small part of a step more.
     assert implicit_share(np.array([1e-3, 0.1])) == pytest.approx([0.5 + 1e-3 / 12.0, 0.5 + 0.1 / 12.0], rel=1e-5)
 

@@ -1,25 +1,29 @@
-"""The compiled form of the element laws and of the loop: the same results, and a way round where it cannot be had."""
+"""Compiled form of the element laws and of the loop: the results of the Python form, or a clear error."""
 
 from __future__ import annotations
 
 import ctypes
 import re
+import shutil
 import sys
+from collections.abc import Iterator
+from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 
-from vehicle.engines.simulation import callbacks
-from vehicle.engines.simulation.callbacks import SLOWER, compiled_rows, installed
+from tests.engines.simulation.python_form import difference, python_run
+from tests.validation import validated
+from vehicle.engines.simulation import structures
+from vehicle.engines.simulation.callbacks import compiled_rows, installed
+from vehicle.engines.simulation.compiled import CompiledRows
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.engines.simulation.run import simulate
+from vehicle.engines.simulation.stepping import simulate
 from vehicle.errors import MissingPartError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
-
-pytest.importorskip("numba", reason="the compiled form is optional")
 
 GROWTH = 2e-8
 """Both forms round differently in the last digit. The ideal ball joints answer a residual of 1e-16 m with accelerations
@@ -32,6 +36,13 @@ def beginning(signal: Signal, samples: int) -> Signal:
     return Signal(time=signal.time[:samples], displacement={"fr": signal.displacement["fr"][:samples]})
 
 
+@pytest.fixture(autouse=True)
+def checked_anew() -> Iterator[None]:
+    """Drop the cached offsets after a test that made them wrong."""
+    yield
+    structures.offsets.cache_clear()
+
+
 @pytest.fixture(scope="module")
 def second(high_piece: Signal) -> Signal:
     """One second: two chunks and the rest of a third."""
@@ -40,12 +51,12 @@ def second(high_piece: Signal) -> Signal:
 
 @pytest.fixture(scope="module")
 def compiled(car: Car, second: Signal) -> Recording:
-    return simulate(car.model, second, native=True)
+    return simulate(car.model, second)
 
 
 @pytest.fixture(scope="module")
 def python(car: Car, second: Signal) -> Recording:
-    return simulate(car.model, second, native=False)
+    return python_run(car.model, second)
 
 
 def prepared(car: Car) -> Rows:
@@ -59,7 +70,6 @@ def callbacks_in_place() -> list[object]:
 
 
 def test_all_channels_agree(compiled: Recording, python: Recording) -> None:
-    assert compiled.statistics.callback == "native" and python.statistics.callback == "python"
     assert compiled.statistics.notices == python.statistics.notices == ()
     for name, expected in python.channels.items():
         size = np.sqrt(np.mean(expected**2))
@@ -70,7 +80,10 @@ def test_energies_and_poses_agree(compiled: Recording, python: Recording) -> Non
     for name in ("work_in", "dissipated", "stored"):
         found, expected = (getattr(run.statistics.energies, name) for run in (compiled, python))
         # The stored energy is a difference of 1e4 J of weight and preload: 1e-12 of it.
-        assert found == pytest.approx(expected, rel=1e-9, abs=1e-8)
+        validated(
+            "Integration in MuJoCo", f"compiled element laws, energy {name}", found, expected, rel=1e-9, abs=1e-8,
+            unit="J", source="second derivation: Python form of the laws",
+        )  # fmt: skip
     np.testing.assert_array_equal(compiled.pose_time, python.pose_time)
     # Metres and radians; round-off of one step is 1e-16.
     np.testing.assert_allclose(compiled.poses, python.poses, rtol=0.0, atol=1e-12)
@@ -88,7 +101,7 @@ def test_two_compiled_runs_are_the_same_bit_for_bit(car: Car, second: Signal, co
 def test_other_recording_rates(second: Signal, rate: float) -> None:
     car = Car.load(overrides=["solver.timestep=0.0005", f"solver.record_rate={rate}"])
     piece = beginning(second, 301)
-    found, expected = (simulate(car.model, piece, native=form) for form in (True, False))
+    found, expected = (form(car.model, piece) for form in (simulate, python_run))
     for name, values in expected.channels.items():
         size = np.sqrt(np.mean(values**2))
         # Positions of some metres are rounded at 4e-16 m, and differenced twice over an interval.
@@ -97,38 +110,64 @@ def test_other_recording_rates(second: Signal, rate: float) -> None:
     np.testing.assert_array_equal(found.pose_time, expected.pose_time)
 
 
-def test_without_numba_the_python_form_runs_with_a_notice(
-    car: Car, second: Signal, monkeypatch: pytest.MonkeyPatch
+def test_without_numba_a_run_names_it(car: Car, second: Signal, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "vehicle.engines.simulation.compiled", None)
+    with pytest.raises(MissingPartError, match=r"^a run needs numba, which cannot be imported \(.+\); install it: pip"):
+        simulate(car.model, second)
+
+
+def shifted(name: str) -> type[ctypes.Structure]:
+    """Return the layout of a structure with all fields shifted by one number."""
+    fields = structures.layout(name, "nuserdata" if name == "mjModel" else "")._fields_
+    return type(name, (ctypes.Structure,), {"_fields_": [("shift", structures.PLAIN_TYPES["mjtNum"]), *fields]})
+
+
+@pytest.mark.parametrize(("structure", "named"), [("mjData", "mjData.time"), ("mjModel", "mjModel.nq")])
+def test_an_offset_that_does_not_fit_is_an_error(
+    car: Car, second: Signal, monkeypatch: pytest.MonkeyPatch, structure: str, named: str
 ) -> None:
-    piece = beginning(second, 51)
-    expected = simulate(car.model, piece, native=False)
-    monkeypatch.setitem(sys.modules, "numba", None)
-    run = simulate(car.model, piece)
-    assert run.statistics.callback == "python"
-    assert run.statistics.notices == (
-        "compiled callbacks need numba, which is missing (pip install numba); "
-        "the run used the Python form, which is slower and gives the same results",
+    right, wrong = structures.layout, shifted(structure)
+    monkeypatch.setattr(structures, "layout", lambda name, last="": wrong if name == structure else right(name, last))
+    structures.offsets.cache_clear()
+    with pytest.raises(MissingPartError) as caught:
+        simulate(car.model, second)
+    assert str(caught.value) == (
+        f"MuJoCo {mujoco.__version__} is not as its declarations (mujoco.introspect) say at {named}, so compiled code "
+        "would read wrong numbers; install the tested version: pip install -c constraints.txt mujoco"
     )
-    for name, values in expected.channels.items():
-        np.testing.assert_array_equal(run[name], values)
-    with pytest.raises(MissingPartError, match="compiled callbacks need numba, which is missing"):
-        simulate(car.model, piece, native=True)
 
 
-def test_a_structure_that_lies_elsewhere_is_noticed(car: Car, monkeypatch: pytest.MonkeyPatch) -> None:
-    from vehicle.engines.simulation import structures
-
+@pytest.mark.parametrize("name", structures.POINTERS)
+def test_a_pointer_that_does_not_fit_is_an_error(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     right = structures.layout("mjData")
-    fields = [(name, kind) for name, kind in right._fields_ if name != "qM"]  # type: ignore[misc]
-    wrong = type("mjData", (ctypes.Structure,), {"_fields_": [("shift", structures.PLAIN_TYPES["mjtNum"]), *fields]})
-    monkeypatch.setattr(structures, "layout", lambda name, last="": wrong if name == "mjData" else right)
-    assert compiled_rows(prepared(car)) == f"compiled callbacks are not available (LookupError: mjData.time); {SLOWER}"
+    fields = [(f"other_{one}" if one == name else one, kind) for one, kind in right._fields_]  # type: ignore[misc]
+    wrong = type("mjData", (ctypes.Structure,), {"_fields_": fields})
+    monkeypatch.setattr(structures, "layout", lambda name, last="": wrong)
+    data = mujoco.MjData(mujoco.MjModel.from_xml_string(structures.PROBE))
+    mujoco.mj_forward(data.model, data)
+    with pytest.raises(LookupError, match=f"mjData.{name}$"):
+        structures.pointer_offsets(data, structures.POINTERS)
+
+
+def test_another_copy_of_the_library_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    folder = Path(mujoco.__file__).parent
+    for path in folder.glob("libmujoco*"):
+        shutil.copy(path, tmp_path / path.name)
+    monkeypatch.setattr(mujoco, "__file__", str(tmp_path / "__init__.py"))
+    with pytest.raises(LookupError, match=r"mjcb_control \(the bindings use another library"):
+        structures.step_address()
+    assert callbacks_in_place() == [None, None, None]
+
+
+def test_the_offsets_are_checked_once_in_a_process(car: Car, monkeypatch: pytest.MonkeyPatch) -> None:
+    structures.offsets.cache_clear()
+    compiled_rows(prepared(car))
+    monkeypatch.setattr(structures, "scalar_offsets", lambda data: pytest.fail("checked again"))
+    compiled_rows(prepared(car))
 
 
 @pytest.mark.parametrize("constant", ["preload", "decay", "gain", "average", "impedance"])
-def test_other_numbers_are_found_out_at_the_start(car: Car, monkeypatch: pytest.MonkeyPatch, constant: str) -> None:
-    from vehicle.engines.simulation.compiled import CompiledRows
-
+def test_the_oracle_detects_other_constants(car: Car, monkeypatch: pytest.MonkeyPatch, constant: str) -> None:
     rows, right = prepared(car), CompiledRows.attach
 
     def wrong(self: CompiledRows, data: mujoco.MjData) -> None:
@@ -137,23 +176,20 @@ def test_other_numbers_are_found_out_at_the_start(car: Car, monkeypatch: pytest.
         right(self, data)
         rows.weights = own
 
+    assert difference(rows, compiled_rows(rows)) == ""
     monkeypatch.setattr(CompiledRows, "attach", wrong)
-    monkeypatch.setattr(callbacks, "PROVED", set())
-    found = compiled_rows(rows)
-    assert isinstance(found, str)
-    assert found.startswith("compiled callbacks gave another ") and found.endswith(f"than the Python form; {SLOWER}")
+    assert difference(rows, compiled_rows(rows)) != ""
 
 
 def test_stribeck_friction_agrees() -> None:
     rows = prepared(Car.load(overrides=STRIBECK))
     assert set(rows.layout.dampers.laws["friction_law"]) == {1.0}
-    assert not isinstance(compiled_rows(rows), str)
+    assert difference(rows, compiled_rows(rows)) == ""
 
 
 def test_the_callbacks_leave_other_models_alone(car: Car, python: Recording) -> None:
     rows = prepared(car)
     callback = compiled_rows(rows)
-    assert not isinstance(callback, str)
     other = car.model.spec.compile()
     plain = mujoco.MjModel.from_xml_string(
         "<mujoco><worldbody><body><joint type='slide'/><geom size='.1'/></body></worldbody></mujoco>"
@@ -188,7 +224,7 @@ def test_an_interrupt_between_chunks_removes_the_callbacks(car: Car, second: Sig
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        simulate(car.model, second, progress=interrupt, native=True)
+        simulate(car.model, second, progress=interrupt)
     assert callbacks_in_place() == [None, None, None]
 
 
@@ -198,9 +234,9 @@ def test_a_lost_state_stops_both_forms(car: Car, second: Signal) -> None:
     displacement[200:] += 1e7
     jump = Signal(time=piece.time, displacement={"fr": displacement})
     times = []
-    for form in (True, False):
+    for form in (simulate, python_run):
         with pytest.raises(SimulationError) as caught:
-            simulate(car.model, jump, native=form)
+            form(car.model, jump)
         found = re.search(r"^the state is no longer finite at t = (\S+) s \(joint \w+\); the step", str(caught.value))
         assert found, str(caught.value)
         times.append(float(found.group(1)))
@@ -213,28 +249,9 @@ def test_other_rows_than_those_compiled_for_lose_the_state(car: Car) -> None:
     # The Python form raises there; compiled code cannot, so it makes the state one that the guard of a run refuses.
     rows = prepared(car)
     callback = compiled_rows(rows)
-    assert not isinstance(callback, str)
     data = mujoco.MjData(rows.model)
     callback.attach(data)
     data.eq_active[0] = 0
     with installed(rows, callback):
         mujoco.mj_forward(rows.model, data)
     assert np.all(np.isnan(data.qfrc_applied))
-
-
-def test_cars_of_one_structure_are_proved_once(car: Car, monkeypatch: pytest.MonkeyPatch) -> None:
-    proofs: list[Rows] = []
-
-    def count(rows: Rows, compiled: object) -> str:
-        proofs.append(rows)
-        return ""
-
-    monkeypatch.setattr(callbacks, "PROVED", set())
-    monkeypatch.setattr(callbacks, "_difference", count)
-    other = Car.load(None, ["damper.viscous=2000", "bushings.suspension_mount.stiffness.z=8e5"])
-    for one in (car, other, car):
-        assert not isinstance(compiled_rows(prepared(one)), str)
-    assert len(proofs) == 1
-    # Another law of the dampers, another path through the code.
-    assert not isinstance(compiled_rows(prepared(Car.load(None, ["damper.friction_law=stribeck"]))), str)
-    assert len(proofs) == 2

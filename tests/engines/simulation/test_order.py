@@ -14,6 +14,7 @@ from tests.engines.simulation.row_model import (
     empty_spec,
     poles,
 )
+from tests.validation import validated
 
 OMEGA = 100.0
 STEPS = np.array([4e-3, 2e-3, 1e-3])  # w h from 0.4 to 0.1
@@ -45,8 +46,15 @@ def test_undamped_frequencies_are_of_fourth_order(found):
     pairs = [found(step) for step in STEPS]
     errors = [abs(pair[0].imag) / OMEGA - 1.0 for pair in pairs]
     # Expected (w h)^4 / 480; the next term adds 0.02 to the slope over this range.
-    assert slope(errors) == pytest.approx(4.0, abs=0.05)
-    assert errors[-1] == pytest.approx((OMEGA * STEPS[-1]) ** 4 / 480.0, rel=0.05)
+    kind = "bushing" if found is bushing_poles else "body mode"
+    validated(
+        "Integration in MuJoCo", f"order of convergence of the undamped frequency of a {kind}", slope(errors), 4.0,
+        abs=0.05, source="closed form: (w h)^4 / 480",
+    )  # fmt: skip
+    validated(
+        "Integration in MuJoCo", f"relative error of the undamped frequency of a {kind}, w h = 0.1", errors[-1],
+        (OMEGA * STEPS[-1]) ** 4 / 480.0, rel=0.05, source="closed form: (w h)^4 / 480",
+    )  # fmt: skip
     # No numerical damping at all: a plain implicit spring would have w h / 2 = 5 to 20 %.
     assert max(abs(pair[0].real) for pair in pairs) < 1e-6 * OMEGA
 
@@ -56,7 +64,10 @@ def test_damped_poles_are_of_second_order(ratio):
     exact = OMEGA * complex(-ratio, np.sqrt(1.0 - ratio**2))
     errors = np.array([np.min(np.abs(bushing_poles(step, 4.0 * ratio * OMEGA) - exact)) for step in STEPS]) / OMEGA
     # 2 for the damping, drawn upwards where the fourth-order part still counts (light damping).
-    assert 1.9 < slope(errors) < 2.4
+    validated(
+        "Integration in MuJoCo", f"order of convergence of the pole of a bushing, damping ratio {ratio:g}",
+        slope(errors), 2.0, within=(1.9, 2.4), source="closed form: pole of s^2 + 2 zeta w s + w^2",
+    )  # fmt: skip
     assert errors[-1] < ratio * (OMEGA * STEPS[-1]) ** 2  # 1 % of the damping at w h = 0.1
 
 
@@ -77,11 +88,18 @@ def swing(phase):
 
 def test_an_averaged_element_is_of_fourth_order_where_it_is_not_stiff():
     errors = [abs(bushing_poles(step, averaged=True)[0].imag) / OMEGA - 1.0 for step in STEPS]
-    assert slope(errors) == pytest.approx(4.0, abs=0.05)
+    validated(
+        "Integration in MuJoCo", "order of convergence of the frequency of an averaged element", slope(errors), 4.0,
+        abs=0.05, source="closed form: (w h)^4 / 480",
+    )  # fmt: skip
     # Where it is stiff, with w h from 2.5 to 10, it is slower, as much as its average says.
     for step in (0.025, 0.05, 0.1):
         found = abs(bushing_poles(step, averaged=True)[0].imag) * step
-        assert found == pytest.approx(2.0 * np.arcsin(np.sqrt(swing(OMEGA * step))), rel=1e-6)
+        validated(
+            "Integration in MuJoCo", f"angle per step of a stiff averaged element, w h = {OMEGA * step:g}", found,
+            2.0 * np.arcsin(np.sqrt(swing(OMEGA * step))), rel=1e-6, unit="rad",
+            source="closed form: 2 asin sqrt((w h)^2 / 4 / (1 + beta (w h)^2))",
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize("phase", [1.0, 10.0, 100.0, 1000.0])

@@ -9,11 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from vehicle.engines.simulation import record_pointers as pointers
 from vehicle.engines.simulation.element_records import Indices, Table, Vector
-
-pointers = pytest.importorskip(
-    "vehicle.engines.simulation.record_pointers", reason="numba is not installed", exc_type=ImportError
-)
 
 
 class Inner(NamedTuple):

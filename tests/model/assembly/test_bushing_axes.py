@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.simulation.axle_statics import AxleStatics
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows
@@ -57,7 +58,10 @@ def test_the_matrices_hold_the_turned_stiffness():
     for name, law in (("stiffness", STIFFNESS), ("damping", DAMPING)):
         expected = row.T @ np.diag(law) @ row
         added = getattr(with_it.matrices.system, name) - getattr(without.matrices.system, name)
-        np.testing.assert_allclose(added, expected, atol=1e-6 * np.max(np.abs(expected)))
+        validated(
+            "Linear system", f"{name} matrix of a bushing along a line", added, expected, peak=1e-6,
+            source="closed form: J' T' K T J with the Jacobians of MuJoCo",
+        )  # fmt: skip
     # In MuJoCo: the engine is shifted, and the force of the bushing is that of the same matrix in world axes.
     rows, shift = Rows(model, with_it.model.static.preload), np.array([1e-4, -2e-4, 3e-4])
     data.qpos[model.joint("engine").qposadr[0] : model.joint("engine").qposadr[0] + 3] += shift

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.model.assembly.connections import element_law
 from vehicle.model.assembly.coupled_attachment import STRUCTURAL_LOSS_TIME
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -60,7 +61,10 @@ def test_local_stiffness_in_series(car, name, axis):
     found_here = dynamic(law, axis)
     if name == "hydromount" and axis < 2:
         assert parameters.damping[axis] > 0.0
-    np.testing.assert_allclose(found_here, exact, rtol=1e-9)
+    validated(
+        "Bushings, springs and stops", f"{name} in series with its local stiffness, axis {'xyz'[axis]}, 0.01 to 1e4 Hz",
+        found_here, exact, rel=1e-9, unit="N/m", source="closed form: 1 / (1 / K0 + 1 / K(jw))",
+    )  # fmt: skip
     assert np.all(np.abs(found_here[:1]) < parameters.stiffness[axis])
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.coupled_attachment import coupled_law
 from vehicle.model.parameters.axes import axes_along
@@ -52,14 +53,24 @@ def test_the_rows_have_the_dynamic_stiffness_of_the_series(law, axes):
         own = turn.T @ own @ turn
         exact = own @ np.linalg.inv(np.eye(3) + compliance @ own)
         found = directions.T @ np.diag(k + s * b + k2 * s * tau / (1.0 + s * tau)) @ directions
-        assert np.linalg.norm(found - exact) < allowed * np.linalg.norm(exact)
+        place = "" if axes is None else ", turned"
+        validated(
+            "Bushings, springs and stops",
+            f"{type(law).__name__} of {law.stiffness[0]:g} N/m behind sheet metal{place}, {frequency:g} Hz, error",
+            np.linalg.norm(found - exact) / np.linalg.norm(exact), 0.0, abs=allowed,
+            source="closed form: (G + Z^-1)^-1",
+        )  # fmt: skip
         assert np.abs(found.imag - exact.imag).max() <= 5e-3 * np.abs(exact.imag).max()
 
 
 def test_an_ideal_joint_becomes_the_sheet_metal_itself():
     compliance = flexibility()
     k, b, _, _, directions = coupled_law(connection(None), compliance)
-    np.testing.assert_allclose(directions.T @ np.diag(k) @ directions, np.linalg.inv(compliance), rtol=1e-9)
+    validated(
+        "Bushings, springs and stops", "stiffness of an ideal joint on sheet metal",
+        directions.T @ np.diag(k) @ directions, np.linalg.inv(compliance), rel=1e-9, unit="N/m",
+        source="closed form: inverse of the flexibility",
+    )  # fmt: skip
     np.testing.assert_allclose(b, 1e-4 * k)
 
 

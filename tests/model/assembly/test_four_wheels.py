@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.visuals import visible_shapes
 from vehicle.model.parameters.shipped import VEHICLES
@@ -170,7 +171,12 @@ def test_the_rigid_limit_is_the_ride_model(tmp_path):
     ours = errors[0] > 1e-5
     assert ours.sum() > 20 and errors[0].max() < 1e-3
     np.testing.assert_allclose(errors[0][ours] / errors[1][ours], 4.0, rtol=0.02)
-    np.testing.assert_allclose((4.0 * stiff - soft) / 3.0, exact, rtol=1e-6)
+    limit = (4.0 * stiff - soft) / 3.0
+    for words, part in (("poles", slice(7)), ("FRF of the seat to each plate", slice(7, None))):
+        validated(
+            "Linear system", f"{words} of a car on four wheels in the rigid limit", limit[part], exact[part], rel=1e-6,
+            source="second derivation: ride model of seven coordinates, on paper",
+        )  # fmt: skip
 
 
 def test_a_car_turned_around_answers_turned_around():
@@ -230,7 +236,11 @@ def same_answers(one: dict[str, Any], two: dict[str, Any], other: dict[str, str]
     for stuck in ("stuck", "sliding"):
         first, second = (np.array([mode.frequency for mode in car.modes(stuck)]) for car in cars)
         # Stiffness is taken by differences of forces; its round-off is seen in the softest modes.
-        np.testing.assert_allclose(second, first, rtol=1e-5)
+        words = "turned around" if other["fr"] == "rr" else "with left and right exchanged"
+        validated(
+            "Linear system", f"frequencies of a car {words}, dampers {stuck}", second, first, rel=1e-5, unit="Hz",
+            source="conservation: symmetry, the same car from its other side",
+        )  # fmt: skip
     for wheel, counterpart in other.items():
         for axis in ("x", "y", "z"):
             a = cars[0].matrix_frf([f"seat_rail_acc_{axis}"], frequency, wheel=wheel)
@@ -256,7 +266,10 @@ def test_the_road_car_stands_and_rides(road):
     static, model = road.model.static, road.model.model
     assert road.vehicle.wheels == WHEELS and static.support_load == {} and static.residual < 1e-6
     weight = road.vehicle.gravity * (model.body_mass.sum() - 9e-9)
-    assert sum(static.tyre_load.values()) == pytest.approx(weight, rel=1e-9)
+    validated(
+        "Static equilibrium", "focus on four wheels: sum of the wheel loads", sum(static.tyre_load.values()), weight,
+        rel=1e-9, unit="N", source="conservation: m g from the masses of all bodies",
+    )  # fmt: skip
     sliding = {next(iter(mode.motions)): mode.frequency for mode in road.modes("sliding")}
     assert 1.2 < sliding["body heave (z)"] < 1.6
     # The body keeps its modes: what the rear axle is fixed to is carried by its nodes.

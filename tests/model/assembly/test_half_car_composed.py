@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.response import frequency_response
@@ -107,7 +108,10 @@ def test_all_poles_of_the_half_car_are_poles_of_the_car(car):
     assert len(poles) == 7
     found = car.poles.poles
     worst = [np.min(np.abs(found - pole)) / abs(pole) for pole in poles]
-    assert max(worst) < 1e-8, worst
+    validated(
+        "Linear system", "poles of the half car with rider, composed from a vehicle file, relative distance",
+        np.array(worst), 0.0, abs=1e-8, source="second derivation: lumped half car",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("driven", [(1.0, 0.0), (0.0, 1.0)])
@@ -118,4 +122,8 @@ def test_the_responses_are_those_of_the_half_car(car, driven):
     share = [driven["fr".index(wheel[0])] for wheel in car.vehicle.wheels]
     channels = [f"{place}_acc_z" for place in SAME]
     ours = frequency_response(first_order(car.matrices.system), frequency, channels, driven=share)
-    np.testing.assert_allclose(ours, theirs, rtol=1e-8)
+    validated(
+        "Linear system",
+        f"FRF of seat, limbs and rail to the {'front' if driven[0] else 'rear'} axle, composed half car", ours, theirs,
+        rel=1e-8, unit="(m/s2)/m", source="second derivation: lumped half car",
+    )  # fmt: skip

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from vehicle.engines.simulation import layout
+from vehicle.engines.simulation import row_layout
 from vehicle.model.assembly.spec import assemble
 from vehicle.runs.car import Car
 
@@ -16,7 +16,7 @@ KIND = mujoco.mjtJoint
 
 def numeric(model, name):
     """A custom field that must be there."""
-    found = layout.numeric(model, name)
+    found = row_layout.numeric(model, name)
     assert found is not None, name
     return found
 
@@ -121,7 +121,7 @@ def test_the_constants_of_the_elements_are_in_the_model(car):
         if model.eq_objtype[index] == mujoco.mjtObj.mjOBJ_SITE:
             ends = (model.eq_obj1id[index], model.eq_obj2id[index])
             touches = body in [model.site_bodyid[site] for site in ends]
-            shape = layout.numeric(model, f"shape/{model.equality(index).name}")
+            shape = row_layout.numeric(model, f"shape/{model.equality(index).name}")
             assert (shape is not None) == touches
             count += touches
     assert count == 15  # four mounts and arm bushings, two rear supports, three of the engine, six balls

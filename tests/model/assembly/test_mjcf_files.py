@@ -74,8 +74,8 @@ def test_scene_opens_and_stands_still_without_callbacks(files, tmp_path):
 
 
 def test_the_file_alone_holds_the_element_constants(files, tmp_path):
-    from vehicle.engines.simulation.law_numbers import law_names
-    from vehicle.engines.simulation.layout import read_layout
+    from vehicle.engines.simulation.law_arrays import law_names
+    from vehicle.engines.simulation.row_layout import read_layout
 
     write_mjcf(tmp_path, files)
     own, built_model = mujoco.MjModel.from_xml_path(str(tmp_path / "car.xml")), Car.load().model.model

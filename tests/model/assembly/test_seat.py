@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
+from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.response import frequency_response
 from vehicle.errors import ConfigurationError
@@ -52,7 +53,10 @@ def test_the_matrices_have_the_apparent_mass(seated):
     assert not np.any(rows.branch) and not np.any(rows.height)
     force = frequency_response(form, frequency, "force") + frequency_response(form, frequency, "drag", "velocity")
     found = force / frequency_response(form, frequency, "seat_acc_z", "acceleration")
-    np.testing.assert_allclose(found, apparent_mass(frequency), rtol=1e-3)
+    validated(
+        "Linear system", "apparent mass of a sitting person, 0.05 to 50 Hz", found, apparent_mass(frequency), rel=1e-3,
+        unit="kg", source="closed form: Fairley and Griffin 1989, one mass on a spring",
+    )  # fmt: skip
     assert found[0] == pytest.approx(SITTING, rel=1e-3)
 
 
@@ -73,7 +77,12 @@ def test_a_run_has_the_apparent_mass(seated, engine):
     error = run[FORCE] - SITTING * 9.81 - expected
     if engine == "mujoco":
         assert run.recording.statistics.energies.residual < 1e-3, "what the cushion and the person take counts"
-    assert np.std(expected) > 10.0 and np.sqrt(np.mean(error**2)) < 3e-4 * np.std(expected)
+    assert np.std(expected) > 10.0
+    validated(
+        "Integration in MuJoCo" if engine == "mujoco" else "Reduced engine",
+        "force under a seat with its occupant, RMS error", np.sqrt(np.mean(error**2)) / np.std(expected), 0.0, abs=3e-4,
+        source="second derivation: apparent mass as a filter, scipy lsim",
+    )  # fmt: skip
 
 
 def test_the_seat_is_the_cushion(seated):

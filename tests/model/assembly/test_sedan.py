@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
@@ -63,7 +64,11 @@ def test_its_damper_is_that_of_the_source():
     for sign in (1.0, -1.0):
         exact = 4352.487 * velocity / (1.0 + 1.3 * velocity)
         force = sign * np.interp(sign * velocity, own.law.velocity, own.law.force)
-        assert own.name == "damper_fr" and np.max(np.abs(force / exact - 1.0)) < 0.02
+        assert own.name == "damper_fr"
+        validated(
+            "Dampers and friction", f"damper of the sedan, {'bump' if sign > 0.0 else 'rebound'}, 0.01 to 2 m/s", force,
+            exact, rel=0.02, unit="N", source="closed form: law of the source of the sedan, c v / (1 + 1.3 v)",
+        )  # fmt: skip
 
 
 def test_it_stands_and_rides(sedan):
@@ -73,8 +78,15 @@ def test_it_stands_and_rides(sedan):
     mujoco.mj_kinematics(model, data)
     arm = model.body_mass @ (data.xipos[:, 0] - places["fr"])
     loads = static.tyre_load
-    assert loads["rr"] + loads["rl"] == pytest.approx(gravity * arm / (places["rr"] - places["fr"]), rel=1e-6)
-    assert sum(loads.values()) == pytest.approx(gravity * model.body_mass.sum(), rel=1e-9)
+    validated(
+        "Static equilibrium", "sedan: load of the rear axle", loads["rr"] + loads["rl"],
+        gravity * arm / (places["rr"] - places["fr"]), rel=1e-6, unit="N",
+        source="closed form: moment of all masses about the front axle",
+    )  # fmt: skip
+    validated(
+        "Static equilibrium", "sedan: sum of the wheel loads", sum(loads.values()), gravity * model.body_mass.sum(),
+        rel=1e-9, unit="N", source="conservation: m g from the masses of all bodies",
+    )  # fmt: skip
     assert loads["fr"] == pytest.approx(loads["fl"], rel=1e-6) and static.residual < 1e-6
     sliding = [(mode.description, mode.frequency) for mode in sedan.modes("sliding")]
     heave = [frequency for name, frequency in sliding if name.startswith("body heave")]
@@ -90,4 +102,7 @@ def test_both_engines_drive_it(sedan):
     runs = [sedan.run(Signal(time=time, displacement=plates), engine=engine) for engine in ("mujoco", "reduced")]
     for channel in ("seat_rail_acc_z", "knuckle_rr_acc_z", "tyre_fr_force_z", "tyre_rl_force_z"):
         stepped, reduced = (run[channel] for run in runs)
-        assert np.std(reduced - stepped) < 0.02 * np.std(stepped), channel
+        validated(
+            "Reduced engine", f"sedan on a hump, RMS difference of {channel} to MuJoCo, of its RMS",
+            np.std(reduced - stepped) / np.std(stepped), 0.0, abs=0.02, source="second derivation: MuJoCo",
+        )  # fmt: skip

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy
 
+from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.model.flexbody.sources.matrix_files import read_matrices
 from vehicle.model.flexbody.sources.reduction import free_modes
@@ -67,9 +68,15 @@ def test_the_six_modes_of_ansys_to_its_digits(export, suffix):
     found = free_modes(body, 21000.0)
     assert want[0] == pytest.approx(7366.495, abs=5e-4)
     # Sixteen digits in the result file; the entries of K were kept to 1e-14 of the largest, which is worth 2e-11.
-    np.testing.assert_allclose(found.frequencies, want, rtol=1e-10)
+    validated(
+        "Body models", f"six frequencies of a beam, matrices of ANSYS as .{suffix}", found.frequencies, want, rel=1e-10,
+        unit="Hz", source="foreign code: ANSYS, frequencies of its result file",
+    )  # fmt: skip
     volume, density = 5.0 * INCH**3, 4.1408e-4 * SLINCH / INCH**3  # titanium
-    assert found.rigid.mass == pytest.approx(volume * density, rel=1e-9)
+    validated(
+        "File readers", f"mass of a beam, matrices of ANSYS as .{suffix}", found.rigid.mass, volume * density, rel=1e-9,
+        unit="kg", source="closed form: volume times density",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 import scipy.linalg
 
 from tests.model.flexbody.box_body import MASSES, POSITIONS, box_fields, box_stiffness
+from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.attached_mass import with_attached_masses
 from vehicle.model.flexbody.modes import free_free_modes
@@ -36,7 +37,12 @@ def test_frequencies_are_those_of_the_constrained_two_body_problem():
     free = scipy.linalg.null_space(joints)
     values = scipy.linalg.eigh(free.T @ stiffness @ free, free.T @ mass @ free, eigvals_only=True)
     found = with_attached_masses(body, ADDED)
-    np.testing.assert_allclose(found.frequencies, np.sqrt(values[6:]) / (2.0 * np.pi), rtol=1e-8)  # round-off
+    # round-off
+    validated(
+        "Body models", "frequencies of a body with attached masses", found.frequencies,
+        np.sqrt(values[6:]) / (2.0 * np.pi), rel=1e-8, unit="Hz",
+        source="second derivation: masses joined by constraints, null space",
+    )  # fmt: skip
 
 
 def test_with_all_modes_it_is_the_frame_solved_again():
@@ -45,7 +51,11 @@ def test_with_all_modes_it_is_the_frame_solved_again():
     heavier[[5, 7]] += list(ADDED.values())
     frequencies, shapes = free_free_modes(box_stiffness(), heavier, POSITIONS, 18)
     found = with_attached_masses(body, ADDED)
-    np.testing.assert_allclose(found.frequencies, frequencies, rtol=1e-7)  # round-off of modes a decade apart
+    # round-off of modes a decade apart
+    validated(
+        "Body models", "frequencies of a body of all modes with attached masses", found.frequencies, frequencies,
+        rel=1e-7, unit="Hz", source="second derivation: heavier frame solved again",
+    )  # fmt: skip
     np.testing.assert_allclose(found.shapes[:3], shapes[:3], atol=1e-7 * np.abs(shapes).max())
 
 

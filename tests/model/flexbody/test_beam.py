@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import BeamSection, beam_stiffness, frame_stiffness, local_axes
 from vehicle.model.flexbody.modes import condense_rotations, free_free_modes, rigid_shapes
@@ -35,7 +36,10 @@ def test_cantilever_has_the_textbook_deflection_and_slope_in_both_planes(turn):
         deflection = force * LENGTH**3 / (3.0 * stiffness) * axes[axis]
         slope = sign * force * LENGTH**2 / (2.0 * stiffness) * axes[slope_axis]
         # exact cubic elements: only round-off of a 18 x 18 solve is left
-        np.testing.assert_allclose(tip, np.r_[deflection, slope], rtol=1e-9, atol=1e-12)
+        validated(
+            "Body models", f"cantilever {TURNS.index(turn) + 1}, bending in plane {axis}, deflection and slope", tip,
+            np.r_[deflection, slope], rel=1e-9, abs=1e-12, source="closed form: F l^3 / (3 E I), F l^2 / (2 E I)",
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize("turn", TURNS)
@@ -44,13 +48,22 @@ def test_cantilever_stretches_and_twists_as_the_textbook_says(turn):
     tip = cantilever_tip(direction, np.r_[500.0 * direction, 70.0 * direction])
     stretch = 500.0 * LENGTH / SECTION.axial * direction
     twist = 70.0 * LENGTH / SECTION.torsion * direction
-    np.testing.assert_allclose(tip, np.r_[stretch, twist], rtol=1e-9, atol=1e-13)  # round-off
+    validated(
+        "Body models", f"cantilever {TURNS.index(turn) + 1}, stretch and twist", tip, np.r_[stretch, twist], rel=1e-9,
+        abs=1e-13, source="closed form: F l / (E A), M l / (G J)",
+    )  # fmt: skip
 
 
 def test_tip_moment_bends_a_cantilever_into_a_parabola():
     tip = cantilever_tip(np.array([1.0, 0.0, 0.0]), [0.0, 0.0, 0.0, 0.0, 0.0, 35.0])
-    assert tip[1] == pytest.approx(35.0 * LENGTH**2 / (2.0 * SECTION.bending_z), rel=1e-9)
-    assert tip[5] == pytest.approx(35.0 * LENGTH / SECTION.bending_z, rel=1e-9)
+    validated(
+        "Body models", "cantilever under a moment, deflection", tip[1], 35.0 * LENGTH**2 / (2.0 * SECTION.bending_z),
+        rel=1e-9, unit="m", source="closed form: M l^2 / (2 E I)",
+    )  # fmt: skip
+    validated(
+        "Body models", "cantilever under a moment, slope", tip[5], 35.0 * LENGTH / SECTION.bending_z, rel=1e-9,
+        unit="rad", source="closed form: M l / (E I)",
+    )  # fmt: skip
 
 
 def test_rigid_motion_of_a_beam_needs_no_force():
@@ -94,8 +107,15 @@ def test_free_beam_with_lumped_masses_converges_to_euler_bernoulli_at_second_ord
         exact = roots**2 / LENGTH**2 * np.sqrt(SECTION.bending_y / density) / (2.0 * np.pi)
         errors.append(np.abs(found / exact - 1.0))
     order = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-    np.testing.assert_allclose(order, 2.0, atol=0.1)  # higher terms still matter at 16 elements
-    assert np.max(errors[-1]) < 2e-3
+    # higher terms still matter at 16 elements
+    validated(
+        "Body models", "order of convergence of the frequencies of a free beam", order, 2.0, abs=0.1,
+        source="closed form: Euler-Bernoulli, cos b cosh b = 1",
+    )  # fmt: skip
+    validated(
+        "Body models", "frequencies of a free beam of 64 elements, relative error", errors[-1], 0.0, abs=2e-3,
+        source="closed form: Euler-Bernoulli, cos b cosh b = 1",
+    )  # fmt: skip
 
 
 def test_free_frame_modes_are_orthogonal_to_rigid_motion_and_mass_normalised():
@@ -114,7 +134,11 @@ def test_free_frame_modes_are_orthogonal_to_rigid_motion_and_mass_normalised():
     full_mass[np.arange(24) % 6 < 3] = weight
     root = np.sqrt(full_mass)
     values = np.linalg.eigvalsh(k / np.outer(root, root))
-    np.testing.assert_allclose(np.sqrt(values[6:12]) / (2 * np.pi), frequencies, rtol=1e-5)  # eps * 1e14 / w^2
+    # eps * 1e14 / w^2
+    validated(
+        "Body models", "frequencies of a free frame", frequencies, np.sqrt(values[6:12]) / (2 * np.pi), rel=1e-5,
+        unit="Hz", source="second derivation: uncondensed matrices",
+    )  # fmt: skip
     assert recovery.shape == (24, 12)
 
 

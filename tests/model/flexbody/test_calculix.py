@@ -12,6 +12,7 @@ import pytest
 import scipy
 
 from tests.model.flexbody import solid_frame
+from tests.validation import validated
 from vehicle.commands import body as command
 from vehicle.errors import DataError
 from vehicle.model.flexbody.sources.calculix import read_calculix
@@ -64,8 +65,15 @@ def test_frequencies_mass_and_rigid_motions(job, body, modes):
     want = printed(job)
     count = int(np.sum(want <= 80.0))
     assert count > 15 and len(modes.frequencies) == count
-    np.testing.assert_allclose(modes.frequencies, want[:count], rtol=1e-6)  # seven digits are printed
-    assert modes.rigid.mass == pytest.approx(solid_frame.mass(), rel=1e-12)
+    # seven digits are printed
+    validated(
+        "Body models", "frequencies of a car-size frame of solids to 80 Hz", modes.frequencies, want[:count], rel=1e-6,
+        unit="Hz", source="foreign code: CalculiX, frequencies as printed",
+    )  # fmt: skip
+    validated(
+        "Body models", "mass of a car-size frame of solids", modes.rigid.mass, solid_frame.mass(), rel=1e-12, unit="kg",
+        source="closed form: volume times density",
+    )  # fmt: skip
     motions = body.rigid_motions(modes.rigid.cog)
     assert np.abs(body.stiffness @ motions).max() < 1e-9 * (abs(body.stiffness) @ abs(motions)).max()
     assert free_modes(body, 80.0).orthogonality < 1e-9
@@ -112,7 +120,11 @@ def test_driving_point_frf_of_modes_and_residual_against_the_matrices(
             found = square * (reduced + (modes.residual[name] if with_residual else 0.0))
             wrong[with_residual][name] += np.sum((found - whole) ** 2)
     with_it, without = (np.sqrt([wrong[kind][name] / total[name] for name in total]) for kind in (True, False))
-    assert with_it.max() < allowed, with_it
+    validated(
+        "Body models",
+        f"driving-point accelerance of a frame of solids, 5 to 50 Hz, {method} modes to {up_to:g} Hz, error", with_it,
+        0.0, abs=allowed, source="foreign code: CalculiX, full matrices K and M",
+    )  # fmt: skip
     assert without.min() > (5.0 if method == "free-free" else 2.0) * with_it.max(), without
 
 
@@ -122,7 +134,11 @@ def test_modes_of_the_result_file_are_the_same(job, modes):
     shapes = found.body.displacements(found.vectors)
     assert np.all(np.diag(mac(shapes, modes.body.displacements(modes.vectors))) > 1.0 - 1e-6)
     scale = np.linalg.norm(found.vectors, axis=0) / np.linalg.norm(modes.vectors, axis=0)
-    np.testing.assert_allclose(scale, 1.0, rtol=1e-4)  # six digits in the file
+    # six digits in the file
+    validated(
+        "File readers", "scale of the modes of a CalculiX result file", scale, 1.0, rel=1e-4,
+        source="second derivation: modes of the matrices",
+    )  # fmt: skip
 
 
 def test_the_command_writes_the_model_and_lists_the_points(job, modes, places, tmp_path, capsys):
@@ -190,7 +206,10 @@ def test_incompatible_modes_are_kept(tmp_path):
     body = read_calculix(tmp_path / "stored.sti").scaled(1.0, 1.0).placed("-x,-y,z", (2.0, 0.0, 0.0))
     want = printed(tmp_path)
     found = free_modes(body, float(want[4]) * 1.01)
-    np.testing.assert_allclose(found.frequencies[:5], want[:5], rtol=1e-6)
+    validated(
+        "Body models", "frequencies of a block of C3D8I bricks", found.frequencies[:5], want[:5], rel=1e-6, unit="Hz",
+        source="foreign code: CalculiX, frequencies as printed",
+    )  # fmt: skip
     assert found.rigid.mass == pytest.approx(2.4 * 1.2 * 0.8 * 200.0, rel=1e-9)
     assert np.sum(body.direction >= 6) == 9 * 24
     inch = read_calculix(tmp_path / "stored.sti").scaled(0.0254, 1.0)

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.inertia import (
     about_cog,
@@ -28,7 +29,11 @@ def body_tensor(ixx):
 )
 def test_published_and_improved_principal_moments(ixx, moments, shortfall):
     tensor = body_tensor(ixx)
-    np.testing.assert_allclose(np.linalg.eigvalsh(tensor), moments, atol=0.5)  # published rounded to whole numbers
+    # published rounded to whole numbers
+    validated(
+        "Published cars", f"principal moments of the body, Ixx {ixx:g} kg m2", np.linalg.eigvalsh(tensor),
+        np.array(moments), abs=0.5, unit="kg m2", source="publication: Bommer 2006, mass properties of the body",
+    )  # fmt: skip
     assert triangle_shortfall(tensor) == pytest.approx(shortfall, abs=1.0)  # sums of three rounded numbers
 
 
@@ -47,7 +52,11 @@ def test_tensor_and_parallel_axis_agree_with_sums_over_points():
     cog = m @ r / m.sum()
     arm = r - cog
     direct = sum(mi * (a @ a * np.eye(3) - np.outer(a, a)) for mi, a in zip(m, arm, strict=True))
-    np.testing.assert_allclose(about_cog(origin, m.sum(), cog), direct, rtol=1e-10, atol=1e-10)  # round-off
+    # round-off
+    validated(
+        "Body models", "inertia about the centre of gravity", about_cog(origin, m.sum(), cog), direct, rel=1e-10,
+        abs=1e-10, unit="kg m2", source="closed form: sum over points",
+    )  # fmt: skip
     np.testing.assert_allclose(second_moments(direct), (arm.T * m) @ arm, atol=1e-10)  # round-off
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.model.flexbody.modal_test import true_body, write_modes
+from tests.validation import validated
 from vehicle.commands import body as command
 from vehicle.errors import DataError
 from vehicle.model.flexbody.sources.residual_table import read_residuals
@@ -58,7 +59,11 @@ def test_shapes_of_a_test_are_mapped_and_scaled(measured):
 def test_the_car_on_exact_modes_is_the_car_on_the_body(measured, high_piece):
     _, cars = measured
     true = Car.load(overrides=[RIGID])
-    np.testing.assert_allclose(frequencies(cars["exact"]), frequencies(true), rtol=1e-3)  # places have five digits
+    # places have five digits
+    validated(
+        "Body models", "frequencies of the car on modes of a modal test", frequencies(cars["exact"]), frequencies(true),
+        rel=1e-3, unit="Hz", source="second derivation: car on the body that was tested",
+    )  # fmt: skip
     assert seat_rail(cars["exact"], high_piece) == pytest.approx(seat_rail(true, high_piece), rel=1e-3)
 
 
@@ -67,7 +72,10 @@ def test_errors_of_a_test_change_the_car_less_than_themselves(measured, high_pie
     _, cars = measured
     true = Car.load(overrides=[RIGID])
     found, want = frequencies(cars["noisy"]), frequencies(true)
-    np.testing.assert_allclose(found, want, rtol=0.01)
+    validated(
+        "Body models", "frequencies of the car on modes of a test with noise and 3 % of scale", found, want, rel=0.01,
+        unit="Hz", source="second derivation: car on the body that was tested",
+    )  # fmt: skip
     assert np.abs(found / want - 1.0).max() > 1e-3  # the errors did reach the car
     assert seat_rail(cars["noisy"], high_piece) == pytest.approx(seat_rail(true, high_piece), rel=0.03)
 

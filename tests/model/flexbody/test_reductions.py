@@ -7,6 +7,7 @@ import pytest
 import scipy
 
 from tests.model.flexbody.box_body import MASSES, POSITIONS, box_matrices, box_stiffness
+from tests.validation import validated
 from vehicle.model.flexbody.modes import free_free_modes
 from vehicle.model.flexbody.sources import superelement_of
 from vehicle.model.flexbody.sources.craig_bampton import craig_bampton
@@ -36,7 +37,11 @@ def test_modes_of_the_attachments_hold_the_whole_residual_flexibility(box):
             at = place.moved.T @ added
             whole = static.residual[place.name]
             left = found.residual.get(place.name, np.zeros((3, 3)))
-            np.testing.assert_allclose(at @ at.T + left, whole, atol=1e-9 * whole.max())
+            validated(
+                "Body models", f"flexibility by Rubin to {limit:g} Hz, added and residual, place {place.name}",
+                at @ at.T + left, whole, abs=1e-9 * whole.max(), unit="m/N",
+                source="closed form: flexibility of all modes left out",
+            )  # fmt: skip
         gram = found.vectors.T @ (box.mass @ found.vectors)
         np.testing.assert_allclose(gram, np.eye(len(gram)), atol=1e-9)
     # Two places of three directions: six shapes, and they reach above the first mode left out (Rayleigh).
@@ -50,7 +55,10 @@ def test_craig_bampton_with_all_modes_of_the_held_body_is_the_body(box):
     places = interfaces(box, PLACES, tolerance=1e-3)
     frequencies, shapes = free_free_modes(box_stiffness(), MASSES, POSITIONS, 18)
     whole = modes_of_matrices(box, 1e6, places, "craig-bampton")
-    np.testing.assert_allclose(whole.frequencies, frequencies, rtol=1e-7)
+    validated(
+        "Body models", "frequencies by Craig-Bampton with all modes of the held body", whole.frequencies, frequencies,
+        rel=1e-7, unit="Hz", source="second derivation: free body",
+    )  # fmt: skip
     part = modes_of_matrices(box, 60.0, places, "craig-bampton", 20.0)
     assert np.all(part.frequencies > frequencies[: len(part.frequencies)] * (1.0 - 1e-9))
     assert part.frequencies[0] < 1.01 * frequencies[0] and "Craig-Bampton with" in part.remarks[0]
@@ -75,7 +83,10 @@ def test_craig_bampton_is_the_classical_reduction_of_partitioned_matrices(box):
     reduction[~b, b.sum() :] = held
     values = scipy.linalg.eigh(reduction.T @ stiffness @ reduction, reduction.T @ mass @ reduction, eigvals_only=True)
     assert 0 < held.shape[1] < 10
-    np.testing.assert_allclose(found.frequencies, np.sqrt(values[6:]) / (2.0 * np.pi), rtol=1e-7)
+    validated(
+        "Body models", "frequencies by Craig-Bampton", found.frequencies, np.sqrt(values[6:]) / (2.0 * np.pi), rel=1e-7,
+        unit="Hz", source="second derivation: partitioned matrices, T' K T and T' M T",
+    )  # fmt: skip
 
 
 def test_craig_bampton_keeps_enough_modes_or_says_how_wrong_they_are(box, monkeypatch):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
@@ -52,9 +53,17 @@ def test_the_exported_file_is_what_the_design_gives_on_the_shipped_car(body, fra
 
 def test_published_counts_frequencies_and_mass_properties(body):
     assert (len(body.nodes), len(body.frequencies)) == (43, 9)
-    assert body.frequencies[0] == pytest.approx(19.0, abs=0.01)  # published with two digits; fitted to 0.01
-    assert body.frequencies[-1] == pytest.approx(43.0, abs=0.01)
-    assert body.mass == pytest.approx(813.0, rel=1e-12)  # matched, so round-off only
+    trimmed = "publication: Bommer 2006, trimmed body"
+    # published with two digits; fitted to 0.01
+    for name, value, exact in (("first", body.frequencies[0], 19.0), ("ninth", body.frequencies[-1], 43.0)):
+        validated(
+            "Published cars", f"{name} frequency of the trimmed body, fitted", value, exact, abs=0.01, unit="Hz",
+            source=trimmed,
+        )  # fmt: skip
+    # matched, so round-off only
+    validated(
+        "Published cars", "mass of the trimmed body, matched", body.mass, 813.0, rel=1e-12, unit="kg", source=trimmed,
+    )  # fmt: skip
     np.testing.assert_allclose(body.cog, [2.157, 0.0, 1.011], atol=1e-12)
     origin = inertia_tensor(ixx=1200.0, iyy=5268.0, izz=4600.0, ixy=0.0, izx=1800.0, iyz=0.0)  # symmetric on purpose
     np.testing.assert_allclose(body.inertia, about_cog(origin, 813.0, [2.157, 0.0, 1.011]), rtol=1e-10, atol=1e-8)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.damper import damper_law, friction_limit, pack
@@ -50,7 +51,10 @@ def test_the_slope_is_the_derivative_of_the_force(law):
     v = np.linspace(-0.1, 0.1, 402)
     step = 1e-8
     difference = (law.force(v + step) - law.force(v - step)) / (2.0 * step)
-    assert law.slope(v) == pytest.approx(difference, abs=1e-5 * np.abs(difference).max())
+    validated(
+        "Dampers and friction", f"slope of the law {LAWS.index(law) + 1}, {type(law).__name__}, -0.1 to 0.1 m/s",
+        law.slope(v), difference, peak=1e-5, unit="N s/m", source="second derivation: central difference of the force",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
@@ -72,7 +76,11 @@ def test_a_law_accepts_scalars_and_broadcasts_arrays_of_parameters():
 def test_degressive_damper_follows_c1():
     law = Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02)
     # 15000 * 0.01; 15000 * 0.02; 1500 * 0.1 + (15000 - 1500) * 0.02, by hand.
-    assert law.force(np.array([0.01, 0.02, 0.1, -0.1])) == pytest.approx([150.0, 300.0, 420.0, -420.0], rel=1e-14)
+    validated(
+        "Dampers and friction", "degressive law at 0.01, 0.02, 0.1 and -0.1 m/s",
+        law.force(np.array([0.01, 0.02, 0.1, -0.1])), np.array([150.0, 300.0, 420.0, -420.0]), rel=1e-14, unit="N",
+        source="closed form: Bommer 2006, equation C.1, by hand",
+    )  # fmt: skip
     assert law.force(0.02 * (1 - 1e-12)) == pytest.approx(law.force(0.02 * (1 + 1e-12)), rel=1e-11)
 
 
@@ -81,7 +89,10 @@ def test_smooth_coulomb_follows_2_4_and_the_regularised_law_has_its_slope_at_res
     hard = Clamped(law=Coulomb(friction_limit=75.0, smoothing=1e5))
     coefficient = 2.0 / np.pi * 75.0 * 1e5
     assert smooth.force(1e-5) == pytest.approx(75.0 * 0.5, rel=1e-14)  # atan(1) = pi/4
-    assert smooth.force(1e-3) / 75.0 == pytest.approx(0.99363, abs=5e-6)  # the 99.4 % of the run's summary file
+    validated(
+        "Dampers and friction", "smooth Coulomb law at 1 mm/s, of its limit", smooth.force(1e-3) / 75.0, 0.99363,
+        abs=5e-6, source="closed form: Bommer 2006, equation 2.4: 2 / pi atan(eps v)",
+    )  # fmt: skip
     assert hard.slope(0.0) == pytest.approx(coefficient, rel=1e-15) == smooth.slope(0.0)
     assert hard.force(np.array([1e-6, 1.0, -1.0])) == pytest.approx([coefficient * 1e-6, 75.0, -75.0], rel=1e-14)
 
@@ -95,13 +106,20 @@ def test_energy_per_cycle_of_the_smooth_law():
         amplitude = 0.01
         work = np.mean(law.force(speed * np.cos(phase)) * np.cos(phase)) * 2.0 * np.pi * amplitude
         a = 1e3 * speed
-        assert work == pytest.approx(4.0 * 75.0 * amplitude * (np.sqrt(1.0 + a * a) - 1.0) / a, rel=1e-9)
+        validated(
+            "Dampers and friction", f"work of the smooth Coulomb law in a cycle of {speed:g} m/s", work,
+            4.0 * 75.0 * amplitude * (np.sqrt(1.0 + a * a) - 1.0) / a, rel=1e-9, unit="J",
+            source="closed form: 4 Fd A (sqrt(1 + a^2) - 1) / a, a = eps A w",
+        )  # fmt: skip
 
 
 def test_stribeck_follows_3_2():
     law = Stribeck(**{**STRIBECK, "smoothing": 1e5})
     assert law.limit(0.0) == 125.0
-    assert law.limit(0.03) == pytest.approx(65.0 + 60.0 * np.exp(-1.0), rel=1e-14)
+    validated(
+        "Dampers and friction", "Stribeck limit at the Stribeck velocity", law.limit(0.03), 65.0 + 60.0 * np.exp(-1.0),
+        rel=1e-14, unit="N", source="closed form: Bommer 2006, equation 3.2",
+    )  # fmt: skip
     assert law.limit(np.array([-0.5, 1e6])) == pytest.approx([65.0, 65.0], rel=1e-14)
     assert law.force(0.03) == pytest.approx((65.0 + 60.0 / np.e) * 2.0 / np.pi * np.arctan(3e3), rel=1e-14)
     assert law.slope(0.0) == pytest.approx(125.0 * 2.0 / np.pi * 1e5, rel=1e-14)
@@ -125,7 +143,10 @@ def test_the_record_of_a_damper_is_its_law(word):
     smooth = limit * 2.0 / np.pi * np.arctan(damper.smoothing * v)
     assert damper.viscous == 2250.0
     knee = 2250.0 * v + np.clip(12750.0 * v, -0.02 * 12750.0, 0.02 * 12750.0)
-    assert damper_law(damper).force(v) == pytest.approx(knee + smooth, rel=1e-13)
+    validated(
+        "Dampers and friction", f"degressive damper with {word} friction", damper_law(damper).force(v), knee + smooth,
+        rel=1e-13, unit="N", source="second derivation: sum of both laws, written out",
+    )  # fmt: skip
 
 
 def test_switch_mixes_the_fields_as_appendix_a():

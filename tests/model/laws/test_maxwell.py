@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.maxwell import Maxwell
@@ -19,7 +20,11 @@ OMEGA = np.geomspace(0.01, 1e5, 200)
 def test_complex_stiffness_is_the_printed_fraction():
     s = 1j * OMEGA
     printed = 8e5 + 3.4e5 * 6057.0 * s / (6057.0 * s + 3.4e5)
-    assert ENGINE_MOUNT.complex_stiffness(OMEGA) == pytest.approx(printed, rel=1e-13)
+    validated(
+        "Bushings, springs and stops", "complex stiffness of the engine mount, 0.01 to 1e5 rad/s",
+        ENGINE_MOUNT.complex_stiffness(OMEGA), printed, rel=1e-13, unit="N/m",
+        source="closed form: Bommer 2006, equation 2.13, written as a fraction",
+    )  # fmt: skip
 
 
 def test_loss_angles_of_both_published_elastomers():
@@ -52,7 +57,11 @@ def test_the_step_is_exact_for_a_ramp_of_any_size():
             atol=1e-12,
             method="DOP853",
         ).y[0, -1]
-        assert ENGINE_MOUNT.step(initial, rate * step, step) == pytest.approx(exact, rel=1e-10)
+        validated(
+            "Bushings, springs and stops", f"force of a Maxwell branch after a ramp of {step:g} s",
+            ENGINE_MOUNT.step(initial, rate * step, step), exact, rel=1e-10, unit="N",
+            source=foreign("scipy", "DOP853, tolerance 1e-12"),
+        )  # fmt: skip
 
 
 def test_many_steps_give_the_complex_stiffness():
@@ -101,7 +110,10 @@ def test_a_spring_in_series_adds_compliances_at_every_frequency(element, local):
     stiffness = element.complex_stiffness(OMEGA)
     series = in_series(local, element).complex_stiffness(OMEGA)
     # Both sides are a handful of operations on numbers of like size: 1e-12 is rounding.
-    assert series == pytest.approx(local * stiffness / (local + stiffness), rel=1e-12)
+    validated(
+        "Bushings, springs and stops", f"{element!r} behind a spring of {local:g} N/m", series,
+        local * stiffness / (local + stiffness), rel=1e-12, unit="N/m", source="closed form: sum of compliances",
+    )  # fmt: skip
 
 
 def test_series_with_arrays_of_elements():

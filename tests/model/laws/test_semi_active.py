@@ -6,6 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.semi_active import PRESENT, act, at_rest, demanded, in_steps, pack
 from vehicle.model.parameters.half_car_rider import half_car_rider_parameters
@@ -70,7 +71,11 @@ def test_hybrid_has_both_laws_as_limits(share, same, kind):
 
 def test_hybrid_on_off_switches_by_its_shares():
     found = setting("hybrid_on_off", [1.0, 0.5, 1.0, 0.0], [0.5, 1.0, -1.0, 0.0], skyhook_share=0.3)
-    np.testing.assert_allclose(found, [300.0 + 0.3 * 2700.0, 300.0 + 0.7 * 2700.0, 3000.0, 300.0], rtol=1e-14)
+    validated(
+        "Semi-active dampers", "settings of the hybrid on-off law, share 0.3", found,
+        np.array([300.0 + 0.3 * 2700.0, 300.0 + 0.7 * 2700.0, 3000.0, 300.0]), rel=1e-14, unit="N s/m",
+        source="closed form: table of the law by hand",
+    )  # fmt: skip
 
 
 def test_unknown_law_is_refused():
@@ -110,7 +115,10 @@ def test_a_period_holds_the_setting():
 
 def test_the_rate_limits_the_change_and_nothing_else():
     ideal, slow = coefficients("skyhook_on_off"), coefficients("skyhook_on_off", rate=4e5)
-    assert np.max(np.abs(np.diff(slow))) == pytest.approx(400.0, rel=1e-12)
+    validated(
+        "Semi-active dampers", "largest change of a setting in 1 ms at a rate of 4e5 N s/m per s",
+        np.max(np.abs(np.diff(slow))), 400.0, rel=1e-12, unit="N s/m", source="closed form: rate times step",
+    )  # fmt: skip
     # from soft to firm in 2700/400 steps: seven steps after each switch it is there
     settled = np.array([np.ptp(ideal[max(i - 7, 0) : i + 1]) == 0.0 for i in range(len(ideal))])
     assert np.mean(settled) > 0.5

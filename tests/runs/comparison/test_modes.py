@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.commands.compare import main as compare
 from vehicle.commands.inspect import main as inspect
 from vehicle.commands.modes import main as modes
@@ -30,7 +31,10 @@ def test_mac_by_hand():
     first = np.array([[1.0, 0.0], [1.0, 1.0j]])
     # (1, j)^H (1, 1) = 1 - j: |1 - j|^2 / (2 * 2) = 1/2.
     second = np.array([[1.0, 1.0], [2.0j, 0.0]])
-    np.testing.assert_allclose(mac(first, second), np.array([[0.5, 1.0], [0.5, 0.5]]))
+    validated(
+        "Linear system", "modal assurance criterion of complex shapes", mac(first, second),
+        np.array([[0.5, 1.0], [0.5, 0.5]]), rel=1e-7, source="closed form: |a' b|^2 / (a' a b' b), by hand",
+    )  # fmt: skip
     assert mac(first, [[0.0, 0.0]]).max() == 0.0
 
 

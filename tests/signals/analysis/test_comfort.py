@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.signals.analysis.comfort import comfort_value, rms_standard_error, settling
 
@@ -21,7 +22,11 @@ def test_the_comfort_value_of_sines_is_their_rms():
     xyz[2] = xyz[2] + 9.81 + 5 * np.sin(2 * np.pi * 1.0 * TIME) + np.sin(2 * np.pi * 90 * TIME)
     found = comfort_value(STEP, xyz)
     # whole periods in the record: exact but for rounding; 3-4-12-13
-    assert [found.x, found.y, found.z, found.overall] == pytest.approx(np.array([3, 4, 12, 13]) / np.sqrt(2))
+    validated(
+        "Comfort, ISO 2631", "comfort value of sines, axes x, y, z and overall",
+        np.array([found.x, found.y, found.z, found.overall]), np.array([3, 4, 12, 13]) / np.sqrt(2), rel=1e-6,
+        unit="m/s2", source="closed form: a / sqrt(2)",
+    )  # fmt: skip
     assert found.band == (2.0, 50.0)
 
 
@@ -39,7 +44,10 @@ def test_standard_error_of_white_noise_is_the_bandwidth_time_formula():
     noise = np.random.default_rng(2).standard_normal((40, 10_000))
     errors = rms_standard_error(STEP, noise)
     # 1 / (2 sqrt(B T)) with 48 Hz and 20 s; a single estimate scatters by about 4 %
-    assert errors.mean() == pytest.approx(1 / (2 * np.sqrt(48 * 20)), rel=0.03)
+    validated(
+        "Statistics and intervals", "relative standard error of the RMS of white noise", errors.mean(),
+        1 / (2 * np.sqrt(48 * 20)), rel=0.03, source="closed form: 1 / (2 sqrt(B T)), Bendat and Piersol",
+    )  # fmt: skip
 
 
 def test_standard_error_of_coloured_noise_is_the_scatter_seen():
@@ -47,7 +55,10 @@ def test_standard_error_of_coloured_noise_is_the_scatter_seen():
     records = coloured(np.random.default_rng(3), 400, 4000)
     rms = np.array([comfort_value(STEP, np.tile(record, (3, 1))).x for record in records])
     seen = rms.std(ddof=1) / rms.mean()
-    assert rms_standard_error(STEP, records).mean() == pytest.approx(seen, rel=0.11)
+    validated(
+        "Statistics and intervals", "relative standard error of the RMS of coloured noise",
+        rms_standard_error(STEP, records).mean(), seen, rel=0.11, source="second derivation: scatter of 400 records",
+    )  # fmt: skip
     # the resonance makes it far larger than the full bandwidth would
     assert seen > 1.5 / (2 * np.sqrt(48 * 8))
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.signals.analysis.dependence import (
     DependentInputsError,
     common_motions,
@@ -75,4 +76,7 @@ def test_related_inputs_are_no_copies(related):
     assert len(common_motions(1.0 / RATE, inputs, NAMES, BAND)) == 2
     found = copy_of(1.0 / RATE, inputs[0], inputs[1], BAND)
     # 17 windowed lines are 11 independent ones: the median estimate of 0 is ln 2 / 11, and smaller above.
-    assert found.coherence == pytest.approx(related, abs=0.1)
+    validated(
+        "FRF estimation and spectra", f"coherence of inputs related by {related:g}", found.coherence, related, abs=0.1,
+        source="closed form: share of the common noise",
+    )  # fmt: skip

@@ -3,6 +3,7 @@ import pytest
 from scipy.signal import lsim
 
 from tests.signals.analysis.oscillator import state_space, stationary_response, transmissibility
+from tests.validation import foreign, validated
 from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import frequency_response
 
@@ -17,7 +18,10 @@ def test_a_gain_is_found_exactly():
     excitation = noise(30_000)
     found = frequency_response(STEP, excitation, [3.0 * excitation, -0.5 * excitation + 20.0])
     # a constant factor is the same in every segment: only rounding is left; the constant is removed
-    assert found.response[0] == pytest.approx(np.full(197, 3.0), rel=1e-12)
+    validated(
+        "FRF estimation and spectra", "H1 of a constant gain", found.response[0], 3.0, rel=1e-12,
+        source="closed form: the gain",
+    )  # fmt: skip
     assert found.response[1] == pytest.approx(np.full(197, -0.5), rel=1e-10)
     assert found.coherence == pytest.approx(np.ones((2, 197)), abs=1e-10)
     assert (found.frequency[0], found.frequency[-1], found.resolution_hz) == (1.0, 50.0, 0.25)
@@ -29,7 +33,10 @@ def test_a_delay_turns_the_phase_backwards():
     found = frequency_response(STEP, excitation, np.roll(excitation, 5))
     expected = np.exp(-2j * np.pi * found.frequency * 5 * STEP)
     # 5 of 4000 samples of each window are new: an error of about sqrt(2 * 5/4000 / 27) = 1 %, three times that allowed
-    assert np.abs(found.response[0] - expected).max() < 0.04
+    validated(
+        "FRF estimation and spectra", "H1 of a delay of 5 samples", found.response[0], expected, abs=0.04,
+        source="closed form: exp(-i w tau)",
+    )  # fmt: skip
 
 
 def test_an_oscillator_shows_its_analytic_response():
@@ -38,7 +45,10 @@ def test_an_oscillator_shows_its_analytic_response():
     expected = transmissibility(found.frequency)
     # time constant 0.2 s, window 16 s: bias 13 * (0.2 / 16)^2 = 0.2 %; random error from what
     # enters and leaves a window: below 1 % at the peak with 70 averages
-    assert np.abs(found.response[0] / expected - 1.0).max() < 0.02
+    validated(
+        "FRF estimation and spectra", "H1 of an oscillator in random vibration", found.response[0], expected, rel=0.02,
+        source="closed form: transmissibility",
+    )  # fmt: skip
     assert found.coherence.min() > 0.99
 
 
@@ -49,7 +59,10 @@ def test_an_oscillator_integrated_in_time_shows_the_same():
     _, response, _ = lsim(state_space(), excitation, time)
     found = frequency_response(STEP, excitation, response, window_s=16.0)
     # as above with 23 averages, and linear interpolation of the plate between samples: (pi f dt)^2 / 3 = 0.8 % at 50 Hz
-    assert np.abs(found.response[0] / transmissibility(found.frequency) - 1.0).max() < 0.05
+    validated(
+        "FRF estimation and spectra", "H1 of an oscillator integrated in time", found.response[0],
+        transmissibility(found.frequency), rel=0.05, source=foreign("scipy", "lsim of the equation of motion"),
+    )  # fmt: skip
 
 
 def leaking_transmissibility(window_s, natural, damping):
@@ -76,7 +89,11 @@ def test_leakage_lowers_a_sharp_peak_as_predicted_and_a_longer_window_mends_it()
         exact = abs(transmissibility(20.0, 20.0, 0.01))
         predicted = abs(leaking_transmissibility(window_s, 20.0, 0.01))
         assert predicted / exact == pytest.approx(stated, abs=0.01)
-        assert abs(found.response[0, at]) == pytest.approx(predicted, rel=4 * scatter)
+        validated(
+            "FRF estimation and spectra", f"leakage: H1 at a peak of 1 % damping with windows of {window_s:g} s",
+            abs(found.response[0, at]), predicted, rel=4 * scatter,
+            source="second derivation: window autocorrelation times impulse response",
+        )  # fmt: skip
         gammas.append(gamma)
     assert gammas == sorted(gammas)
     assert scatter < 0.05
@@ -94,7 +111,10 @@ def test_coherence_shows_the_known_share_of_noise(ratio):
     bias = (1.0 - expected) ** 2 / averages  # Bendat and Piersol, chapter 9
     # standard error of one line sqrt(2) (1 - g) sqrt(g / nd), over 190 lines of which every other is independent
     scatter = np.sqrt(2.0) * (1 - expected) * np.sqrt(expected / averages / 95)
-    assert found.coherence.mean() == pytest.approx(expected + bias, abs=4 * scatter)
+    validated(
+        "FRF estimation and spectra", f"coherence with noise of {ratio:g} times the signal", found.coherence.mean(),
+        expected + bias, abs=4 * scatter, source="closed form: 1 / (1 + r^2) and bias, Bendat and Piersol, chapter 9",
+    )  # fmt: skip
     # noise on the response does not bias H1
     assert np.abs(found.response.mean() - 1.0) < 4 * ratio / np.sqrt(2 * averages * 95)
 

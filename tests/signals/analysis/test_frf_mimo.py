@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from tests.signals.analysis.oscillator import stationary_response, transmissibility
+from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import frequency_response, frequency_responses
 
@@ -21,14 +22,20 @@ def test_gains_of_related_inputs_are_separated_exactly(plates):
     found = frequency_responses(STEP, plates, [3.0 * plates[0] - 2.0 * plates[1], plates[1]])
     shape = found[0].frequency.shape
     # constant factors: only rounding is left
-    assert found[0].response[0] == pytest.approx(np.full(shape, 3.0), rel=1e-10)
-    assert found[1].response[0] == pytest.approx(np.full(shape, -2.0), rel=1e-10)
+    for number, gain in enumerate((3.0, -2.0)):
+        validated(
+            "FRF estimation and spectra", f"two related inputs: gain of input {number + 1}", found[number].response[0],
+            np.full(shape, gain), rel=1e-10, source="closed form: the gain",
+        )  # fmt: skip
     assert found[0].response[1] == pytest.approx(np.zeros(shape), abs=1e-10)
     assert found[1].response[1] == pytest.approx(np.ones(shape), rel=1e-10)
     assert found[0].coherence == pytest.approx(np.ones((2, *shape)), abs=1e-10)
     assert found[0].reasons == ()
     # coherence of the inputs 0.2: (Sxx^-1)_ii Sxx_ii = 1 / (1 - 0.2), so the averages are worth 0.8 of 94 less one
-    assert np.median(found[0].averages) == pytest.approx(0.8 * 93.0, rel=0.03)
+    validated(
+        "FRF estimation and spectra", "two related inputs: effective averages", np.median(found[0].averages),
+        0.8 * 93.0, rel=0.03, source="closed form: (1 - coherence of the inputs) (n - 1)",
+    )  # fmt: skip
 
 
 def test_two_oscillators_are_separated(plates):
@@ -50,7 +57,10 @@ def test_multiple_coherence_shows_the_known_share_of_noise(plates):
     found = frequency_responses(STEP, plates, clean + rng.standard_normal(SAMPLES))
     expected = 3.25 / 4.25
     # one line scatters by sqrt(2 / 94) * 0.24 * 0.87 = 0.03, the mean over 197 by 0.003; bias (1 - g) / nd = 0.0025
-    assert found[0].coherence.mean() == pytest.approx(expected + 0.0025, abs=0.012)
+    validated(
+        "FRF estimation and spectra", "two related inputs: multiple coherence with noise", found[0].coherence.mean(),
+        expected + 0.0025, abs=0.012, source="closed form: variance of the signal over that of the response, with bias",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.frf_accuracy import banded_input
+from tests.validation import validated
 from vehicle.signals.analysis.input_floor import rounding_step, tapered_power
 from vehicle.signals.analysis.local_rational import local_rational_response
 from vehicle.signals.excitation.input_files import find_input
@@ -69,7 +70,10 @@ def test_tapered_power_of_white_noise_is_that_of_its_transform():
     values = np.random.default_rng(2).normal(size=20_000)
     power, floor = tapered_power(values, 0.1)
     assert np.mean(power[10:-10]) == pytest.approx(values.size, rel=0.05)
-    assert floor == pytest.approx(values.size * 0.1**2 / 12.0)
+    validated(
+        "FRF estimation and spectra", "power of the rounding of a record", floor, values.size * 0.1**2 / 12.0, rel=1e-6,
+        source="closed form: n q^2 / 12",
+    )  # fmt: skip
 
 
 def test_a_random_record_has_no_holes():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import frequency_response
 from vehicle.signals.analysis.local_rational import local_rational_response, local_rational_responses
@@ -42,8 +43,14 @@ def test_close_lightly_damped_modes_keep_their_frf_and_coherence():
     truth = exact(found.frequency)
     error = np.abs(found.response[0] - truth) / np.abs(truth)
     # One pole and a parabola behind it: 0.5 % of the peak with the second mode 0.5 Hz beside, 5 % in the valley.
-    assert np.max(np.abs(found.response[0] - truth)) < 0.01 * np.max(np.abs(truth))
-    assert np.max(error) < 0.06
+    validated(
+        "FRF estimation and spectra", "local rational FRF of close lightly damped modes, of the largest",
+        found.response[0], truth, peak=0.01, source="closed form: sum of three oscillators",
+    )  # fmt: skip
+    validated(
+        "FRF estimation and spectra", "local rational FRF of close lightly damped modes, at every line",
+        found.response[0], truth, rel=0.06, source="closed form: sum of three oscillators",
+    )  # fmt: skip
     assert np.max(error[found.frequency > 5.0]) < 0.01
     assert np.min(found.coherence) > 0.99
     windowed = frequency_response(1.0 / RATE, drive, answer, window_s=4.0, band=(2.0, 45.0))
@@ -59,7 +66,10 @@ def test_known_noise_gives_the_known_coherence():
     signal = np.abs(exact(frequency)) ** 2 * np.var(drive) / 59.0  # flat from 1 to 60 Hz
     truth = signal / (signal + np.var(noise) / (RATE / 2.0))
     # Mean over some 250 estimates of five and more degrees of freedom each.
-    assert np.mean(found.coherence[0]) == pytest.approx(np.mean(truth), abs=0.03)
+    validated(
+        "FRF estimation and spectra", "local rational coherence with known noise", np.mean(found.coherence[0]),
+        np.mean(truth), abs=0.03, source="closed form: signal over signal and noise",
+    )  # fmt: skip
 
 
 def test_doubled_input_doubles_nothing_in_the_ratio():
@@ -107,7 +117,10 @@ def test_random_error_and_averages_are_those_that_repetition_shows():
     assert np.all(scatter / relative < 1.15) and np.median(scatter / relative) > 0.7
     gamma2 = np.mean(found.coherence, axis=0)
     averages = (1.0 - gamma2) / (2.0 * gamma2 * relative**2)
-    np.testing.assert_allclose(np.mean(found.averages, axis=0), averages, rtol=0.2)
+    validated(
+        "Statistics and intervals", "averages of a local rational FRF, by line", np.mean(found.averages, axis=0),
+        averages, rel=0.2, source="second derivation: scatter of 200 noises, n = (1 - g) / (2 g e^2)",
+    )  # fmt: skip
 
 
 def test_two_inputs_are_separated_related_or_not():
@@ -129,4 +142,7 @@ def test_two_inputs_are_separated_related_or_not():
     unrelated = local_rational_responses(1.0 / RATE, [drive, other], answer + noise, band=(5.0, 45.0))[0]
     # The error of a separated response grows by 1 / sqrt(1 - 0.7) with the coherence of the inputs.
     ratio = np.median(related.random_error / unrelated.random_error)
-    assert ratio == pytest.approx(1.0 / np.sqrt(0.3), rel=0.15)
+    validated(
+        "Statistics and intervals", "error of an FRF by a related second input, over that by an unrelated one", ratio,
+        1.0 / np.sqrt(0.3), rel=0.15, source="closed form: 1 / sqrt(1 - coherence of the inputs)",
+    )  # fmt: skip

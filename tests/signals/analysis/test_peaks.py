@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.peaks import resonance_peaks
 
@@ -18,8 +19,14 @@ def test_a_resonance_between_two_lines_is_found_at_its_closed_form():
     (peak,) = resonance_peaks(LINES, magnitude, coherence)
     # maximum of 1 / |1 - r^2 + 2 i zeta r| at r = sqrt(1 - 2 zeta^2), height 1 / (2 zeta sqrt(1 - zeta^2)); the line
     # distance is 0.09 of the half-power bandwidth, the parabola is good to (0.09)^3 of it
-    assert peak.frequency_hz == pytest.approx(28.1 * np.sqrt(1 - 2 * 0.05**2), abs=0.002)
-    assert peak.magnitude == pytest.approx(1 / (0.1 * np.sqrt(1 - 0.05**2)), rel=1e-4)
+    validated(
+        "FRF estimation and spectra", "frequency of a resonance between two lines", peak.frequency_hz,
+        28.1 * np.sqrt(1 - 2 * 0.05**2), abs=0.002, unit="Hz", source="closed form: f sqrt(1 - 2 zeta^2)",
+    )  # fmt: skip
+    validated(
+        "FRF estimation and spectra", "height of a resonance between two lines", peak.magnitude,
+        1 / (0.1 * np.sqrt(1 - 0.05**2)), rel=1e-4, source="closed form: 1 / (2 zeta sqrt(1 - zeta^2))",
+    )  # fmt: skip
     assert peak.coherence == pytest.approx(np.interp(28.0, LINES, coherence))
 
 

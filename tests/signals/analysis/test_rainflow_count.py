@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.signals.analysis.rainflow_count import Cycles, count_cycles
 
@@ -13,7 +14,12 @@ def test_the_example_of_the_standard():
     """ASTM E1049-85 (2017), figure 6 and table X1: -2 1 -3 5 -1 3 -4 4 -2."""
     pytest.importorskip("rainflow")
     found = count_cycles([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
-    assert dict(zip(found.ranges, found.counts, strict=True)) == {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
+    table = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
+    astm = "standard: ASTM E1049-85 (2017), figure 6 and table X1"
+    validated("Load histories", "ranges of the rainflow example", found.ranges, np.array(list(table)), source=astm)
+    validated(
+        "Load histories", "counts of the rainflow example", found.counts, np.array(list(table.values())), source=astm,
+    )  # fmt: skip
     assert found.total == 4.0
     assert found.exceeded().tolist() == [4.0, 3.5, 2.0, 1.5, 0.5]
 
@@ -27,9 +33,15 @@ def test_a_sine_on_a_slow_one():
     found = count_cycles(load)
     large = found.counts[found.ranges > 15.0].sum()
     assert large == pytest.approx(10.0, abs=0.5)
-    assert found.ranges[-1] == pytest.approx(21.0, rel=1e-2)
+    validated(
+        "Load histories", "largest range of a fast sine on a slow one", found.ranges[-1], 21.0, rel=1e-2,
+        source="closed form: 2 (A + a)",
+    )  # fmt: skip
     # Without slope of the slow one the small ones have a range of 1; 490 are left where the crests close.
-    assert found.total == pytest.approx(500.0, abs=1.0)
+    validated(
+        "Load histories", "cycles of a fast sine on a slow one", found.total, 500.0, abs=1.0,
+        source="closed form: 50 Hz for 10 s",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("slope", [1.0, 5.0, 300.0])
@@ -37,11 +49,17 @@ def test_equivalent_amplitude_in_closed_form(slope):
     # n cycles in n seconds are worth their own amplitude; so are none but these in four times the time, times 4^(-1/k).
     sine = Cycles(ranges=np.array([600.0]), counts=np.array([25.0]))
     assert sine.equivalent_amplitude(slope, 25.0) == pytest.approx(300.0)
-    assert sine.equivalent_amplitude(slope, 100.0) == pytest.approx(300.0 * 4.0 ** (-1.0 / slope))
+    validated(
+        "Load histories", f"equivalent amplitude of a sine at 1 Hz in four times the time, slope {slope:g}",
+        sine.equivalent_amplitude(slope, 100.0), 300.0 * 4.0 ** (-1.0 / slope), rel=1e-6, unit="N",
+        source="closed form: Miner, (sum n a^k / N)^(1/k)",
+    )  # fmt: skip
     two = Cycles(ranges=np.array([2.0, 4.0]), counts=np.array([3.0, 0.5]))
-    assert two.equivalent_amplitude(slope, 2.0) == pytest.approx(
-        2.0 * ((3.0 * 0.5**slope + 0.5) / 2.0) ** (1.0 / slope)
-    )
+    validated(
+        "Load histories", f"equivalent amplitude of two ranges, slope {slope:g}", two.equivalent_amplitude(slope, 2.0),
+        2.0 * ((3.0 * 0.5**slope + 0.5) / 2.0) ** (1.0 / slope), rel=1e-6, unit="N",
+        source="closed form: Miner, (sum n a^k / N)^(1/k)",
+    )  # fmt: skip
     assert Cycles(ranges=np.zeros(0), counts=np.zeros(0)).equivalent_amplitude(slope, 1.0) == 0.0
 
 

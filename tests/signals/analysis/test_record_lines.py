@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.signals.analysis import local_rational, record_lines, spectra
 from vehicle.signals.analysis.input_floor import tapered_power
 from vehicle.signals.analysis.local_rational import local_rational_responses
@@ -33,7 +34,10 @@ def test_lines_are_sums_over_the_record(in_blocks, first, last):
     expected = np.exp(-2j * np.pi * turns) @ record
     whole = RecordLines(PRIME, first, last)
     assert len(whole.parts) == 1
-    np.testing.assert_allclose(whole.of(record.__getitem__), expected, rtol=0.0, atol=1e-10)
+    validated(
+        "FRF estimation and spectra", f"lines {first} to {last} of a record of prime length",
+        whole.of(record.__getitem__), expected, abs=1e-10, source="closed form: sum of the discrete Fourier transform",
+    )  # fmt: skip
     in_blocks()
     blocks = RecordLines(PRIME, first, last)
     assert len(blocks.parts) > 5

@@ -8,6 +8,7 @@ import json
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.shaker import main as shaker
 from vehicle.commands.sweep import main as sweep
@@ -34,16 +35,27 @@ def test_two_sines_in_closed_form(place, name):
     """After the filters have settled, SEAT^2 = sum (T_i w_i a_i)^2 / sum (w_i a_i)^2."""
     found = seat_value(STEP, SEAT, RAIL, place=place, skip=10.0)
     expected = lines(name, (2.0, 4.0), (0.5, 10.0)) / lines(name, (1.0, 4.0), (1.0, 10.0))
-    assert found.rms == pytest.approx(expected, rel=1e-5) and found.weighting == name
+    assert found.weighting == name
+    validated(
+        "Comfort, ISO 2631", f"SEAT value of two sines, {name}", found.rms, expected, rel=1e-5,
+        source="closed form: sqrt(sum (T w a)^2 / sum (w a)^2), ISO 10326-1",
+    )  # fmt: skip
     assert seat_value(STEP, 3.0 * RAIL, RAIL).rms == pytest.approx(3.0, rel=1e-12)
-    assert seat_value(STEP, 3.0 * RAIL, RAIL).vdv == pytest.approx(3.0, rel=1e-12)
+    validated(
+        "Comfort, ISO 2631", f"SEAT value by VDV of a seat that amplifies by 3, {name}",
+        seat_value(STEP, 3.0 * RAIL, RAIL).vdv, 3.0, rel=1e-12, source="closed form: ratio of the dose values",
+    )  # fmt: skip
 
 
 def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
     x, y, z, overall = weighted_rms_of(STEP, np.array([SEAT, RAIL, SEAT]), skip=10.0)
     exact = [lines("Wd", (2.0, 4.0), (0.5, 10.0)), lines("Wd", (1.0, 4.0), (1.0, 10.0))]
     exact.append(lines("Wk", (2.0, 4.0), (0.5, 10.0)))
-    assert (x, y, z) == pytest.approx(exact, rel=1e-5) and overall == pytest.approx(np.linalg.norm(exact), rel=1e-5)
+    validated(
+        "Comfort, ISO 2631", "weighted RMS on the seat, axes x, y, z and overall", np.array([x, y, z, overall]),
+        np.array([*exact, np.linalg.norm(exact)]), rel=1e-5, unit="m/s2",
+        source="standard: ISO 2631-1:1997, 8.2: Wd, Wd, Wk",
+    )  # fmt: skip
 
 
 def test_what_is_no_seat_is_refused():

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.segments import cut_into_segments, effective_averages
 
@@ -9,7 +10,10 @@ def test_half_overlapping_hann_segments_are_worth_the_textbook_number():
     # for a Hann window shifted by half its length the correlation is exactly 1/6, its square 1/36
     cut = cut_into_segments(60_000, 1e-3, window_s=4.0, overlap=0.5, minimum_averages=8.0)
     assert (cut.length, cut.step, cut.count, cut.overlap) == (4000, 2000, 29, 2000)
-    assert cut.averages == pytest.approx(29 / (1 + 2 * (28 / 29) / 36), rel=1e-6)
+    validated(
+        "Statistics and intervals", "effective averages of 29 Hann segments with half overlap", cut.averages,
+        29 / (1 + 2 * (28 / 29) / 36), rel=1e-6, source="closed form: Welch 1967, correlation 1/6 of neighbours",
+    )  # fmt: skip
 
 
 def test_effective_averages_agree_with_the_scatter_of_simulated_densities():

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.spectra import band_rms, periodogram, power_spectral_density
 
@@ -10,14 +11,21 @@ def test_periodogram_holds_the_mean_square_exactly(samples):
     signal = 3.0 + np.random.default_rng(1).standard_normal((2, samples))
     spectrum = periodogram(1e-3, signal)
     # Parseval's theorem: equal but for rounding
-    assert spectrum.density.sum(axis=1) * spectrum.resolution_hz == pytest.approx((signal**2).mean(axis=1), rel=1e-13)
+    validated(
+        "FRF estimation and spectra", f"area under the periodogram of {samples} samples",
+        spectrum.density.sum(axis=1) * spectrum.resolution_hz, (signal**2).mean(axis=1), rel=1e-13,
+        source="conservation: Parseval's theorem",
+    )  # fmt: skip
 
 
 def test_welch_density_of_white_noise_is_flat_at_its_known_value():
     rng = np.random.default_rng(2)
     spectrum = power_spectral_density(1e-3, 2.0 * rng.standard_normal(200_000), window_s=1.0)
     # one-sided density of variance 4 over 500 Hz; the mean over 400 lines x 375 averages scatters by 0.3 %
-    assert spectrum.density[0, 20:420].mean() == pytest.approx(4.0 / 500.0, rel=0.01)
+    validated(
+        "FRF estimation and spectra", "Welch density of white noise", spectrum.density[0, 20:420].mean(), 4.0 / 500.0,
+        rel=0.01, unit="1/Hz", source="closed form: variance over bandwidth",
+    )  # fmt: skip
     assert spectrum.resolution_hz == 1.0
     # Parseval: the window weighs the samples of each segment unevenly, so equal only within the same scatter
     assert spectrum.density.sum() * spectrum.resolution_hz == pytest.approx(4.0, rel=0.02)
@@ -27,7 +35,10 @@ def test_welch_density_of_a_sine_holds_its_mean_square():
     time = np.arange(8000) * 1e-3
     spectrum = power_spectral_density(1e-3, 5.0 * np.sin(2 * np.pi * 10.0 * time), window_s=2.0)
     # whole periods in each window: the Hann window spreads the line over three and keeps the sum
-    assert spectrum.density.sum() * spectrum.resolution_hz == pytest.approx(12.5, rel=1e-12)
+    validated(
+        "FRF estimation and spectra", "area under the Welch density of a sine",
+        spectrum.density.sum() * spectrum.resolution_hz, 12.5, rel=1e-12, source="closed form: a^2 / 2",
+    )  # fmt: skip
 
 
 def test_band_rms_counts_what_lies_in_the_band_and_nothing_else():
@@ -35,7 +46,11 @@ def test_band_rms_counts_what_lies_in_the_band_and_nothing_else():
     low, inside, high = (np.sin(2 * np.pi * f * time) for f in (1.0, 10.0, 80.0))
     signal = 7.0 * low + 2.0 * inside + 4.0 * high + 9.81
     # whole periods in 10 s: RMS of amplitude 2, exact but for rounding
-    assert band_rms(1e-3, signal, (2.0, 50.0)) == pytest.approx([np.sqrt(2.0)], rel=1e-12)
+    validated(
+        "FRF estimation and spectra", "RMS in 2 to 50 Hz of three sines and a constant",
+        band_rms(1e-3, signal, (2.0, 50.0)), np.sqrt(2.0), rel=1e-12,
+        source="closed form: a / sqrt(2) of the sine in the band",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("frequency", [2.0, 50.0])

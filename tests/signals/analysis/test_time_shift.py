@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.record_alignment import STEP, made_pair
+from tests.validation import validated
 from vehicle.signals.analysis.time_shift import time_shift
 
 
@@ -17,7 +18,10 @@ def test_shift_and_drift_are_found(shift, drift, noise):
     found = time_shift(first, second, STEP)
     assert found is not None
     wanted = shift + drift * (found.middle - 0.5 * (first.size - 1) * STEP)
-    assert abs(found.shift - wanted) < 0.1 * STEP
+    validated(
+        "FRF estimation and spectra", f"shift of two records, {1e3 * shift:g} ms, drift {drift:g}, noise {noise:g}",
+        found.shift, wanted, abs=0.1 * STEP, unit="s", source="closed form: the shift that the records were made with",
+    )  # fmt: skip
     assert abs(found.drift - drift) < max(0.05 * abs(drift), 5e-6 + 30e-6 * noise / 0.1)
     assert found.correlation > 0.98 and found.period is None and found.gain == pytest.approx(1.0, abs=0.03)
     assert abs(found.shift - wanted) < 5.0 * found.shift_error + 1e-3 * STEP

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.iso_road import IsoRoad
 from vehicle.signals.excitation.measured_road import MeasuredRoad
@@ -22,7 +23,10 @@ def test_a_measured_wave_is_lower_by_its_sinc() -> None:
     road = MeasuredRoad(distance=distance, right=height, left=0.0 * height, source="wave", patch=PATCH)
     found = road.height(5.0, 0.01, 1000, "right", 50.0)
     place = 5.0 + 0.01 * np.arange(1000)
-    assert found == pytest.approx(np.sinc(wave * PATCH) * np.sin(2.0 * np.pi * wave * place), abs=1e-7)
+    validated(
+        "Roads and excitation", "a contact patch on a measured wave of 0.25 m", found,
+        np.sinc(wave * PATCH) * np.sin(2.0 * np.pi * wave * place), abs=1e-7, unit="m", source="closed form: sinc(n a)",
+    )  # fmt: skip
     # Ahead of its first place it is a plane, which half a patch reaches into.
     whole = replace(road, left=1.0 + 0.3 * distance)
     starting = whole.height(-0.1, 0.05, 5, "left", 50.0)
@@ -45,7 +49,11 @@ def test_the_mean_over_the_patch_is_that_of_the_road_itself(corners: bool) -> No
     place, parts = np.linspace(0.0, 2.9, 59), PATCH * ((np.arange(10_000) + 0.5) / 10_000 - 0.5)
     point = replace(road, patch=0.0)
     wanted = np.array([np.mean(point.height_at(at + parts, "right")) for at in place])
-    np.testing.assert_allclose(road.height_at(place, "right"), wanted, rtol=0.0, atol=1e-6)
+    validated(
+        "Roads and excitation",
+        f"mean height under a contact patch, {'corners of a cleat' if corners else 'random samples'}",
+        road.height_at(place, "right"), wanted, abs=1e-6, unit="m", source="second derivation: sum over 10 000 places",
+    )  # fmt: skip
     if corners:
         np.testing.assert_allclose(point.height_at(np.linspace(0.0, 3.0, 501), "right").max(), 0.02)
         # All of the cleat under the patch: its area over the length of the patch.

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.bump import bump, bump_shape
 
@@ -15,7 +16,11 @@ def test_bump_is_one_period_with_its_peak_in_the_middle(reading, peak):
     # Independent form: (1 - cos a) / 2 = sin^2(a / 2).
     inside = np.linspace(5.001, 5.333, 50)
     expected = peak * np.sin(3.0 * np.pi * (inside - 5.0)) ** 2
-    np.testing.assert_allclose(bump_shape(inside, amplitude=7.5e-3, reading=reading), expected, rtol=0, atol=1e-15)
+    validated(
+        "Roads and excitation", f"bump of 7.5 mm, read as {reading}",
+        bump_shape(inside, amplitude=7.5e-3, reading=reading), expected, abs=1e-15, unit="m",
+        source="closed form: sin^2(a / 2) for (1 - cos a) / 2",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("end", [5.0, 5.0 + 1.0 / 3.0])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.iso_road import CLASSES, IsoRoad, Side, drive, isotropic_coherence
 
@@ -22,6 +23,11 @@ def lines(signal, wheel, skip=2.0):
 
 def test_each_class_is_four_times_the_one_before():
     assert CLASSES["A"] == 16e-6 and CLASSES["C"] == 256e-6
+    validated(
+        "Roads and excitation", "levels of the classes A to E", np.array([CLASSES[name] for name in "ABCDE"]),
+        np.array([16e-6, 64e-6, 256e-6, 1024e-6, 4096e-6]), rel=1e-12, unit="m3",
+        source="standard: ISO 8608, road classes",
+    )  # fmt: skip
     assert [CLASSES[b] / CLASSES[a] for a, b in zip("ABCDEFG", "BCDEFGH", strict=True)] == [4.0] * 7
 
 
@@ -33,9 +39,11 @@ def test_the_isotropic_plane_against_its_integral(n):
         return (n**2 + m**2) ** -1.5
 
     across = quad(surface, 0.0, np.inf, weight="cos", wvar=2.0 * np.pi * TRACK)[0]
-    assert isotropic_coherence(np.array([n]), TRACK)[0] == pytest.approx(
-        across / quad(surface, 0.0, np.inf)[0], rel=1e-6
-    )
+    validated(
+        "Roads and excitation", f"coherence of two tracks of an isotropic road at {n:g} cycles/m",
+        isotropic_coherence(np.array([n]), TRACK)[0], across / quad(surface, 0.0, np.inf)[0], rel=1e-6,
+        source=foreign("scipy", "quad over the cross waves"),
+    )  # fmt: skip
 
 
 def test_the_level_is_that_of_the_class_and_the_tracks_are_related_as_asked():
@@ -51,9 +59,16 @@ def test_the_level_is_that_of_the_class_and_the_tracks_are_related_as_asked():
         band = (n >= low) & (n < high)
         # One-sided density over wavenumber: 2 |Z|^2 / rate for the frequency, times the speed.
         density = 2.0 * np.mean(powers, axis=0)[band] / 1000.0 * SPEED
-        assert np.mean(density * (n[band] / 0.1) ** 2) == pytest.approx(256e-6, rel=0.12)
+        validated(
+            "Roads and excitation", f"level of a road of class C, {low:g} to {high:g} cycles/m",
+            np.mean(density * (n[band] / 0.1) ** 2), 256e-6, rel=0.12, unit="m3",
+            source="standard: ISO 8608, Gd(0.1 cycles/m) of class C",
+        )  # fmt: skip
         share = np.mean(np.mean(cross, axis=0)[band] * n[band] ** 2) / np.mean(np.mean(powers, 0)[band] * n[band] ** 2)
-        assert share == pytest.approx(np.mean(isotropic_coherence(n[band], TRACK)), abs=0.15)
+        validated(
+            "Roads and excitation", f"relation of two tracks of a made road, {low:g} to {high:g} cycles/m", share,
+            np.mean(isotropic_coherence(n[band], TRACK)), abs=0.15, source="closed form: isotropic surface",
+        )  # fmt: skip
 
 
 def test_the_rear_meets_the_same_road_later_by_a_part_of_a_step():
@@ -65,7 +80,11 @@ def test_the_rear_meets_the_same_road_later_by_a_part_of_a_step():
     late = wheelbase / SPEED
     time = slow.time[3000:19000]
     front = np.array([np.sinc((t - late - slow.time) * 1000.0) @ slow.displacement["fr"] for t in time[::997]])
-    assert slow.displacement["fl"][3000:19000:997] == pytest.approx(front, abs=1e-6 * np.max(np.abs(front)) + 2e-6)
+    validated(
+        "Roads and excitation", "road of the rear wheel is that of the front wheel, delayed",
+        slow.displacement["fl"][3000:19000:997], front, abs=1e-6 * np.max(np.abs(front)) + 2e-6, unit="m",
+        source="second derivation: sinc interpolation",
+    )  # fmt: skip
     assert not slow.displacement["fl"][: int(late * 1000)].any()
 
 
@@ -88,7 +107,10 @@ def test_the_contact_patch_takes_out_waves_of_its_own_length():
     n = np.fft.rfftfreq(steps, step)
     band = (n > 0.02) & (n < 9.9)
     ratio = np.abs(with_patch[band] / without[band])
-    assert ratio == pytest.approx(np.abs(np.sinc(0.2 * n[band])), abs=1e-9)
+    validated(
+        "Roads and excitation", "a contact patch of 0.2 m on a road, by wavenumber", ratio,
+        np.abs(np.sinc(0.2 * n[band])), abs=1e-9, source="closed form: sinc(n a)",
+    )  # fmt: skip
     assert np.min(ratio) < 1e-9  # a wave of 0.2 m is not felt
 
 

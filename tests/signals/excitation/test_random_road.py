@@ -7,6 +7,7 @@ import pytest
 from scipy.signal import welch
 from scipy.stats import kurtosis
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.random_road import random_road
 
@@ -15,7 +16,11 @@ from vehicle.signals.excitation.random_road import random_road
 @pytest.mark.parametrize("taper", [0.0, 0.5])
 def test_rms_and_mean_are_exact(rms, taper):
     signal = random_road(rms=rms, seed=5, taper_length=taper)
-    assert signal.rms("fr") == pytest.approx(rms, rel=1e-12)  # rounding of 60001 samples
+    # rounding of 60001 samples
+    validated(
+        "Roads and excitation", f"RMS of a random input of {1e3 * rms:g} mm, taper {taper:g} s", signal.rms("fr"), rms,
+        rel=1e-12, unit="m", source="closed form: the RMS that was asked for",
+    )  # fmt: skip
     assert abs(np.mean(signal.displacement["fr"])) < 1e-12 * rms
     assert signal.time.size == 60001
     assert signal.duration == 60.0
@@ -63,11 +68,18 @@ def test_displacement_psd_falls_with_the_square_of_frequency():
     slope, intercept = np.polyfit(np.log(f[band]), np.log(psd[band]), 1)
     # 59 averages: each line of ln PSD scatters by 0.13 to 0.18; 360 correlated lines, spread of ln f 0.65: the slope
     # scatters by 0.016, three times that is allowed.
-    assert slope == pytest.approx(-2.0, abs=0.05)
+    validated(
+        "Roads and excitation", "slope of the density of a random input", slope, -2.0, abs=0.05,
+        source="closed form: velocity of constant density",
+    )  # fmt: skip
     # Level from the RMS: 4 pi^2 G_z f^2 = G_v gives G_z f^2 = rms^2 / (1/f1 - 1/f2). The RMS sits in the lowest octave:
     # 2 Hz * 240 s = 480 cycles, 5 % scatter of its square, and 1 % of the fit.
     level = 5.25e-4**2 / (1.0 / 2.0 - 1.0 / 50.0)
-    assert np.exp(intercept + slope * np.log(12.0)) * 12.0**2 == pytest.approx(level, rel=0.12)
+    validated(
+        "Roads and excitation", "density of a random input times f^2",
+        np.exp(intercept + slope * np.log(12.0)) * 12.0**2, level, rel=0.12, unit="m2 Hz",
+        source="closed form: rms^2 / (1 / f1 - 1 / f2)",
+    )  # fmt: skip
 
 
 def test_velocity_psd_is_constant():
@@ -131,11 +143,18 @@ def test_each_line_has_the_level_of_the_density(order):
     road = partial(random_road, rms=5e-4, duration=20.0, lower_band_edge=4.0, roll_off_order=order, level="lines")
     records = [road(seed=seed, taper_length=0.0).displacement["fr"] for seed in (1, 2)]
     assert abs(np.corrcoef(records[0], records[1])[0, 1]) < 0.5
+    checked: list[object] = []
     for z in records:
         power = 2.0 * np.abs(np.fft.rfft(z[:-1]) / (z.size - 1)) ** 2  # A_k^2 / 2 of each line
         k = np.arange(20 if order else 80, 1001)  # 1 or 4 to 50 Hz at 0.05 Hz
         density = 1.0 / k**2.0 / (1.0 + (80 / k) ** (2 * order) if order else 1.0)
-        assert power[k] == pytest.approx(5e-4**2 * density / density.sum(), rel=1e-9)
+        validated(
+            "Roads and excitation",
+            f"power of the lines of a road, roll-off of order {order}, record {len(checked) + 1}", power[k],
+            5e-4**2 * density / density.sum(), rel=1e-9, unit="m2",
+            source="closed form: density times distance of lines",
+        )  # fmt: skip
+        checked.append(power)
         assert power.sum() - power[0] == pytest.approx(5e-4**2, rel=1e-9)
     tapered = road(seed=1)
     # (1 - cos)^2 / 4 has the mean 3/8: two ends of 0.5 s of 20 s lose 5/8 of 1/20, half of it in the RMS: 1.6 %

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.inputs.make_inputs import FOUR_POST, HEIGHTS, LEVELS
+from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.four_post import MOTIONS, level_rms
@@ -32,7 +33,11 @@ def test_random_inputs_read_without_notice_and_keep_their_rms(name, rms):
     assert signal.wheels == ("fr",)
     assert signal.duration == 60.0
     assert signal.timestep == 1e-3
-    assert signal.rms("fr") == pytest.approx(rms, rel=1e-6)  # 7 digits per sample; as promised in the file
+    # 7 digits per sample; as promised in the file
+    validated(
+        "Published cars", f"RMS of the shipped input {name}", signal.rms("fr"), rms, rel=1e-6, unit="m",
+        source="publication: Bommer 2006, levels of the shaker",
+    )  # fmt: skip
     assert signal.source == f"{name}.csv"
     assert signal.displacement["fr"][0] == 0.0
 
@@ -64,7 +69,11 @@ def test_the_level_of_the_four_post_inputs_is_that_of_a_road_of_class_a():
     """The velocity PSD of ISO 8608 in space, (2 pi n)^2 Gd(n) = 6.3e-6 m for class A, times V, over the band."""
     velocity_psd = 6.3e-6 * 80.0 / 3.6
     displacement = velocity_psd / (2.0 * np.pi) ** 2 * (1.0 / 0.5 - 1.0 / 40.0)
-    assert level_rms() == pytest.approx(np.sqrt(displacement), rel=0.002)  # the standard prints two digits
+    # the standard prints two digits
+    validated(
+        "Roads and excitation", "RMS of the four-post inputs, class A at 80 km/h", level_rms(), np.sqrt(displacement),
+        rel=0.002, unit="m", source="standard: ISO 8608, velocity density 6.3e-6 m of class A",
+    )  # fmt: skip
 
 
 def test_the_plates_of_four_plates_are_unrelated():

@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from tests.validation import foreign, validated
 from vehicle.commands.inspect import main as inspect
 from vehicle.errors import DataError
 from vehicle.signals.records import hdf_format
@@ -50,8 +51,15 @@ def check(path, form, digits=1e-12):
     shaker, sensor = found.channels[:2]
     assert (found.format, shaker.name, shaker.unit, sensor.unit) == (form, "Shaker FR", "mm", "g")
     assert shaker.rate == pytest.approx(2000.0, rel=1e-9)
-    np.testing.assert_allclose(shaker.si_values, 1e-3 * SINE, atol=3e-3 * digits)
-    np.testing.assert_allclose(sensor.si_values, 9.80665 * 0.1 * SINE, atol=3.0 * digits)
+    libraries = {"mdf": "asammdf", "tdms": "npTDMS", "xlsx": "openpyxl", "hdf5": "h5py"}
+    for words, values, exact, size, unit in (
+        ("displacement in mm", shaker.si_values, 1e-3 * SINE, 3e-3, "m"),
+        ("acceleration in g", sensor.si_values, 9.80665 * 0.1 * SINE, 3.0, "m/s2"),
+    ):
+        validated(
+            "File readers", f"{path.name}, {form} file, {words}", values, exact, abs=size * digits, unit=unit,
+            source=foreign(libraries[form]),
+        )  # fmt: skip
     return found
 
 

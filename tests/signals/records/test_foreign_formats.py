@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat, wavfile
 
+from tests.validation import foreign, validated
 from vehicle.commands.input_options import record_choice
 from vehicle.commands.shaker import parser
 from vehicle.errors import DataError
@@ -50,7 +51,10 @@ def test_structures_of_testlab(tmp_path):
     (channel,) = found.channels
     assert (found.format, channel.name, channel.unit, channel.rate) == ("mat", "Shaker FR", "mm", RATE)
     assert "single numbers: Fs = 2048" in found.notices
-    np.testing.assert_allclose(signal(path).displacement["fr"][-2000:], 1e-3 * SINE[-2000:], rtol=1e-12, atol=1e-15)
+    validated(
+        "File readers", "structure of Testlab in a MAT file, mm", signal(path).displacement["fr"][-2000:],
+        1e-3 * SINE[-2000:], rel=1e-12, abs=1e-15, unit="m", source=foreign("scipy", "savemat"),
+    )  # fmt: skip
     with path.open("wb") as file:
         savemat(file, {"Signal": exported(label="g", unit_transformation={"factor": 1.0})})
     (channel,) = read_record(path).channels
@@ -69,7 +73,10 @@ def test_plain_arrays_of_matlab_have_no_unit_and_no_time(tmp_path, version):
         signal(path, "--channel", "fr=data(:,1)", "--unit", "fr=mm")
     options = ["--channel", "fr=data(:,2)", "--unit", "fr=mm", "--channel", "time=t", "--unit", "time=s"]
     found = signal(path, *options)
-    np.testing.assert_allclose(found.displacement["fr"][-2000:], 2e-3 * SINE[-2000:], rtol=1e-9, atol=1e-14)
+    validated(
+        "File readers", f"array of a MAT file of version {version}, mm", found.displacement["fr"][-2000:],
+        2e-3 * SINE[-2000:], rel=1e-9, abs=1e-14, unit="m", source=foreign("scipy", "savemat"),
+    )  # fmt: skip
 
 
 def test_matlab_4_of_the_other_byte_order(tmp_path):
@@ -89,7 +96,10 @@ def test_wav_is_shares_of_full_scale(tmp_path, kind):
         signal(path)
     found = signal(path, "--unit", "12.5 mm")
     step = {np.uint8: 1.0 / 128, np.int16: 2.0**-15}.get(kind, 1e-7)
-    np.testing.assert_allclose(found.displacement["fr"][-2000:], 12.5e-3 * share[-2000:], atol=20e-3 * step)
+    validated(
+        "File readers", f"WAV file of {kind.__name__}", found.displacement["fr"][-2000:], 12.5e-3 * share[-2000:],
+        abs=20e-3 * step, unit="m", source=foreign("scipy", "wavfile"),
+    )  # fmt: skip
     path.write_bytes(path.read_bytes()[:-200])
     with pytest.raises(DataError, match=r"chunk 'data' claims \d+ bytes of data, the file holds"):
         read_record(path)
@@ -165,13 +175,19 @@ def test_rpc_of_and_for_the_foreign_library(tmp_path):
     theirs, _ = rpc3.read(str(path))
     for ours, one in zip(CHANNELS, theirs, strict=True):
         assert (one.name, one.unit) == (ours.name, ours.unit) and one.dt == pytest.approx(1.0 / RATE)
-        np.testing.assert_allclose(one.data[: SINE.size], ours.values, rtol=1e-7)
+        validated(
+            "File readers", f"RPC III file that we write, read by a foreign library, {ours.name}",
+            one.data[: SINE.size], ours.values, rel=1e-7, unit=ours.unit, source=foreign("rpc3-file"),
+        )  # fmt: skip
     for kind, digits in ((int, 2.5 / 32752), (float, 1e-6)):
         made = [rpc3.Channel(name=c.name, unit=c.unit, dt=1.0 / RATE, data=c.values) for c in CHANNELS]
         rpc3.write(str(path), made, datatype=kind, overwrite=True)
         for ours, found in zip(CHANNELS, read_record(path).channels, strict=True):
             assert (found.name, found.unit, found.rate) == (ours.name, ours.unit, RATE)
-            np.testing.assert_allclose(found.values, ours.values, atol=digits)
+            validated(
+                "File readers", f"RPC III file of {kind.__name__} of a foreign library, {ours.name}", found.values,
+                ours.values, abs=digits, unit=ours.unit, source=foreign("rpc3-file"),
+            )  # fmt: skip
 
 
 @pytest.mark.parametrize("module", [rpc_format, matlab_format])

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.input_options import record_choice
 from vehicle.commands.inspect import main as inspect
@@ -106,7 +107,10 @@ def test_accelerations_and_velocities_are_integrated(tmp_path, order):
     assert "integrated in the frequency domain, high-pass 0.5 Hz on request" in " ".join(found.notices)
     values = found.displacement["fr"][-time.size :]
     # What the filter makes of the two ends rings for some periods of its corner.
-    np.testing.assert_allclose(values[9000:-9000], np.asarray(z)[9000:-9000], atol=3e-6)
+    validated(
+        "File readers", f"displacement integrated from {'a velocity' if order == 1 else 'an acceleration'}",
+        values[9000:-9000], np.asarray(z)[9000:-9000], abs=3e-6, unit="m", source="closed form: sum of sines",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -192,8 +196,12 @@ def test_comfort_takes_any_channels(tmp_path, capsys):
     assert comfort(["--input", str(path), "--json", *picks, "--from", "102"]) == 0
     found = json.loads(capsys.readouterr().out)
     # 8 Hz, amplitude n/10 g: Wk(8 Hz) = 1.036, Wd(8 Hz) = 0.253 (ISO 2631-1, table 3)
-    assert found["z"]["weighted_rms"] == pytest.approx(0.8 * 9.80665 / np.sqrt(2.0) * 1.036, rel=0.01)
-    assert found["y"]["weighted_rms"] == pytest.approx(0.2 * 9.80665 / np.sqrt(2.0) * 0.253, rel=0.01)
+    for axis, level, factor in (("z", 0.8, 1.036), ("y", 0.2, 0.253)):
+        validated(
+            "Comfort, ISO 2631", f"weighted RMS of a sine of 8 Hz and {level:g} g in a logger file, {axis}",
+            found[axis]["weighted_rms"], level * 9.80665 / np.sqrt(2.0) * factor, rel=0.01, unit="m/s2",
+            source="standard: ISO 2631-1:1997, table 3",
+        )  # fmt: skip
     assert any("z: channel 9 'Acc 8' [g]" in text for text in found["notices"])
     for wrong, said in (
         (["--channel", "time=1"], "needed are the axes"),

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Measurement, uniform_axis
 from vehicle.signals.records.choice import Choice
@@ -81,7 +82,10 @@ def test_columns_of_parts_are_one_response(tmp_path, parts):
     assert (response.name, response.function, coherence.function) == ("H", "frequency response", "coherence")
     found = read_measured(path, (NAME,), Choice(channels={NAME: "H"}))
     assert found.frf is not None and found.record is None
-    np.testing.assert_allclose(found.frf.response[0], 9.80665 * TRUTH, rtol=1e-9)
+    validated(
+        "File readers", f"measured FRF in g, columns of {parts}, in SI", found.frf.response[0], 9.80665 * TRUTH,
+        rel=1e-9, source="closed form: the FRF that was written, standard gravity",
+    )  # fmt: skip
     np.testing.assert_array_equal(found.frf.coherence[0], 0.9)
 
 

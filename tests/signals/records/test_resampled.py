@@ -8,6 +8,7 @@ import shlex
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.inspect import main as inspect
 from vehicle.errors import DataError
@@ -131,7 +132,11 @@ def test_a_jittered_acceleration_drives_the_plate(tmp_path):
     choice = Choice(channels={"fr": "a"}, resample=RATE, highpass=0.3)
     signal = read_signal(path, choice=choice)
     # full level in the middle of the record; the high-pass of 0.3 Hz leaves 1 - 1e-8 of 3 Hz
-    assert np.std(signal.displacement["fr"][800:3200]) == pytest.approx(amplitude / np.sqrt(2.0), rel=2e-3)
+    validated(
+        "File readers", "RMS of a displacement integrated from a jittered acceleration",
+        np.std(signal.displacement["fr"][800:3200]), amplitude / np.sqrt(2.0), rel=2e-3, unit="m",
+        source="closed form: amplitude / sqrt(2)",
+    )  # fmt: skip
     assert signal.timestep == pytest.approx(1.0 / RATE)
 
 
@@ -173,4 +178,8 @@ def test_a_slow_comfort_record_says_where_it_ends(tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["highest_hz"] == pytest.approx(40.0)
     assert any("holds vibration up to 40 Hz" in text for text in found["reasons"])
-    assert found["z"]["weighted_rms"] == pytest.approx(1.036 / np.sqrt(2.0), rel=5e-3)  # Wk(8 Hz)
+    # Wk(8 Hz)
+    validated(
+        "Comfort, ISO 2631", "weighted RMS of a sine of 8 Hz sampled at 100 Hz", found["z"]["weighted_rms"],
+        1.036 / np.sqrt(2.0), rel=5e-3, unit="m/s2", source="standard: ISO 2631-1:1997, table 3",
+    )  # fmt: skip

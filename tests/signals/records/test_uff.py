@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.validation import foreign, validated
 from vehicle.errors import DataError
 from vehicle.signals.records.reader import read_record
 
@@ -62,7 +63,11 @@ def test_a_function_is_read_with_place_and_unit(tmp_path, binary, order):
     (channel,) = found.channels
     assert (found.format, found.start, channel.name) == ("uff", "01-Mar-26 10:00:00", "Sensor A")
     assert (channel.place, channel.direction, channel.unit, channel.quantity) == ("12", "+Z", "m/s2", "acceleration")
-    np.testing.assert_allclose(channel.si_values, values, atol=5e-6)
+    words = f"{'binary' if binary else 'text'}, {'little' if order == '<' else 'big'} endian"
+    validated(
+        "File readers", f"function of a universal file, {words}", channel.si_values, values, abs=5e-6, unit="m/s2",
+        source="closed form: the values that were written, six digits",
+    )  # fmt: skip
     assert channel.rate == 1000.0
 
 
@@ -95,7 +100,11 @@ def test_units_are_those_that_the_file_tells_or_open(tmp_path, given, unit, fact
     if factor is None:
         assert channel.si_unit == "" and (channel.remark or given["label"] == "NONE")
     else:
-        np.testing.assert_allclose(channel.si_values, 2.0 * factor, rtol=1e-12)
+        said = ", ".join(f"{key} {value}" for key, value in given.items())
+        validated(
+            "File readers", f"2 units of a universal file in SI, {said}", channel.si_values, 2.0 * factor, rel=1e-12,
+            source="closed form: SI factors of the units, dataset 164",
+        )  # fmt: skip
 
 
 def test_frequency_responses_of_even_and_uneven_lines(tmp_path):
@@ -149,7 +158,10 @@ def test_real_foreign_files():
     """Files of the project pyuff (MIT): what they hold, or why not."""
     sine = read_record(DATA / "binary8byte.uff").channels[0]
     assert (sine.unit, sine.rate, sine.values.size) == ("g", 100.0, 250)
-    assert np.max(sine.si_values) == pytest.approx(9.80665, rel=1e-3)
+    validated(
+        "File readers", "peak of a sine of 1 g in a real universal file", np.max(sine.si_values), 9.80665, rel=1e-3,
+        unit="m/s2", source="foreign code: pyuff, file of its tests",
+    )  # fmt: skip
     (response,) = read_record(DATA / "non_ascii_header.uff").channels
     assert (response.unit, response.si_unit) == ("(1/N)*(m/s²)", "(m/s2)/(N)")
     catman = read_record(DATA / "time-history-not-all-columns-filled.uff").channels[0]
@@ -174,4 +186,7 @@ def test_files_of_the_foreign_library(tmp_path):
     )  # fmt: skip
     (channel,) = read_record(path).channels
     assert (channel.place, channel.direction, channel.rate, channel.si_unit) == ("3", "-X", 2048.0, "m")
-    np.testing.assert_allclose(channel.si_values, 1e-3 * values, rtol=1e-11, atol=1e-16)
+    validated(
+        "File readers", "universal file of a foreign library, mm", channel.si_values, 1e-3 * values, rel=1e-11,
+        abs=1e-16, unit="m", source=foreign("pyuff"),
+    )  # fmt: skip

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.signals.records.geometry import Geometry, ModeShape
 from vehicle.signals.records.reader import read_record
@@ -92,8 +93,15 @@ def test_sets_of_the_foreign_library(tmp_path):
     assert not normal.is_complex and normal.points == ("1", "2", "7", "9")
     np.testing.assert_allclose(normal.shape[:, :3], motion)
     assert other.is_complex and other.modal_a == 2.0 + 1.0j
-    assert other.frequency == pytest.approx(np.hypot(1.0, 50.0) / (2.0 * np.pi))
-    assert other.damping_ratio == pytest.approx(1.0 / np.hypot(1.0, 50.0))
+    validated(
+        "File readers", "frequency of a complex mode of a universal file", other.frequency,
+        np.hypot(1.0, 50.0) / (2.0 * np.pi), rel=1e-6, unit="Hz",
+        source="closed form: |s| / (2 pi) of the eigenvalue -1 + 50 i",
+    )  # fmt: skip
+    validated(
+        "File readers", "damping ratio of a complex mode of a universal file", other.damping_ratio,
+        1.0 / np.hypot(1.0, 50.0), rel=1e-6, source="closed form: -Re s / |s| of the eigenvalue -1 + 50 i",
+    )  # fmt: skip
     np.testing.assert_allclose(other.shape[:, :3], motion * [1j, 1.0 + 2.0j, 1.0])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.studies.optimisation.front import MARGIN, distance, ends, front, hypervolume, knee, thinned
 
 
@@ -32,7 +33,11 @@ def test_hypervolume_of_a_straight_front():
     line = np.linspace(0.0, 1.0, 2001)
     exact = (1.0 + MARGIN) ** 2 - 0.5
     costs = np.column_stack([5.0 + 20.0 * line, -3.0 + 0.1 * (1.0 - line)])
-    assert hypervolume(costs, costs) == pytest.approx(exact, abs=5e-4)  # half a step of the staircase
+    # half a step of the staircase
+    validated(
+        "Sweeps, tuning and optimisation", "hypervolume of a straight Pareto front", hypervolume(costs, costs), exact,
+        abs=5e-4, source="closed form: square less triangle",
+    )  # fmt: skip
     assert hypervolume(costs[[0, -1]], costs) == pytest.approx(2 * MARGIN * (1.0 + MARGIN) - MARGIN**2)
 
 
@@ -42,7 +47,11 @@ def test_distance_of_a_shifted_front():
     assert distance(costs, costs) == 0.0
     # 0.1 along the normal, and the extents of both together are 1 + 0.1 / sqrt(2).
     shift = 0.1 / np.sqrt(2.0)
-    assert distance(costs, costs + shift) == pytest.approx(0.1 / (1.0 + shift), rel=0.05)  # ends have no foot
+    # ends have no foot
+    validated(
+        "Sweeps, tuning and optimisation", "distance of a shifted Pareto front", distance(costs, costs + shift),
+        0.1 / (1.0 + shift), rel=0.05, source="closed form: shift along the normal over the extent",
+    )  # fmt: skip
 
 
 def test_a_thinned_front_is_even():

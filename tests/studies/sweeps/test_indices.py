@@ -7,6 +7,7 @@ import importlib
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.model.parameters.ranges import Range
 from vehicle.studies.sweeps import indices
@@ -29,11 +30,16 @@ def test_sobol_indices_of_ishigami():
     found = sobol_indices(ANGLES, ishigami(sobol_sample(ANGLES, 2048, seed=3)))
     assert found.paths == ("x0", "x1", "x2")
     # Three half widths of the interval: one case in hundreds of millions, were it normal; and they are small.
-    for value, error, exact in (
-        (found.first, found.first_error, [v1 / total, v2 / total, 0.0]),
-        (found.total, found.total_error, [(v1 + v13) / total, v2 / total, v13 / total]),
+    for name, value, error, exact in (
+        ("first", found.first, found.first_error, [v1 / total, v2 / total, 0.0]),
+        ("total", found.total, found.total_error, [(v1 + v13) / total, v2 / total, v13 / total]),
     ):
-        assert np.all(np.abs(value - exact) < 3.0 * error + 0.005)
+        for number in range(3):
+            validated(
+                "Sweeps, tuning and optimisation", f"Sobol index of the Ishigami function, {name} of x{number + 1}",
+                value[number], exact[number], abs=3.0 * error[number] + 0.005,
+                source="closed form: Ishigami and Homma 1990",
+            )  # fmt: skip
         assert np.all(error < 0.1)
     assert 0.0 < found.drift < 0.1
 
@@ -72,7 +78,10 @@ def test_morris_effects_of_a_linear_function_are_its_slopes():
     points = morris_sample(UNIT, 20, seed=1)
     found = morris_effects(UNIT, points, points @ np.array([3.0, -1.0, 0.0]))
     # Effects are counted over the whole range, which is 2 wide.
-    np.testing.assert_allclose(found.mean_size, [6.0, 2.0, 0.0], atol=1e-9)
+    validated(
+        "Sweeps, tuning and optimisation", "Morris effects of a linear function", found.mean_size,
+        np.array([6.0, 2.0, 0.0]), abs=1e-9, source="closed form: slope times range",
+    )  # fmt: skip
     np.testing.assert_allclose(found.mean, [6.0, -2.0, 0.0], atol=1e-9)
     np.testing.assert_allclose(found.scatter, 0.0, atol=1e-9)
     bent = morris_effects(UNIT, points, points[:, 0] * points[:, 1])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.studies.tuning.two_masses import FREQUENCY, SIGMA, TRUE, MeasuredMasses, response
+from tests.validation import validated
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range
 from vehicle.studies.tuning.fit import fit
@@ -24,7 +25,10 @@ def test_exact_data_give_the_exact_values():
     assert result.converged
     for path, value in TRUE.items():
         # Gauss-Newton ends at rounding; a relative 1e-6 is far below every standard error.
-        assert result.values[path] == pytest.approx(value, rel=1e-6)
+        validated(
+            "Sweeps, tuning and optimisation", f"fit of {path} to exact FRFs", result.values[path], value, rel=1e-6,
+            source="closed form: the value that the FRFs were computed with",
+        )  # fmt: skip
     assert result.unidentified == () and result.at_bound == ()
 
 
@@ -40,7 +44,11 @@ def test_covariance_is_that_of_the_linearised_problem():
     # The noise is estimated from 60 values in each row: its standard deviation is known to 9 % there, 5 % overall;
     # a row whose neighbours happen to be correlated beyond 3 sigma would add more.
     for one, path in zip(expected, TRUE, strict=True):
-        assert result.standard_errors[path] / result.values[path] == pytest.approx(one, rel=0.15)
+        validated(
+            "Statistics and intervals", f"relative standard error of the fitted {path}",
+            result.standard_errors[path] / result.values[path], one, rel=0.15,
+            source="second derivation: normal matrix of analytic perturbations",
+        )  # fmt: skip
 
 
 def test_standard_errors_are_those_of_repeated_measurements():
@@ -48,8 +56,14 @@ def test_standard_errors_are_those_of_repeated_measurements():
     for path, value in TRUE.items():
         away = np.array([result.deviation(path, value) for result in results])
         # 60 repetitions know a standard deviation to 1/sqrt(120) = 9 %: three times that, and the mean to 0.13.
-        assert 0.73 < np.std(away) < 1.27
-        assert abs(np.mean(away)) < 0.39
+        validated(
+            "Statistics and intervals", f"scatter of the fitted {path} in 60 repetitions, in standard errors",
+            np.std(away), 1.0, abs=0.27, source="second derivation: repeated measurements",
+        )  # fmt: skip
+        validated(
+            "Statistics and intervals", f"mean deviation of the fitted {path} in 60 repetitions, in standard errors",
+            np.mean(away), 0.0, abs=0.39, source="second derivation: repeated measurements",
+        )  # fmt: skip
     upper, damping = (np.array([result.values[path] for result in results]) for path in ("upper", "damping"))
     seen = np.corrcoef(np.log(upper), np.log(damping))[0, 1]
     told = np.mean([result.correlation[1, 2] for result in results])

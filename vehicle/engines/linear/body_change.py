@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.layout import read_layout
+from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.model.assembly.spec import fixed_masses
 from vehicle.model.flexbody.attached_mass import attached
 from vehicle.model.flexbody.superelement import Superelement

@@ -21,7 +21,7 @@ import numpy.typing as npt
 from vehicle.engines.linear.matrices import CarMatrices
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.loads import LoadPlaces, spring_coordinates
+from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
 from vehicle.engines.simulation.rows import Rows
 
 Vector = npt.NDArray[np.float64]

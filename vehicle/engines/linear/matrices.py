@@ -17,10 +17,10 @@ import numpy.typing as npt
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
-from vehicle.engines.simulation.layout import numeric, places_of, wheels_of
+from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.static_trim import StaticTrim
-from vehicle.engines.simulation.tables import curve_of
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
@@ -243,7 +243,10 @@ def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector], *, compiled
     """
     model = rows.model
     data = mujoco.MjData(model)
-    rewrite = _rewriter(rows, data) if compiled else rows
+    rewrite: Callable[[mujoco.MjModel, mujoco.MjData], None] = rows
+    if compiled:
+        rewrite = own = compiled_rows(rows)
+        own.attach(data)
     start, way, found = data.qpos.copy(), np.zeros(model.nv), []
     for column in range(model.nv):
         ends = []
@@ -259,15 +262,6 @@ def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector], *, compiled
         way[column] = 0.0
         found.append((ends[0] - ends[1]) / (2.0 * DIFFERENCE_STEP))
     return np.stack(found, axis=-1)
-
-
-def _rewriter(rows: Rows, data: mujoco.MjData) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
-    """What writes the element forces into this state: the compiled form where it can be had."""
-    compiled = compiled_rows(rows)
-    if isinstance(compiled, str):
-        return rows
-    compiled.attach(data)
-    return compiled
 
 
 def _sensors(rows: Rows, data: mujoco.MjData) -> Vector:

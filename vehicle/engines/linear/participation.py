@@ -28,7 +28,7 @@ from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.linear.matrices import CarMatrices
 from vehicle.engines.linear.motion_names import RIGID_WORDS, mode_words
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.layout import numeric
+from vehicle.engines.simulation.row_layout import numeric
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 

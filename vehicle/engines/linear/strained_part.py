@@ -9,7 +9,7 @@ import numpy.typing as npt
 from vehicle.engines.linear.matrices import CarMatrices
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.layout import numeric
+from vehicle.engines.simulation.row_layout import numeric
 from vehicle.engines.simulation.rows import Rows, joint_springs
 from vehicle.engines.simulation.standing import element_parameter
 from vehicle.errors import ConfigurationError

@@ -26,11 +26,11 @@ import scipy
 from vehicle.engines.linear.body_change import BodyChange, body_change, same_body
 from vehicle.engines.linear.matrices import DIFFERENCE_STEP, CarMatrices, differences, law_matrices
 from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.engines.simulation.standing import require_body_modes, require_standing
 from vehicle.engines.simulation.static_trim import AtRest, StaticTrim, at_rest, settle, static_loads, unsolved
-from vehicle.engines.simulation.tables import curve_of
-from vehicle.model.assembly.law_numbers import TURNING, WIDTH, Numbers, element_numbers
+from vehicle.model.assembly.law_numbers import TURNING, Numbers, element_numbers
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.vehicle import Vehicle
 
@@ -251,7 +251,11 @@ def _same_kinds(own: Numbers, known: Numbers) -> bool:
         return True
     if list(own) != list(known) or any(own[name].shape != known[name].shape for name in own):
         return False
-    return all((own[name][TURNING] > 0.0) == (known[name][TURNING] > 0.0) for name in own if len(own[name]) == WIDTH)
+    return all(
+        (own[name][TURNING] > 0.0) == (known[name][TURNING] > 0.0)
+        for name in own
+        if name.startswith("law/") and len(own[name]) > TURNING
+    )
 
 
 def _fields(numbers: Mapping[str, Vector], kind: str) -> Iterator[tuple[str, Vector]]:

@@ -15,7 +15,7 @@ from vehicle.engines.reduced.lane_tables import LaneTable, Table, damper_lane
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.validity import Validity, bend_outputs, left_pieces, samples_of_a_look, turning_bodies
-from vehicle.engines.simulation.acceleration import AHEAD, WEIGHTS
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.model.parameters.elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
@@ -172,7 +172,7 @@ class Group:
 
 
 def _places(matrices: CarMatrices, names: Sequence[str]) -> Vector:
-    """Rows of places on the coordinates, of which `vehicle.engines.simulation.acceleration` makes channels."""
+    """Rows of places on the coordinates, of which `vehicle.engines.simulation.recorded_acceleration` makes channels."""
     size = matrices.system.size
     return np.array([matrices.system.outputs[name][:size] for name in names]).reshape(-1, size)
 

@@ -13,7 +13,7 @@ from typing import Any
 from vehicle.engines.reduced.lane_rows import PAST, TILE, Reading
 from vehicle.engines.reduced.lane_step import part, section
 from vehicle.engines.reduced.vector import alike, larger, load, smaller, spread, store
-from vehicle.engines.simulation.acceleration import AHEAD
+from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 TOGETHER = 4
 """Samples that are read together: their tiles and what they are made of fill the registers."""

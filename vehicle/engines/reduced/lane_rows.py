@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.acceleration import AHEAD
+from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 ELEMENT = np.float32
 """Single precision."""

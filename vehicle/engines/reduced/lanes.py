@@ -13,7 +13,7 @@ from vehicle.engines.reduced.lane_reading import channels, fill, watch
 from vehicle.engines.reduced.lane_rows import ELEMENT, INNER, PAST, TILE, Reading, Rows
 from vehicle.engines.reduced.lane_step import EXACT, advance, section
 from vehicle.engines.reduced.vector import alike, load, loads, store
-from vehicle.engines.simulation.acceleration import AHEAD
+from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 numba = numba_module()
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.acceleration import continued
+from vehicle.engines.simulation.recorded_acceleration import continued
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]

@@ -89,7 +89,7 @@ class PoleModel:
         )
 
     def _position(self, channel: str) -> tuple[Complex, Vector, Vector]:
-        """Displacement of the place, of which `vehicle.engines.simulation.acceleration` makes the channel."""
+        """Displacement of the place, of which `vehicle.engines.simulation.recorded_acceleration` makes the channel."""
         still = np.zeros(len(self.matrices.system.inputs))
         return self.matrices.system.output(channel)[0] @ self.modal, still, still
 

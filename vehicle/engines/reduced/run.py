@@ -18,7 +18,7 @@ from vehicle.engines.reduced.readout import Readout
 from vehicle.engines.reduced.slope import slope_of
 from vehicle.engines.reduced.step_factors import StepFactors, step_factors
 from vehicle.engines.reduced.validity import ValidityWatch
-from vehicle.engines.simulation.acceleration import AHEAD, acceleration
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
 from vehicle.model.parameters.elements import Damper

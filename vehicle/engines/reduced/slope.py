@@ -1,7 +1,7 @@
 """Present wheel loads on the slope of a road: a force of each rolling tyre, known when a step begins.
 
-A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling`). The poles contain the
-share of the static load F_0, as a force b z' of the velocity of the plate. The present load adds
+A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling_tyres`). The poles
+contain the share of the static load F_0, as a force b z' of the velocity of the plate. The present load adds
 
     b (max(0, F_z) / F_0 - 1) z',
 

@@ -9,7 +9,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.layout import numeric
+from vehicle.engines.simulation.law_arrays import model_numbers
+from vehicle.engines.simulation.row_layout import numeric
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.damper import unpack
@@ -229,7 +230,8 @@ def _standing(curve: Curve, preload: float) -> Bent:
 
 def _struts(model: mujoco.MjModel) -> list[Strut]:
     dampers = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
-    rest: list[float] = unpack(model.actuator_biasprm[dampers])["rest_force"].tolist() if dampers else []
+    numbers = model_numbers(model)
+    rest = unpack([numbers[f"actuator/{model.actuator(index).name}"] for index in dampers])["rest_force"]
     return [
         Strut(
             joint=int(model.actuator_trnid[index, 0]),

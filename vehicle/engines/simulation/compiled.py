@@ -19,11 +19,11 @@ from llvmlite import ir
 from vehicle.compiler import OPTIONS, numba_module, stamp
 from vehicle.engines.simulation.kernel import damper_force, rewrite
 from vehicle.engines.simulation.record_pointers import at, packed
-from vehicle.engines.simulation.recorder import Recorder
-from vehicle.engines.simulation.records import Efc, Simulation, Ticket
 from vehicle.engines.simulation.rows import Rows
-from vehicle.engines.simulation.sampling import Loop, Plates, copy_row, keep_sample, move_plates
-from vehicle.engines.simulation.structures import pointer_offsets, scalar_offsets, step_address, user_size_offset
+from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
+from vehicle.engines.simulation.step_records import Efc, Simulation, Ticket
+from vehicle.engines.simulation.structures import offsets
+from vehicle.errors import SimulationError
 
 numba = numba_module()
 types, intrinsic = numba.types, numba.extending.intrinsic
@@ -169,25 +169,22 @@ class CompiledRows:
 
     Args:
         rows: of a model with `nuserdata` of at least two.
-        probe: any state of that model after a forward evaluation.
 
     Raises:
-        LookupError: MuJoCo's structures are not as declared, or the model has no user data.
+        MissingPartError: a structure of MuJoCo is not as declared.
+        SimulationError: the model has no user data.
     """
 
-    def __init__(self, rows: Rows, probe: mujoco.MjData) -> None:
+    def __init__(self, rows: Rows) -> None:
         model = rows.model
         if model.nuserdata < USER_SIZE:
-            raise LookupError("mjModel.nuserdata, which is too small")
-        self.rows, self.model = rows, model
-        time, count = scalar_offsets(probe)
-        names = [f"efc_{name}" for name in Efc._fields]
-        self.offsets = pointer_offsets(probe, (*names, "efc_force", "userdata"))
-        efc = np.array([self.offsets[name] for name in names], dtype=np.int64)
-        self.ticket = Ticket(model._address, rows.layout.row_count, count, time, efc)
+            raise SimulationError(f"the model has {model.nuserdata} user data, compiled callbacks need {USER_SIZE}")
+        self.rows, self.model, self.offsets = rows, model, offsets()
+        efc = np.array([self.offsets.pointers[f"efc_{name}"] for name in Efc._fields], dtype=np.int64)
+        own = self.offsets
+        self.ticket = Ticket(model._address, rows.layout.row_count, own.row_count, own.time, efc)
         self.attached: list[tuple[mujoco.MjData, Simulation, npt.NDArray[np.int64]]] = []
-        self.step_address = step_address()
-        functions = _callbacks(user_size_offset(model), self.offsets["userdata"], stamp())
+        functions = _callbacks(own.user_size, own.pointers["userdata"], stamp())
         self.control, self.gain, self.bias = (function.ctypes for function in functions)
 
     def attach(self, data: mujoco.MjData) -> None:
@@ -210,19 +207,28 @@ class CompiledRows:
         self.control(model._address, data._address)
 
     def step(self, data: mujoco.MjData) -> None:
-        """One step of an attached state, the way the compiled loop takes it."""
-        ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.step_address)(self.model._address, data._address)
+        """Take one step of an attached state by the address of `mj_step`, as the compiled loop does."""
+        step = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.offsets.step)
+        step(self.model._address, data._address)
 
-    def loop(self, recorder: Recorder, plates: Plates) -> Callable[[int, int], int]:
-        """What takes steps first..last of an attached state into a recorder and returns how many poses it kept."""
-        order = recorder.order._replace(step=self.step_address, force_offset=self.offsets["efc_force"])
-        compiled, loop = _loop(stamp()), Loop(order, plates, recorder.sources, recorder.buffers)
+    def loop(self, loop: Loop) -> Callable[[int, int, int], int]:
+        """Return the function that takes the steps first..last of an attached state.
+
+        Args:
+            loop: records of the run; the addresses in its order are set here.
+
+        Returns:
+            Function of the first and the last step and of the first row in the buffers; it returns the number of
+            stored poses.
+        """
+        order = loop.order._replace(step=self.offsets.step, force_offset=self.offsets.pointers["efc_force"])
+        compiled, loop = _loop(stamp()), loop._replace(order=order)
         memory = packed(loop)
 
-        def advance(first: int, last: int) -> int:
+        def advance(first: int, last: int, row: int) -> int:
             # The closure keeps the arrays whose addresses the memory holds.
-            return int(compiled(memory.ctypes.data, first, last, recorder.filled)) if loop else 0
+            return int(compiled(memory.ctypes.data, first, last, row)) if loop else 0
 
         # No step at all: compiling is no part of the time of the run.
-        advance(1, 0)
+        advance(1, 0, 0)
         return advance

@@ -28,6 +28,7 @@ class Bushings(NamedTuple):
         carriers: body whose axes the law follows; (n,).
         stiffness, damping: K [N/m] and B [N s/m]; (n, 3).
         branch_stiffness, branch_time: Maxwell branch K2 [N/m] and tau [s]; (n, 3).
+        further: further numbers of the laws, padded with zeros; (n, those of the longest law).
         averaged: 1 where the stiffness is averaged over three steps; (n,).
         one_sided: positions of the k elements that do not pull along z; (k,).
         oblique: elements whose rows follow directions of their own; (k,).
@@ -40,6 +41,7 @@ class Bushings(NamedTuple):
     damping: Table
     branch_stiffness: Table
     branch_time: Table
+    further: Table
     averaged: Index
     one_sided: Index
     oblique: Index

@@ -31,13 +31,13 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.compiler import jitable
-from vehicle.engines.simulation.control import control
+from vehicle.engines.simulation.damper_control import control
 from vehicle.engines.simulation.element_records import Layout, Tables
 from vehicle.engines.simulation.modal_rows import modal_rows
 from vehicle.engines.simulation.modal_space import advance_modes, modal_forces
-from vehicle.engines.simulation.records import Efc, Fields, State, Weights
-from vehicle.engines.simulation.rolling import headings, rolling_forces, rolling_rows
+from vehicle.engines.simulation.rolling_tyres import headings, rolling_forces, rolling_rows
 from vehicle.engines.simulation.rotations import rotations
+from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 from vehicle.model.laws.curve import curve_force
 from vehicle.model.laws.damper import friction_limit
 from vehicle.model.laws.friction import slope_at_rest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.element_records import Layout
-from vehicle.engines.simulation.records import Efc, Fields, State
+from vehicle.engines.simulation.step_records import Efc, Fields, State
 
 
 @jitable

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.element_records import Layout, ModalSpace, Vector
-from vehicle.engines.simulation.records import Fields, State, Weights
+from vehicle.engines.simulation.step_records import Fields, State, Weights
 
 
 @jitable

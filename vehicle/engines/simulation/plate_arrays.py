@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.acceleration import continued
+from vehicle.engines.simulation.recorded_acceleration import continued
 from vehicle.engines.simulation.step_weights import FOURTH_ORDER
 from vehicle.signals.excitation.signal import Signal
 

@@ -8,15 +8,15 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.layout import numeric
-from vehicle.engines.simulation.loads import LoadPlaces, spring_coordinates
+from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
 from vehicle.engines.simulation.plate_arrays import PlateArrays
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Energies, Recording, Statistics
+from vehicle.engines.simulation.row_layout import numeric
 from vehicle.engines.simulation.rows import Rows, joint_dampers
-from vehicle.engines.simulation.sampling import Order, Samples, Sources, keep_sample
-from vehicle.engines.simulation.tables import curve_of
+from vehicle.engines.simulation.sampling import Order, Samples, Sources, empty_samples, keep_sample
 from vehicle.names import AXES, channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -65,29 +65,8 @@ class Recorder:
         self.settings = [name for name in requested if name in car.vehicle.setting_channels]
         loads = [name for name in requested if name not in self.settings]
         self.loads = LoadPlaces(car, rows, loads) if loads else None
-        bodies = np.zeros(0, dtype=np.int64) if self.loads is None else self.loads.bodies
         joints = spring_coordinates(car, model)
         self.sites = np.array([model.site(f"place/{place}").id for place in self.places], dtype=np.int64)
-        self.buffers = Samples(
-            places=np.zeros((CHUNK, 3 * len(self.sites))),
-            turn=np.zeros((CHUNK, 9)),
-            modal_position=np.zeros((CHUNK, rows.state.modal.shape[1])),
-            modal_velocity=np.zeros((CHUNK, rows.state.modal.shape[1])),
-            modal_pull=np.zeros(len(rows.state.modal_pull)),
-            damper_velocity=np.zeros((CHUNK, len(e.dampers.dofs))),
-            coefficient=np.zeros((CHUNK, len(e.dampers.dofs))),
-            actuator=np.zeros((CHUNK, model.nu)),
-            solved=np.zeros((CHUNK, e.row_count)),
-            explicit=np.zeros((CHUNK, e.row_count)),
-            rate=np.zeros((CHUNK, *e.bushings.rows.shape)),
-            branch=np.zeros((CHUNK, *e.bushings.rows.shape)),
-            poses=np.zeros((CHUNK, model.nq)),
-            frames=np.zeros((CHUNK, 12 * len(bodies))),
-            springs=np.zeros((CHUNK, 2 * len(joints))),
-            contact=np.zeros((CHUNK, len(e.bushings.one_sided))),
-            heading=np.zeros((CHUNK, len(e.rolling.tyres))),
-            pushed=np.zeros(CHUNK),
-        )
         self.sources = Sources(
             position=data.qpos,
             velocity=data.qvel,
@@ -104,13 +83,15 @@ class Recorder:
             sites=self.sites,
             dampers=e.dampers.dofs,
             origins=data.xpos,
-            bodies=bodies,
-            springs=joints,
+            spring_rates=joints[:, 1].copy(),
+            load_bodies=joints[:0, 0].copy() if self.loads is None else self.loads.bodies,
+            load_springs=joints[:0] if self.loads is None else joints,
             contact=rows.state.contact,
             heading=rows.state.heading,
             push=rows.state.push,
             space=e.space,
         )
+        self.buffers = empty_samples(CHUNK, self.sources)
         self.order = Order(
             step=0,
             model=model._address,
@@ -260,7 +241,7 @@ class Recorder:
         for name in self.settings:
             self.channels[name][here] = b.coefficient[:, self.dampers.index(name.removesuffix("_coefficient"))]
         if self.loads is not None:
-            for name, values in self.loads.channels(total, b.frames, b.springs).items():
+            for name, values in self.loads.channels(total, b.load_frames, b.load_springs).items():
                 self.channels[name][here] = values
         # What lifts the weight is known without any quadrature, and is a multiple of what the dampers take.
         static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]
@@ -287,7 +268,7 @@ class Recorder:
         loss = loss + np.sum(damper_force * b.damper_velocity, axis=1)
         modal_damping = e.space.damping if e.space.damping.size else joint_dampers(self.model)[e.modes.velocities]
         loss = loss + np.sum(modal_damping * b.modal_velocity**2, axis=1)
-        loss = loss + b.springs[:, 1::2] ** 2 @ joint_dampers(self.model)[self.sources.springs[:, 1]]
+        loss = loss + b.spring_rates**2 @ joint_dampers(self.model)[self.sources.spring_rates]
         self._add_work(power_in, loss, every)
         self.done += count
         self.filled = 0

@@ -35,7 +35,7 @@ class Statistics:
 
     Attributes:
         engine: "mujoco" or "reduced".
-        callback: form of the element laws, "native" or "python".
+        callback: form of the element laws: "native", compiled code.
         timestep: [s].
         steps: number of steps.
         wall_time: computing time [s].

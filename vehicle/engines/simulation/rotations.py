@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.element_records import Layout, Vector
-from vehicle.engines.simulation.records import Fields, State, Weights
+from vehicle.engines.simulation.step_records import Fields, State, Weights
 
 
 @jitable

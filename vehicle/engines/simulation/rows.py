@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.element_records import Layout, ModalSpace
+from vehicle.engines.simulation.force_curves import standing_on
 from vehicle.engines.simulation.kernel import EMPTY_ROW, damper_force, rewrite
-from vehicle.engines.simulation.law_numbers import Numbers, law_names, with_numbers
-from vehicle.engines.simulation.layout import read_layout
-from vehicle.engines.simulation.records import Efc, Fields, State, Weights
+from vehicle.engines.simulation.law_arrays import Numbers, law_names, with_numbers
+from vehicle.engines.simulation.row_layout import read_layout
+from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 from vehicle.engines.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
-from vehicle.engines.simulation.tables import standing_on
 from vehicle.model.laws.semi_active import RING
 
 Vector = npt.NDArray[np.float64]

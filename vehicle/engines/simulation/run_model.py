@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.element_records import ModalSpace
-from vehicle.engines.simulation.law_numbers import model_numbers
-from vehicle.engines.simulation.layout import read_layout
+from vehicle.engines.simulation.law_arrays import model_numbers
+from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.engines.simulation.rows import joint_dampers, joint_springs, prepare_model
 from vehicle.model.assembly.spec import assemble_on
 from vehicle.model.flexbody.superelement import attached_nodes

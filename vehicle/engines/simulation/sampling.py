@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector
 from vehicle.engines.simulation.modal_space import modal_acceleration
@@ -22,10 +24,14 @@ class Plates(NamedTuple):
 
 
 class Sources(NamedTuple):
-    """What is read after a step: views of mjData and of the state of the rows, and which sites and dampers.
+    """Arrays that a sample is copied from: views of mjData and of the state of the rows, and indices into them.
 
-    `bodies` are those whose frames the loads need, none in a run without loads, `springs` places and velocity
-    coordinates of joints with a spring.
+    Attributes:
+        sites: ids of the sites of the measurement points; (p,).
+        dampers: velocity coordinates of the dampers; (w,).
+        spring_rates: velocity coordinates of the joints with a spring, for the energy; (j,).
+        load_bodies: ids of the bodies whose frames the loads need; none in a run without loads; (b,).
+        load_springs: position and velocity coordinates of the joints with a spring; none without loads; (j, 2).
     """
 
     position: Vector
@@ -43,8 +49,9 @@ class Sources(NamedTuple):
     sites: Index
     dampers: Index
     origins: Table
-    bodies: Index
-    springs: Indices
+    spring_rates: Index
+    load_bodies: Index
+    load_springs: Indices
     contact: Table
     heading: Table
     push: Vector
@@ -52,7 +59,10 @@ class Sources(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Where it goes: buffers with one row a sample, and poses."""
+    """Buffers that the samples are copied into, a row each; `load_frames` and `load_springs` serve the loads alone.
+
+    `poses` has a row for each stored pose, `modal_pull` is the memory of one sample.
+    """
 
     places: Table
     turn: Table
@@ -67,11 +77,38 @@ class Samples(NamedTuple):
     rate: Tables3
     branch: Tables3
     poses: Table
-    frames: Table
-    springs: Table
+    spring_rates: Table
+    load_frames: Table
+    load_springs: Table
     contact: Table
     heading: Table
     pushed: Vector
+
+
+def empty_samples(count: int, s: Sources) -> Samples:
+    """Return buffers for a number of samples from these sources, filled with zeros."""
+    widths: dict[str, tuple[int, ...]] = {
+        "places": (3 * len(s.sites),),
+        "turn": s.orientation.shape[1:],
+        "modal_position": s.modal.shape[1:],
+        "modal_velocity": s.modal.shape[1:],
+        "damper_velocity": s.dampers.shape,
+        "coefficient": s.coefficient.shape,
+        "actuator": s.actuator.shape,
+        "solved": s.explicit.shape,
+        "explicit": s.explicit.shape,
+        "rate": s.rate.shape,
+        "branch": s.branch.shape,
+        "poses": s.position.shape,
+        "spring_rates": s.spring_rates.shape,
+        "load_frames": (12 * len(s.load_bodies),),
+        "load_springs": (2 * len(s.load_springs),),
+        "contact": s.contact.shape[1:],
+        "heading": s.heading.shape[1:],
+        "pushed": (),
+    }
+    buffers = {name: np.zeros((count, *width)) for name, width in widths.items()}
+    return Samples(modal_pull=np.zeros_like(s.modal_force), **buffers)
 
 
 class Order(NamedTuple):
@@ -155,12 +192,15 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
     b.pushed[row] = 0.0
     for dof in range(s.push.shape[0]):
         b.pushed[row] += s.push[dof] * (s.velocity[dof] + half * s.acceleration[dof])
-    for body in range(s.bodies.shape[0]):
+    for spring in range(s.spring_rates.shape[0]):
+        dof = s.spring_rates[spring]
+        b.spring_rates[row, spring] = s.velocity[dof] + half * s.acceleration[dof]
+    for body in range(s.load_bodies.shape[0]):
         for axis in range(3):
-            b.frames[row, 12 * body + axis] = s.origins[s.bodies[body], axis]
+            b.load_frames[row, 12 * body + axis] = s.origins[s.load_bodies[body], axis]
         for entry in range(9):
-            b.frames[row, 12 * body + 3 + entry] = s.orientation[s.bodies[body], entry]
-    for spring in range(s.springs.shape[0]):
-        place, dof = s.springs[spring, 0], s.springs[spring, 1]
-        b.springs[row, 2 * spring] = s.position[place]
-        b.springs[row, 2 * spring + 1] = s.velocity[dof] + half * s.acceleration[dof]
+            b.load_frames[row, 12 * body + 3 + entry] = s.orientation[s.load_bodies[body], entry]
+    for spring in range(s.load_springs.shape[0]):
+        place, dof = s.load_springs[spring, 0], s.load_springs[spring, 1]
+        b.load_springs[row, 2 * spring] = s.position[place]
+        b.load_springs[row, 2 * spring + 1] = s.velocity[dof] + half * s.acceleration[dof]

@@ -19,9 +19,9 @@ import scipy
 
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.element_records import Layout
-from vehicle.engines.simulation.layout import wheels_of
+from vehicle.engines.simulation.force_curves import curve_of, standing_on
+from vehicle.engines.simulation.row_layout import wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_springs
-from vehicle.engines.simulation.tables import curve_of, standing_on
 from vehicle.errors import ConfigurationError, SimulationError
 
 Vector = npt.NDArray[np.float64]

@@ -6,9 +6,12 @@ import ctypes
 import functools
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
+
+from vehicle.engines.simulation.step_records import Efc
+from vehicle.errors import MissingPartError
 
 Layout = type[ctypes.Structure]
 
@@ -27,6 +30,30 @@ PLAIN_TYPES: dict[str, Any] = {
     "uintptr_t": ctypes.c_size_t,
     "uint64_t": ctypes.c_uint64,
 }
+
+POINTERS = (*(f"efc_{name}" for name in Efc._fields), "efc_force", "userdata")
+"""Array pointers of mjData that compiled code follows."""
+
+PROBE = """<mujoco><size nuserdata="2"/><worldbody><body><joint type="free" frictionloss="1"/><geom size=".1"/></body>
+</worldbody></mujoco>"""
+"""A model with user data and six constraint rows."""
+
+
+class Offsets(NamedTuple):
+    """Byte offsets in MuJoCo's structures, and the address of `mj_step`.
+
+    Attributes:
+        user_size: offset of `nuserdata` in mjModel.
+        time, row_count: offsets of `time` and `nefc` in mjData.
+        pointers: offsets of the array pointers in mjData, by name.
+        step: address of `mj_step`.
+    """
+
+    user_size: int
+    time: int
+    row_count: int
+    pointers: dict[str, int]
+    step: int
 
 
 @functools.cache
@@ -77,21 +104,17 @@ def _ctype(declared: Any) -> Any:
 
 
 def user_size_offset(model: mujoco.MjModel) -> int:
-    """Byte offset of `nuserdata` in mjModel.
+    """Return the byte offset of `nuserdata` in mjModel.
 
     Raises:
-        LookupError: one of the sizes before it is not where the declarations say.
+        LookupError: one of the sizes before `nuserdata` differs from its declaration.
     """
     structure = layout("mjModel", "nuserdata")
     seen = structure.from_address(model._address)
     for name, kind in structure._fields_:  # type: ignore[misc]
-        if kind is not ctypes.c_int64:
-            continue
-        if hasattr(model, name) and getattr(seen, name) != getattr(model, name):
+        if kind is ctypes.c_int64 and hasattr(model, name) and getattr(seen, name) != getattr(model, name):
             raise LookupError(f"mjModel.{name}")
-        if name == "nuserdata":
-            return int(structure.nuserdata.offset)
-    raise LookupError("mjModel.nuserdata")
+    return int(structure.nuserdata.offset)
 
 
 def pointer_offsets(data: mujoco.MjData, names: Iterable[str]) -> dict[str, int]:
@@ -133,15 +156,49 @@ def scalar_offsets(data: mujoco.MjData) -> tuple[int, int]:
 
 
 def step_address() -> int:
-    """Address of `mj_step` in the library that the bindings of MuJoCo use.
+    """Return the address of `mj_step` in the library that the Python bindings of MuJoCo use.
 
     Raises:
-        LookupError: there is no such library beside the bindings.
+        LookupError: there is no single library next to the bindings, or the bindings use another copy of it.
     """
     folder = Path(mujoco.__file__).parent
-    found = [
-        path for path in sorted(folder.iterdir()) if path.name.startswith("libmujoco") or path.name == "mujoco.dll"
-    ]
-    if len(found) != 1:
-        raise LookupError(f"{len(found)} libraries beside the bindings, where one is expected")
-    return int(ctypes.cast(ctypes.CDLL(str(found[0])).mj_step, ctypes.c_void_p).value or 0)
+    paths = [path for path in folder.iterdir() if path.name.startswith("libmujoco") or path.name == "mujoco.dll"]
+    if len(paths) != 1:
+        raise LookupError(f"mj_step ({len(paths)} libraries in {folder}, must be one)")
+    library, installed = ctypes.CDLL(str(paths[0])), mujoco.get_mjcb_control() is not None
+    if not installed:
+        mujoco.set_mjcb_control(lambda model, data: None)
+    callback = ctypes.c_void_p.in_dll(library, "mjcb_control").value
+    if not installed:
+        mujoco.set_mjcb_control(None)
+    if not callback:
+        raise LookupError(f"mjcb_control (the bindings use another library than {paths[0]})")
+    return int(ctypes.cast(library.mj_step, ctypes.c_void_p).value or 0)
+
+
+@functools.cache
+def offsets() -> Offsets:
+    """Return what compiled code reads by address, checked once in a process with a small model.
+
+    Raises:
+        MissingPartError: a field is not located where the declarations of the installed MuJoCo version say.
+    """
+    model = mujoco.MjModel.from_xml_string(PROBE)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    # Not zero, so that a field of zeros is not taken for the time.
+    data.time = 0.734
+    try:
+        time, row_count = scalar_offsets(data)
+        return Offsets(
+            user_size=user_size_offset(model),
+            time=time,
+            row_count=row_count,
+            pointers=pointer_offsets(data, POINTERS),
+            step=step_address(),
+        )
+    except LookupError as error:
+        raise MissingPartError(
+            f"MuJoCo {mujoco.__version__} is not as its declarations (mujoco.introspect) say at {error.args[0]}, so "
+            "compiled code would read wrong numbers; install the tested version: pip install -c constraints.txt mujoco"
+        ) from None

@@ -213,7 +213,9 @@ class ElementBuilder:
         actuator = self.spec.add_actuator(name=placed.name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER
         actuator.biastype = mujoco.mjtBias.mjBIAS_USER
-        actuator.biasprm = parameters
+        actuator.biasprm = parameters[: len(actuator.biasprm)]
+        if len(parameters) > len(actuator.biasprm):
+            self._numerics({f"actuator/{placed.name}": parameters})
         if damper.controlled is not None:
             for end, part, at in zip(("lower", "upper"), placed.sensors, placed.at, strict=True):
                 self._site(f"sensor/{placed.name}/{end}", part, at)

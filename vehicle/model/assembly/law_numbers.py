@@ -1,6 +1,6 @@
 """What the parameters of a car become in its model beside places: numbers of laws, springs in joints, masses, by name.
 
-The model keeps those of laws in custom fields of these names, and `vehicle.engines.simulation.layout` reads them there.
+The model keeps those of laws in custom fields of these names, and `vehicle.engines.simulation.row_layout` reads them.
 A car that differs from another one in such numbers alone needs no model of its own (`vehicle.engines.linear.varied`).
 """
 
@@ -27,11 +27,9 @@ from vehicle.names import AXES
 Vector = npt.NDArray[np.float64]
 Numbers = dict[str, Vector]
 
-WIDTH = 14
-"""Length of the field of a law along three axes."""
-
 TURNING, AVERAGED = 12, 13
-"""Places in it of the stiffness against rotation, and of the mark of a stiffness that is averaged."""
+"""Indices of the rotational stiffness, and of the mark of an averaged stiffness, in the field of a law along three
+axes. A law may have any number of further values after them."""
 
 
 def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> Numbers:

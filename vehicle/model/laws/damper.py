@@ -42,7 +42,7 @@ RECORD = np.dtype(
     ],
     align=True,
 )
-"""As long as the parameters of an actuator."""
+"""At least as long as the 10 parameters of an actuator; a longer one is also a custom field of the model."""
 
 
 def pack(damper: Damper) -> npt.NDArray[Any]:
@@ -85,13 +85,13 @@ def damper_curve(damper: Damper) -> Curve:
 
 
 def actuator_parameters(record: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    """Parameters of the actuator of a damper with this record; (10,)."""
+    """Parameters of the actuator of a damper with this record; (n,), n the length of `RECORD`."""
     return np.atleast_1d(record).view(np.float64)
 
 
 def unpack(parameters: npt.ArrayLike) -> npt.NDArray[Any]:
-    """Records (w,) of the parameters of actuators (w, 10)."""
-    return np.array(parameters, dtype=np.float64, ndmin=2).view(RECORD).reshape(-1)
+    """Return the records (w,) of the parameters of w actuators, n each with n the length of `RECORD`."""
+    return np.reshape(np.array(parameters, dtype=np.float64), -1).view(RECORD)
 
 
 def damper_law(damper: Damper) -> Parallel:

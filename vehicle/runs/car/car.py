@@ -25,8 +25,8 @@ from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.judgement import require_finite, require_samples
-from vehicle.engines.simulation.run import Progress, simulate
 from vehicle.engines.simulation.static_trim import StaticTrim
+from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.library import body_model
 from vehicle.model.flexbody.superelement import Superelement

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.element_records import Layout
-from vehicle.engines.simulation.records import Fields, State
+from vehicle.engines.simulation.step_records import Fields, State
 from vehicle.model.laws.semi_active import PRESENT, act
 
 

@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 
 from vehicle.engines.simulation.element_records import Layout, Tables, Vector
-from vehicle.engines.simulation.tables import tables_through
-from vehicle.model.assembly.law_numbers import AVERAGED, TURNING, WIDTH
+from vehicle.engines.simulation.force_curves import tables_through
+from vehicle.model.assembly.law_numbers import AVERAGED, TURNING
 from vehicle.model.laws.damper import unpack
 from vehicle.model.laws.semi_active import in_steps
 from vehicle.names import AXES
@@ -47,13 +47,18 @@ def model_numbers(model: mujoco.MjModel) -> dict[str, Vector]:
         start = model.numeric_adr[index]
         found[str(model.numeric(index).name)] = np.array(model.numeric_data[start : start + model.numeric_size[index]])
     for index in range(model.nu):
-        found[f"actuator/{model.actuator(index).name}"] = np.array(model.actuator_biasprm[index])
+        # The parameters of an actuator are ten; a longer record is in a custom field.
+        found.setdefault(f"actuator/{model.actuator(index).name}", np.array(model.actuator_biasprm[index]))
     return found
 
 
 def laws_of(names: LawNames, numbers: Numbers) -> Vector:
-    """Numbers of the elements with a law along three axes; (n, 14)."""
-    return np.array([numbers[f"law/{name}"] for name in names.bushings]).reshape(-1, WIDTH)
+    """Return the numbers of the elements with a law along three axes, padded with zeros; (n, longest law)."""
+    laws = [numbers[f"law/{name}"] for name in names.bushings]
+    padded = np.zeros((len(laws), max((AVERAGED + 1, *(len(law) for law in laws)))))
+    for row, law in zip(padded, laws, strict=True):
+        row[: len(law)] = law
+    return padded
 
 
 def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: float) -> Layout:
@@ -78,6 +83,7 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             damping=laws[:, 3:6].copy(),
             branch_stiffness=laws[:, 6:9].copy(),
             branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=present),
+            further=laws[:, AVERAGED + 1 :].copy(),
             averaged=_places(laws[:, AVERAGED] > 0.0),
             one_sided=_which(f"one_sided/{name}" in numbers for name in names.bushings),
             oblique=_which(f"directions/{name}" in numbers for name in names.bushings),
@@ -90,7 +96,7 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             stiffness=np.array([float(numbers[f"law/{name}"][0]) for name in names.springs])
         ),
         dampers=layout.dampers._replace(
-            laws=unpack(np.reshape([numbers[f"actuator/{name}"] for name in names.dampers], (-1, 10))),
+            laws=unpack([numbers[f"actuator/{name}"] for name in names.dampers]),
             pieces=np.reshape([numbers[f"law/{name}"] for name in names.valves], (-1, 3)).astype(float),
         ),
         controls=layout.controls._replace(

@@ -24,7 +24,7 @@ import numpy as np
 
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.element_records import Layout
-from vehicle.engines.simulation.records import Efc, Fields, State, Weights
+from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 
 
 @jitable

@@ -5,27 +5,23 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.acceleration import AHEAD
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.judgement import judge_energy
 from vehicle.engines.simulation.plate_arrays import PlateArrays, PlateBlock
+from vehicle.engines.simulation.recorded_acceleration import AHEAD
 from vehicle.engines.simulation.recorder import CHUNK, Recorder
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
-from vehicle.engines.simulation.sampling import Plates, move_plates
-from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
+from vehicle.engines.simulation.sampling import Loop, Plates, move_plates
+from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.signals.excitation.signal import Signal
-
-if TYPE_CHECKING:
-    from vehicle.engines.simulation.compiled import CompiledRows
 
 Vector = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -43,7 +39,6 @@ def simulate(
     signal: Signal,
     *,
     progress: Progress | None = None,
-    native: bool | None = None,
     requested: Sequence[str] = (),
 ) -> Recording:
     """Run a car on its shaker plates.
@@ -52,8 +47,6 @@ def simulate(
         car: compiled and trimmed car.
         signal: displacement of the plates.
         progress: called with the finished fraction [-] now and then.
-        native: True for the compiled form of the element laws, False for the Python form; by default the compiled
-            one where it can be had, with a notice where not.
         requested: names of channels to be recorded beside the usual ones: loads, settings.
 
     Returns:
@@ -61,7 +54,7 @@ def simulate(
 
     Raises:
         ConfigurationError: the recording rate is no whole fraction of the step rate.
-        MissingPartError: `native` is True and the compiled form cannot be had; the message says why.
+        MissingPartError: numba or the installed MuJoCo version does not fit; the message says why.
         SimulationError: the state is no longer finite, MuJoCo warned, or the energy balance does not close; the
             message says when and where.
     """
@@ -87,25 +80,23 @@ def simulate(
         row_velocity=rows.state.plate_velocity,
         row_acceleration=rows.state.plate_acceleration,
     )
-    compiled, notices = _compiled(rows, native)
+    compiled = compiled_rows(rows)
     recorder = Recorder(
         car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
     )
-    advance = None
-    if compiled is not None:
-        compiled.attach(data)
-        advance = compiled.loop(recorder, plates)
+    compiled.attach(data)
+    advance = compiled.loop(Loop(recorder.order, plates, recorder.sources, recorder.buffers))
     started = clock.perf_counter()
     with installed(rows, compiled):
         index = 0
         while index <= count:
             # The first and the last sample also ask for the energy of the car, so they are taken one by one.
             last = every * min(recorder.done + CHUNK - 1, count // every - 1)
-            loop = advance if 0 < index <= last else None
+            several = 0 < index <= last
             # From the first of the samples in the buffers on, which are evaluated together.
-            offset = block.reach(min(index, every * recorder.done), last if loop else index)
-            if loop is not None:
-                recorder.keep(last, loop(index - offset, last - offset))
+            offset = block.reach(min(index, every * recorder.done), last if several else index)
+            if several:
+                recorder.keep(last, advance(index - offset, last - offset, recorder.filled))
                 index = last
             else:
                 move_plates(index - offset, plates)
@@ -128,27 +119,15 @@ def simulate(
     energies = recorder.energies()
     statistics = Statistics(
         engine="mujoco",
-        callback="python" if compiled is None else "native",
+        callback="native",
         timestep=step,
         steps=count,
         wall_time=wall,
         warnings=(*recorder.warnings(), *judge_energy(energies, 1.0 / (every * step))),
         energies=energies,
-        notices=(*notices, *recorder.notices()),
+        notices=recorder.notices(),
     )
     return recorder.recording(signal, statistics)
-
-
-def _compiled(rows: Rows, native: bool | None) -> tuple[CompiledRows | None, tuple[str, ...]]:
-    """The compiled callbacks, and a notice where they were wished for and cannot be had."""
-    if native is False:
-        return None, ()
-    found = compiled_rows(rows)
-    if not isinstance(found, str):
-        return found, ()
-    if native:
-        raise MissingPartError(found)
-    return None, (found,)
 
 
 def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, recorded: bool, moved: bool) -> None:

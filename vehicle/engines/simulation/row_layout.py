@@ -24,8 +24,8 @@ from vehicle.engines.simulation.element_records import (
     Table,
     Vector,
 )
-from vehicle.engines.simulation.law_numbers import law_names, laws_of, model_numbers, with_numbers
-from vehicle.engines.simulation.tables import tables_through
+from vehicle.engines.simulation.force_curves import tables_through
+from vehicle.engines.simulation.law_arrays import law_names, laws_of, model_numbers, with_numbers
 from vehicle.model.assembly.law_numbers import TURNING
 from vehicle.model.laws.damper import unpack
 from vehicle.model.laws.semi_active import in_steps
@@ -89,6 +89,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             damping=empty,
             branch_stiffness=empty,
             branch_time=empty,
+            further=empty,
             averaged=_whole([]),
             one_sided=_whole([]),
             oblique=_whole([]),
@@ -198,7 +199,7 @@ def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], f
     # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
     valves = [(first + len(own) + index, damper) for index, damper in enumerate(wrapped)]
     return Dampers(
-        laws=unpack(np.zeros((0, 10))),
+        laws=unpack([]),
         rows=rows_of([str(model.actuator(index).name) for index in own]),
         frictions=first + np.argsort(np.argsort(dofs)),
         dofs=dofs,
