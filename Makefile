@@ -20,6 +20,7 @@ shaker: setup
 	fi
 
 test: setup .stamps/for-tests check
+	$(BIN)/python -m tests.compile_first
 	$(BIN)/python -m pytest -n 2
 
 check: setup
