@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from concurrent.futures import ProcessPoolExecutor
 
-from vehicle.engines.reduced.many import simulate_many
+from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 
@@ -17,16 +17,16 @@ CARS = ("focus", "focus_road")
 
 def compile_mujoco() -> None:
     """Compile the callbacks and the stepping loop of the MuJoCo engine."""
-    Car.load(CARS[0]).run(random_road(rms=1e-4, seed=1, duration=1.0))
+    Car.load(CARS[0]).run(random_road(rms=1e-4, seed=1, wheel="fl", duration=1.0))
 
 
 def compile_reduced() -> None:
     """Compile the time stepping of the reduced engine, for single runs and for a batch."""
-    road = random_road(rms=1e-4, seed=1, duration=1.0)
+    road = random_road(rms=1e-4, seed=1, wheel="fl", duration=1.0)
     for name in CARS:
         Car.load(name).run(road, engine="reduced")
     car = Car.load(CARS[0])
-    simulate_many(
+    simulate_batch(
         [car.poles] * 2,
         road,
         dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * 2,
