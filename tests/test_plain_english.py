@@ -28,7 +28,7 @@ def plainness():
 
 def rates_of(plainness, paths):
     plainness.WORDS.clear()
-    total = Counter()
+    total: Counter[str] = Counter()
     for path in paths:
         counts, _ = plainness.examine(path)
         total += counts

@@ -37,7 +37,7 @@ def same_file(committed: bytes, generated: bytes) -> bool:
         return False
     numbers = [np.array(NUMBER.findall(text), dtype=float) for text in texts]
     words = [NUMBER.sub("", text) for text in texts]
-    return words[0] == words[1] and np.allclose(*numbers, rtol=2e-5, atol=1e-15)
+    return words[0] == words[1] and np.allclose(numbers[0], numbers[1], rtol=2e-5, atol=1e-15)
 
 
 def test_same_file_allows_the_last_digit_only():
