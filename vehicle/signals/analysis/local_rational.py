@@ -14,7 +14,8 @@ Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,7 +34,6 @@ from vehicle.signals.analysis.samples import (
     checked_time_step,
     is_constant,
 )
-from vehicle.signals.analysis.segments import stretches_of_one_length
 
 LEAST_HALF_WIDTH, LINES_OF_AN_INPUT = 8, 5
 """Lines n on each side at least: 17 lines, 6 unknowns; and as many more for every further input."""
@@ -52,6 +52,9 @@ BODY_MODES = 5.0
 
 COARSE_HZ = 0.06
 """Half-power width [Hz] of a lightly damped body mode: 1 % at 3 Hz. A record that does not resolve it says so."""
+
+FITS_AT_ONCE = 400
+"""Fits (windows times responses) in a batch: their arrays stay in the caches."""
 
 INDEPENDENT = 1e-2
 """Least eigenvalue of the matrix of the inputs, scaled to unit diagonal, over a stretch."""
@@ -158,18 +161,21 @@ def local_rational_responses(
     at_once = max(OUTPUTS_OF_A_LONG_RECORD if is_long(samples) else len(outputs), 1)
     for begin in range(0, max(answering_rows.size, 1), at_once):
         group = answering_rows[begin : begin + at_once]
-        answers = np.array([_without_mean(outputs[row], lines_of) for row in group]).reshape(-1, spectra.shape[1])
-        for some, lines in stretches_of_one_length(centres[driven], halves[driven]):
+        answers = np.array([_without_mean(outputs[row], lines_of) for row in group]).reshape(-1, spectra.shape[1]).T
+        for some in _batches(halves[driven] > least, group.size):
             which = driven[some]
-            drives, drive_level = _scaled(spectra[:, lines])  # (s, p, N), (s, p)
-            gram = drives @ drives.conj().swapaxes(1, 2) / lines.shape[1]
+            offset = np.arange(-halves[which].max(initial=0), halves[which].max(initial=0) + 1)
+            inside = np.abs(offset) <= halves[which, None]
+            lines = np.where(inside, centres[which, None] + offset, 0)
+            drives, drive_level = _scaled(spectra[:, lines].swapaxes(0, 1) * inside[:, None], 2, inside.sum(axis=1))
+            gram = drives @ drives.conj().swapaxes(1, 2) / inside.sum(axis=1)[:, None, None]
             apart = np.linalg.eigvalsh(gram)[:, 0] >= INDEPENDENT
             silent[which[~apart]] = len(CAUSES) + 1
             if not apart.any():
                 continue
-            which, gram = which[apart], gram[apart]
-            scaled, level = _scaled(answers[:, lines[apart]])
-            fit = fit_stretches(drives[apart], scaled, wide=lines.shape[1] // 2 > least)
+            which, gram, inside = which[apart], gram[apart], inside[apart]
+            scaled, level = _scaled(answers[lines[apart].T] * inside.T[:, :, None], 0, inside.sum(axis=1)[:, None])
+            fit = fit_stretches(drives[apart], scaled, halves[which], wide=bool(halves[which[0]] > least))
             variance = np.real(np.einsum("skii->isk", fit.covariance))
             ratio = level / drive_level[apart].T[:, :, None]  # (p, s, k)
             rows = np.ix_(np.arange(len(inputs)), group, which)
@@ -206,11 +212,32 @@ def _without_mean(record: NDArray[np.float64], lines: RecordLines) -> NDArray[np
     return lines.of(lambda part: record[part] - mean)
 
 
-def _scaled(spectra: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Stretches (r, s, N) of r rows as (s, r, N), scaled to unit mean power, and their levels (s, r); zeros stay."""
-    rows = spectra.swapaxes(0, 1)
-    level = np.sqrt(np.mean(np.abs(rows) ** 2, axis=2))
-    return rows / np.where(level > 0.0, level, 1.0)[:, :, None], level
+def _batches(wide: NDArray[np.bool_], outputs: int) -> Iterator[slice]:
+    """Cut frequency windows, narrowest first, into batches with one grid of poles.
+
+    Args:
+        wide: False for the windows with the minimum number of lines, shape (m,).
+        outputs: responses fitted in each window; a batch has about `FITS_AT_ONCE` fits.
+    """
+    size = max(FITS_AT_ONCE // max(outputs, 1), 1)
+    for first, last in itertools.pairwise((0, int(np.count_nonzero(~wide)), wide.size)):
+        for begin in range(first, last, size):
+            yield slice(begin, min(begin + size, last))
+
+
+def _scaled(
+    spectra: NDArray[np.complex128], axis: int, lines: NDArray[np.int_]
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """Scale frequency windows to unit mean power over their lines, and return their levels too; zeros stay.
+
+    Args:
+        spectra: windows, zero outside.
+        axis: axis of the lines.
+        lines: number of lines of the windows, along the other axes.
+    """
+    power = np.sum(spectra.real**2 + spectra.imag**2, axis=axis)
+    level = np.sqrt(power / (lines[:, None] if axis == 2 else lines))
+    return spectra * np.expand_dims(1.0 / np.where(level > 0.0, level, 1.0), axis), level
 
 
 def _coherence(fit: StretchFit, gram: NDArray[np.complex128]) -> NDArray[np.float64]:

@@ -75,135 +75,259 @@ class StretchFit:
     """power of e in a line, shape (s, k)"""
 
 
-def fit_stretches(drives: Complex, answers: Complex, *, wide: bool) -> StretchFit:
-    """Fit every response over every stretch; those of one length share the grid of poles, and are fitted at once.
+def fit_stretches(drives: Complex, answers: Complex, halves: NDArray[np.int_], *, wide: bool) -> StretchFit:
+    """Fit the local rational model to all responses in s frequency windows, vectorised over windows and responses.
+
+    Windows are centred in N lines; lines outside a window are zero.
 
     Args:
-        drives: U on N = 2 n + 1 lines, scaled to unit mean power, shape (s, p, N).
-        answers: Y, scaled likewise, shape (s, k, N).
-        wide: whether n is a share of the frequency, not the least number of lines.
+        drives: spectra U of the inputs, scaled to unit mean power in each window, shape (s, p, N).
+        answers: spectra Y of the responses, scaled likewise, shape (N, s, k).
+        halves: lines n on each side of the centre line of each window, in ascending order, shape (s,).
+        wide: True if n is a share of the frequency, False if n is the minimum number of lines.
     """
-    inputs, lines = drives.shape[1:]
-    half, dof = lines // 2, lines - 3 * inputs - 3  # less b, t and a
-    offset = np.arange(-half, half + 1) / half
-    floor = EXACT * _power(answers)
-    stretch = _Stretches(offset, drives)
-    known = _adjoint(stretch.basis) @ _turned(answers)  # (s, 2p + 1, k)
-    rest = np.ascontiguousarray(answers - _turned(stretch.basis @ known))
-    total = _power(rest)
+    inputs = drives.shape[1]
+    dof = (2 * halves + 1 - 3 * inputs - 3)[:, None]  # less b, t and a
+    total = _column_power(answers)
+    floor = EXACT * total
+    stretch = _Stretches(drives, halves)
+    known = _adjoint(stretch.basis) @ answers.swapaxes(0, 1)  # (s, 2p + 1, k)
+    rest = answers - (stretch.basis @ known).swapaxes(0, 1)
+    total = _column_power(rest)
 
     # Every pole of the grid, and none: there x^2 and, for the transient, x take the place of 1 / (1 + a x).
-    poles, spacing, sharpest, shapes = _pole_grid(half, wide)
-    gram, direct = (np.concatenate(parts) for parts in zip(stretch.without_pole(), stretch.seen(shapes), strict=True))
-    heard = stretch.tail.conj().transpose(1, 0, 2)[:, :, :, None] * rest.transpose(2, 0, 1)[:, :, None]
-    right = (shapes.conj() @ heard.reshape(lines, -1)).reshape(-1, *heard.shape[1:])  # (G, s, p + 1, k)
-    right = np.concatenate([(_adjoint(stretch.smooth) @ _turned(rest))[None], right])
-    inverse = np.linalg.inv(gram)
-    unknowns = inverse @ right  # (G, s, p + 1, k)
-    explained = np.sum(right.real * unknowns.real + right.imag * unknowns.imag, axis=2)
-    left = np.maximum(total - explained, floor)  # (G, s, k)
+    grid = _pole_grid(wide, int(halves[0]))
+    gram, direct, right = _projected_sums(grid, stretch, rest, halves)
+    lower, pivots = _triangular_factors(gram)
+    explained = np.zeros(right[0].shape)  # (G, s, k)
+    for i, row in enumerate(right):
+        for j in range(i):
+            row -= lower[i][j][:, :, None] * right[j]
+            direct[:, i] -= direct[:, j] * lower[i][j].conj()
+        explained += (row.real**2 + row.imag**2) * np.reciprocal(pivots[i])[:, :, None]
+    left = np.maximum(total - explained, floor)
+    best = np.argmin(left, axis=0)
     likely = np.exp(dof * (np.log(left.min(axis=0)) - np.log(left)))
-    likely /= likely.sum(axis=0)
-    part = direct @ unknowns  # (G, s, p, k)
-    mean = np.sum(likely[:, :, None] * part, axis=0)  # (s, p, k)
-    noise = np.sum(likely * left, axis=0) / dof
-    own = stretch.covariance + direct @ inverse @ _adjoint(direct)  # (G, s, p, p)
-    spread = np.ascontiguousarray((likely * left).transpose(1, 2, 0)) / dof  # (s, k, G)
-    covariance = (spread @ own.reshape(*own.shape[:2], -1).swapaxes(0, 1)).reshape(*total.shape, inputs, inputs)
-    scatter = part - mean
+    share = 1.0 / likely.sum(axis=0)  # of the likeliest node
+    likely *= share
+    spread = likely * left  # (G, s, k)
+    noise = spread.sum(axis=0) / dof
+    gain = direct / np.array(pivots)  # (p, p + 1, G, s)
+    part = [sum(gain[i, j][:, :, None] * row for j, row in enumerate(right)) for i in range(inputs)]
+    mean = np.array([np.sum(likely * rows, axis=0) for rows in part])  # (p, s, k)
+    for rows, middle in zip(part, mean, strict=True):
+        rows -= middle
+    covariance = np.empty((*total.shape, inputs, inputs), dtype=np.complex128)
     for i, j in np.ndindex(inputs, inputs):
-        covariance[..., i, j] += np.sum(likely * scatter[:, :, i] * scatter[:, :, j].conj(), axis=0)
-    response = _turned(stretch.weights @ known + mean)
+        own = stretch.covariance[:, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
+        parallel = part[i].real * part[j].real + part[i].imag * part[j].imag
+        covariance[..., i, j] = np.einsum("gsk,gs->sk", spread, own.real) / dof + np.sum(likely * parallel, axis=0)
+        if i != j:
+            crossed = part[i].imag * part[j].real - part[i].real * part[j].imag
+            imaginary = np.einsum("gsk,gs->sk", spread, own.imag) / dof + np.sum(likely * crossed, axis=0)
+            covariance[..., i, j] += 1j * imaginary
+    response = _turned(stretch.weights @ known) + np.moveaxis(mean, 0, -1)
 
     # Where the pole is sharper than a cell of the grid, the best node is refined and takes over.
-    best = np.argmin(left, axis=0)
-    of, sharp = np.nonzero((best > 0) & (likely.max(axis=0) > SHARP_SHARE))
+    of, sharp = np.nonzero((best > 0) & (share > SHARP_SHARE))
     if sharp.size:
         node, own_stretch = best[of, sharp] - 1, stretch.of(of)
-        refined = _refine(poles[node], rest[of, sharp], own_stretch, sharpest)
-        spread = np.maximum(refined.cost, floor[of, sharp]) / dof
-        cells = np.sqrt(spread) * refined.error / np.abs(refined.a) ** 2 / spacing[node]
+        refined = _refine(grid.poles[node], rest[:, of, sharp].T, own_stretch, grid.sharpest)
+        freedom = dof[of, 0]
+        power = np.maximum(refined.cost, floor[of, sharp]) / freedom
+        cells = np.sqrt(power) * refined.error / np.abs(refined.a) ** 2 / grid.spacing[node]
         trust = 1.0 / (1.0 + (2.0 * cells) ** 4)
         whole = (own_stretch.weights @ known[of, :, sharp][:, :, None])[:, :, 0] + refined.part
-        own = (own_stretch.covariance + refined.covariance) * spread[:, None, None]
+        own = (own_stretch.covariance + refined.covariance) * power[:, None, None]
         response[of, sharp] += trust[:, None] * (whole - response[of, sharp])
         covariance[of, sharp] += trust[:, None, None] * (own - covariance[of, sharp])
-        noise[of, sharp] += trust * (spread - noise[of, sharp])
+        noise[of, sharp] += trust * (power - noise[of, sharp])
     return StretchFit(response=response, covariance=covariance, noise=noise)
 
 
 class _Stretches:
-    """What all poles and responses of a stretch share: the inputs, and the terms without a pole, projected out.
+    """Terms of the model without a pole, and the inputs, for a number of frequency windows.
 
-    A pole enters by sums over the lines only: of |s|^2 U_i* U_j for the Gram matrix and of s q* U for what the basis q
-    of the other terms already holds, s = 1 / (1 + a x), with 1 as the last U for the transient.
+    Attributes:
+        offset: x of every line, zero outside a window, shape (s, N).
+        tail: inputs and 1 (transient), the factors of s = 1 / (1 + a x), shape (s, N, p + 1).
+        basis: orthonormal basis of the terms U, U x and 1, shape (s, N, 2p + 1).
+        inverse: transform of the terms to the basis, shape (s, 2p + 1, 2p + 1).
+        weights: first p rows of `inverse`; H = weights @ (basis' Y) + the part of the pole.
+        covariance: covariance of H without a pole per unit of noise power, shape (s, p, p).
+        size: lines of each window, shape (s,).
     """
 
-    def __init__(self, offset: Real, drives: Complex) -> None:
+    def __init__(self, drives: Complex, halves: NDArray[np.int_]) -> None:
         inputs, lines = drives.shape[1:]
-        one = np.ones((len(drives), 1, lines))
-        self.offset = offset
-        self.tail = _turned(np.concatenate([drives, one], axis=1))  # (s, N, p + 1)
-        smooth = _turned(np.concatenate([drives, drives * offset, one], axis=1))
-        self.basis, triangle = np.linalg.qr(smooth)  # (s, N, 2p + 1)
-        self.weights = np.linalg.inv(triangle)[:, :inputs]  # H = weights @ (basis' Y) + the part of the pole
+        offset = np.arange(-(lines // 2), lines // 2 + 1) / halves[:, None]
+        inside = np.abs(offset) <= 1.0
+        self.size = 2 * halves + 1
+        self.offset = np.where(inside, offset, 0.0)
+        one, x = inside[:, None].astype(np.float64), self.offset[:, None]
+        self.tail = _turned(np.concatenate([drives, one], axis=1))
+        self.basis, triangle = np.linalg.qr(_turned(np.concatenate([drives, drives * x, one], axis=1)))
+        self.inverse = np.linalg.inv(triangle)
+        self.weights = self.inverse[:, :inputs]
         self.covariance = self.weights @ _adjoint(self.weights)
-        smooth = _turned(np.concatenate([drives * offset**2, offset * one], axis=1))
-        held = _adjoint(self.basis) @ smooth
-        self.smooth = smooth - self.basis @ held
-        self.lost = self.weights @ held
 
     def of(self, which: NDArray[np.intp]) -> _Stretches:
-        """These stretches, each as often as it is named."""
-        found = copy.copy(self)
-        for name in ("tail", "basis", "weights", "covariance"):
-            setattr(found, name, getattr(self, name)[which])
-        return found
+        """Return the windows with the given indices, repeated as listed."""
+        chosen = copy.copy(self)
+        for name in ("tail", "basis", "weights", "covariance", "offset", "size"):
+            setattr(chosen, name, getattr(self, name)[which])
+        return chosen
 
-    def without_pole(self) -> tuple[Complex, Complex]:
-        """Gram matrices (1, s, p + 1, p + 1) of x^2 and x, and their parts in H, (1, s, p, p + 1)."""
-        return (_adjoint(self.smooth) @ self.smooth)[None], -self.lost[None]
-
-    def seen(self, shapes: Complex) -> tuple[Complex, Complex]:
-        """Gram matrices (G, s, p + 1, p + 1) of poles of given s, (G, N), and their parts in H, (G, s, p, p + 1)."""
-        count, _, size = self.tail.shape
-        pairs = self.tail.conj()[..., None] * self.tail[:, :, None]
-        shared = self.basis.conj()[..., None] * self.tail[:, :, None]
-        power = (shapes.real**2 + shapes.imag**2) @ _lines_first(pairs).view(np.float64)
-        share = (shapes @ _lines_first(shared)).reshape(len(shapes), count, -1, size)  # (G, s, 2p + 1, p + 1)
-        return self._projected(power.view(np.complex128).reshape(-1, count, size, size), share)
+    def without_pole(self) -> tuple[Complex, Complex, Complex]:
+        """Return terms U x^2 and x less their projection on the basis (s, N, p + 1), Gram matrices, and parts in H."""
+        smooth = self.tail * self.offset[:, :, None]
+        smooth[:, :, :-1] *= self.offset[:, :, None]
+        held = _adjoint(self.basis) @ smooth
+        smooth -= self.basis @ held
+        return smooth, _adjoint(smooth) @ smooth, -(self.weights @ held)
 
     def seen_each(self, shapes: Complex) -> tuple[Complex, Complex]:
-        """The same of a pole for each stretch, shapes (s, N): (s, p + 1, p + 1) and (s, p, p + 1)."""
-        with_pole = shapes[:, :, None] * self.tail
-        return self._projected(_adjoint(with_pole) @ with_pole, _adjoint(self.basis) @ with_pole)
+        """Return Gram matrices (s, p + 1, p + 1) and parts in H (s, p, p + 1) of one pole per window.
 
-    def _projected(self, power: Complex, share: Complex) -> tuple[Complex, Complex]:
-        """Gram matrices less what the other terms hold of them, and the part in H of what is left."""
+        Args:
+            shapes: 1 / (1 + a x), shape (s, N).
+        """
+        with_pole = shapes[:, :, None] * self.tail
+        power, share = _adjoint(with_pole) @ with_pole, _adjoint(self.basis) @ with_pole
         inputs, size = self.weights.shape[1], self.tail.shape[2]
         return power - _adjoint(share) @ share, np.eye(inputs, size) - self.weights @ share
 
 
+def _projected_sums(
+    grid: _PoleGrid, stretch: _Stretches, rest: Complex, halves: NDArray[np.int_]
+) -> tuple[Complex, Complex, list[Complex]]:
+    """Return the normal equations of the terms with a pole, for no pole and all poles of the grid.
+
+    With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient, because
+
+        x s = (1 - s) / a   and   |s|^2 = (a s - a* s*) / (a - a*).
+
+    Mirrored poles, z and -z*, have s(x) and s*(-x): the even and odd parts of the spectra are summed once for both.
+
+    Returns:
+        Gram matrices less their projection on the basis, shape (p + 1, p + 1, G, s); parts in H, shape (p, p + 1, G, s);
+        right-hand sides, p + 1 arrays of shape (G, s, k).
+    """
+    lines, count, outputs = rest.shape
+    size = stretch.tail.shape[2]
+    inputs, pairs = size - 1, size * size
+    tail = np.ascontiguousarray(stretch.tail.transpose(1, 0, 2))  # (N, s, p + 1)
+    columns = np.empty((lines, count, pairs + 2 * size * outputs))
+    places = {}
+    for i, j in np.ndindex(size, size):
+        if i <= j:
+            product = tail[:, :, i].conj() * tail[:, :, j]
+            places[i, j] = len(places)
+            columns[:, :, places[i, j]] = product.real
+            if i < j:
+                places[j, i] = len(places)
+                columns[:, :, places[j, i]] = product.imag
+    heard = columns[:, :, pairs:].view(np.complex128).reshape(lines, count, size, outputs)
+    np.multiply(tail.conj()[..., None], rest[:, :, None], out=heard)
+
+    middle = lines // 2
+    even, odd = columns[middle:].copy(), columns[middle:].copy()
+    even[1:] += columns[middle - 1 :: -1] if middle else 0.0
+    odd[1:] -= columns[middle - 1 :: -1]
+    width = columns.shape[2]
+    even, odd = even.reshape(middle + 1, -1), odd.reshape(middle + 1, -1)
+    nodes = len(grid.poles) - (grid.mirrored)
+    up, down = np.empty((2, 2 * nodes, count * width))
+    edges = np.flatnonzero(np.diff(halves, prepend=-1, append=-1))
+    for begin, end in zip(edges[:-1], edges[1:], strict=True):
+        half, some = int(halves[begin]), slice(begin * width, end * width)
+        shapes_even, shapes_odd = _grid_shapes(grid, half)
+        np.matmul(shapes_even, even[: half + 1, some], out=up[:, some])
+        np.matmul(shapes_odd, odd[1 : half + 1, some], out=down[:, some])
+    up, down = up + down, up - down
+    up, down = up.reshape(2, nodes, count, width), down.reshape(2, nodes, count, width)[:, nodes - grid.mirrored :]
+
+    # Sums of s conj(t_i) t_j, t = (U, 1), from their real and imaginary columns.
+    real = np.concatenate([up[0, :, :, :pairs], down[0, :, :, :pairs]])
+    imaginary = np.concatenate([up[1, :, :, :pairs], -down[1, :, :, :pairs]])
+    sums = np.moveaxis(real + 1j * imaginary, -1, 0)  # (pairs, G, s)
+    a = grid.poles[:, None]
+    plain = (_adjoint(stretch.tail) @ stretch.tail).transpose(1, 2, 0)  # (p + 1, p + 1, s)
+    weighted = np.empty((size, size, len(grid.poles), count), dtype=np.complex128)
+    for i, j in np.ndindex(size, size):
+        first, second = sums[places[min(i, j), max(i, j)]], sums[places[max(i, j), min(i, j)]]
+        weighted[i, j] = first if i == j else first + (1j if i < j else -1j) * second
+    smooth, gram_none, direct_none = stretch.without_pole()
+    gram = np.empty((size, size, len(grid.poles) + 1, count), dtype=np.complex128)
+    direct = np.empty((inputs, size, len(grid.poles) + 1, count), dtype=np.complex128)
+    gram[:, :, 0], direct[:, :, 0] = gram_none.transpose(1, 2, 0), direct_none.transpose(1, 2, 0)
+    gram[:, :, 1:] = a * weighted
+    gram[:, :, 1:] -= a.conj() * weighted.swapaxes(0, 1).conj()
+    gram[:, :, 1:] /= a - a.conj()
+    held = np.concatenate([weighted[:-1], (plain[:-1, :, None] - weighted[:-1]) / a, weighted[-1:]])
+    direct[:, :, 1:] = np.eye(inputs, size)[:, :, None, None]
+    inverse = stretch.inverse.transpose(1, 2, 0)  # (2p + 1, 2p + 1, s)
+    for column in range(len(held)):
+        share = sum(inverse[row, column].conj() * held[row] for row in range(column + 1))  # (p + 1, G, s)
+        gram[:, :, 1:] -= share.conj()[:, None] * share
+        direct[:, :, 1:] -= inverse[:inputs, column][:, None, None] * share
+
+    right = []
+    none = _adjoint(smooth) @ rest.swapaxes(0, 1)  # (s, p + 1, k)
+    for i in range(size):
+        row = np.empty((len(grid.poles) + 1, count, outputs), dtype=np.complex128)
+        row[0] = none[:, i]
+        begin = pairs + 2 * i * outputs
+        for target, parts, sign in ((row[1 : nodes + 1], up, -1.0), (row[nodes + 1 :], down, 1.0)):
+            values = parts[..., begin : begin + 2 * outputs].view(np.complex128)
+            turned = np.subtract if sign > 0.0 else np.add
+            turned(values[0].real, values[1].imag, out=target.real)
+            turned = np.add if sign > 0.0 else np.subtract
+            turned(values[0].imag, values[1].real, out=target.imag)
+        right.append(row)
+    return gram, direct, right
+
+
+def _triangular_factors(gram: Complex) -> tuple[list[list[Complex]], list[Real]]:
+    """Return L below its diagonal and D of gram = L D L', for matrices (m, m, G, s), element by element."""
+    lower: list[list[Complex]] = []
+    pivots: list[Real] = []
+    for i in range(len(gram)):
+        row: list[Complex] = []
+        for j in range(i):
+            row.append((gram[i, j] - sum(row[m] * lower[j][m].conj() * pivots[m] for m in range(j))) / pivots[j])
+        lower.append(row)
+        pivots.append(gram[i, i].real - sum((np.abs(row[m]) ** 2 * pivots[m] for m in range(i)), np.float64(0.0)))
+    return lower, pivots
+
+
 class _PoleGrid(NamedTuple):
-    """Poles z in units of n lines, a = -1/z."""
+    """Poles z in units of n lines, a = -1/z: those with Re z >= 0, then the mirrored ones of Re z > 0."""
 
     poles: Complex  # a (G,)
     spacing: Real  # distance of neighbours in z (G,)
     sharpest: float  # least imaginary part of z
-    shapes: Complex  # 1 / (1 + a x) (G, N)
+    mirrored: int  # number of mirrored poles
 
 
 @lru_cache(maxsize=4)
-def _pole_grid(half: int, wide: bool) -> _PoleGrid:
-    """The grid of a stretch of n lines on each side, the least n or a wider one."""
+def _pole_grid(wide: bool, half: int) -> _PoleGrid:
+    """Return the grid of poles of a window of n lines on each side; that of wide windows does not depend on n."""
     sharpest = max(SHARPEST if wide else 0.0, LEAST_BANDWIDTH / half)
-    real, imaginary = np.linspace(-REACH, REACH, POSITIONS), np.geomspace(sharpest, WIDEST, BANDWIDTHS)
+    real, imaginary = np.linspace(0.0, REACH, POSITIONS // 2 + 1), np.geomspace(sharpest, WIDEST, BANDWIDTHS)
     nodes: Complex = (real[:, None] + 1j * imaginary).ravel().astype(np.complex128)
-    spacing = np.minimum(real[1] - real[0], (imaginary[1] / imaginary[0] - 1.0) * nodes.imag)
-    offset = np.arange(-half, half + 1) / half
-    inverse: Complex = -np.reciprocal(nodes)
-    shapes: Complex = np.reciprocal(1.0 + inverse[:, None] * offset)
-    return _PoleGrid(inverse, spacing, sharpest, shapes)
+    mirrored = nodes.size - BANDWIDTHS
+    nodes = np.concatenate([nodes, -nodes[BANDWIDTHS:].conj()])
+    spacing = np.minimum(real[1], (imaginary[1] / imaginary[0] - 1.0) * nodes.imag)
+    return _PoleGrid(-np.reciprocal(nodes), spacing, sharpest, mirrored)
+
+
+def _grid_shapes(grid: _PoleGrid, half: int) -> tuple[Real, Real]:
+    """Return even and odd parts of 1 / (1 + a x) for x >= 0 and x > 0, real parts above imaginary parts."""
+    ax = grid.poles[: len(grid.poles) - grid.mirrored, None] * (np.arange(half + 1) / half)
+    even = np.reciprocal(1.0 - ax * ax)
+    odd = (-ax * even)[:, 1:]
+    return np.concatenate([even.real, even.imag]), np.concatenate([odd.real, odd.imag])
 
 
 class _Refined(NamedTuple):
@@ -251,7 +375,7 @@ def _refine(start: Complex, rest: Complex, stretch: _Stretches, least: float) ->
     total = _power(rest)
     now, scale = _at(start, rest, total, stretch), np.ones(len(start))
     for _ in range(STEPS):
-        error = now.error * np.sqrt(np.maximum(now.cost, EXACT * total) / rest.shape[1])
+        error = now.error * np.sqrt(np.maximum(now.cost, EXACT * total) / stretch.size)
         active = np.flatnonzero(scale * np.abs(now.step) > ENOUGH * error)
         if not active.size:
             break
@@ -271,6 +395,11 @@ def _power(rows: Complex) -> Real:
     return np.asarray(np.sum(rows.real**2 + rows.imag**2, axis=-1))
 
 
+def _column_power(columns: Complex) -> Real:
+    """Return the sum of |z|^2 over the first axis."""
+    return np.asarray(np.sum(columns.real**2 + columns.imag**2, axis=0))
+
+
 def _turned(matrices: Complex) -> Complex:
     """Transposed matrices."""
     return np.swapaxes(matrices, -1, -2)
@@ -279,11 +408,6 @@ def _turned(matrices: Complex) -> Complex:
 def _adjoint(matrices: Complex) -> Complex:
     """Transposed and conjugate matrices."""
     return np.swapaxes(matrices.conj(), -1, -2)
-
-
-def _lines_first(products: Complex) -> Complex:
-    """Products (s, N, i, j) as columns over the lines, (N, s i j)."""
-    return np.ascontiguousarray(products.swapaxes(0, 1)).reshape(products.shape[1], -1)
 
 
 def _inner(first: Complex, second: Complex) -> Complex:
