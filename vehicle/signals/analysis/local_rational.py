@@ -53,7 +53,7 @@ BODY_MODES = 5.0
 COARSE_HZ = 0.06
 """Half-power width [Hz] of a lightly damped body mode: 1 % at 3 Hz. A record that does not resolve it says so."""
 
-FITS_AT_ONCE = 400
+FITS_AT_ONCE = 1600
 """Fits (windows times responses) in a batch: their arrays stay in the caches."""
 
 INDEPENDENT = 1e-2

@@ -21,6 +21,7 @@ Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413 (projection); Bretthorst, 
 from __future__ import annotations
 
 import copy
+import itertools
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -56,6 +57,9 @@ SHARP_SHARE = 0.1
 """Least share of the likeliest node of the grid at which Gauss-Newton is worth while: below, the posterior spreads over
 some ten nodes, whose sum is good."""
 
+FITS_IN_CACHE = 128
+"""Fits (windows times responses) processed at once: their arrays over the grid, 300 kB each, stay in the cache."""
+
 ROUNDING, TINY, SMALLEST = 1e-13, 1e-300, 1e-2
 """Keep a pole without a residue, and one farther off than a hundred n, from dividing by zero."""
 
@@ -86,63 +90,100 @@ def fit_stretches(drives: Complex, answers: Complex, halves: NDArray[np.int_], *
         halves: lines n on each side of the centre line of each window, in ascending order, shape (s,).
         wide: True if n is a share of the frequency, False if n is the minimum number of lines.
     """
-    inputs = drives.shape[1]
+    inputs, count, outputs = drives.shape[1], *answers.shape[1:]
     dof = (2 * halves + 1 - 3 * inputs - 3)[:, None]  # less b, t and a
-    total = _column_power(answers)
-    floor = EXACT * total
+    floor = EXACT * _column_power(answers)
     stretch = _Stretches(drives, halves)
     known = _adjoint(stretch.basis) @ answers.swapaxes(0, 1)  # (s, 2p + 1, k)
     rest = answers - (stretch.basis @ known).swapaxes(0, 1)
     total = _column_power(rest)
+    response = _turned(stretch.weights @ known)
+    covariance = np.empty((count, outputs, inputs, inputs), dtype=np.complex128)
+    noise, share = np.empty((2, count, outputs))
+    best = np.empty((count, outputs), dtype=np.intp)
 
     # Every pole of the grid, and none: there x^2 and, for the transient, x take the place of 1 / (1 + a x).
     grid = _pole_grid(wide, int(halves[0]))
-    gram, direct, right = _projected_sums(grid, stretch, rest, halves)
-    lower, pivots = _triangular_factors(gram)
-    explained = np.zeros(right[0].shape)  # (G, s, k)
-    for i, row in enumerate(right):
-        for j in range(i):
-            row -= lower[i][j][:, :, None] * right[j]
-            direct[:, i] -= direct[:, j] * lower[i][j].conj()
-        explained += (row.real**2 + row.imag**2) * np.reciprocal(pivots[i])[:, :, None]
-    left = np.maximum(total - explained, floor)
-    best = np.argmin(left, axis=0)
-    likely = np.exp(dof * (np.log(left.min(axis=0)) - np.log(left)))
-    share = 1.0 / likely.sum(axis=0)  # of the likeliest node
-    likely *= share
-    spread = likely * left  # (G, s, k)
-    noise = spread.sum(axis=0) / dof
-    gain = direct / np.array(pivots)  # (p, p + 1, G, s)
-    part = [sum(gain[i, j][:, :, None] * row for j, row in enumerate(right)) for i in range(inputs)]
-    mean = np.array([np.sum(likely * rows, axis=0) for rows in part])  # (p, s, k)
-    for rows, middle in zip(part, mean, strict=True):
-        rows -= middle
-    covariance = np.empty((*total.shape, inputs, inputs), dtype=np.complex128)
-    for i, j in np.ndindex(inputs, inputs):
-        own = stretch.covariance[:, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
-        parallel = part[i].real * part[j].real + part[i].imag * part[j].imag
-        covariance[..., i, j] = np.einsum("gsk,gs->sk", spread, own.real) / dof + np.sum(likely * parallel, axis=0)
-        if i != j:
-            crossed = part[i].imag * part[j].real - part[i].real * part[j].imag
-            imaginary = np.einsum("gsk,gs->sk", spread, own.imag) / dof + np.sum(likely * crossed, axis=0)
-            covariance[..., i, j] += 1j * imaginary
-    response = _turned(stretch.weights @ known) + np.moveaxis(mean, 0, -1)
+    equations = _normal_equations(grid, stretch, halves)
+    size = max(FITS_IN_CACHE // max(outputs, 1), 1)
+    for begin in range(0, count, size):
+        some = slice(begin, min(begin + size, count))
+        right = _right_sides(grid, stretch, equations.smooth, rest, halves, some)
+        best[some], share[some], noise[some], mean, covariance[some] = _posterior(
+            equations, right, total[some], floor[some], dof[some], some
+        )
+        response[some] += np.moveaxis(mean, 0, -1)
 
     # Where the pole is sharper than a cell of the grid, the best node is refined and takes over.
     of, sharp = np.nonzero((best > 0) & (share > SHARP_SHARE))
-    if sharp.size:
-        node, own_stretch = best[of, sharp] - 1, stretch.of(of)
-        refined = _refine(grid.poles[node], rest[:, of, sharp].T, own_stretch, grid.sharpest)
-        freedom = dof[of, 0]
-        power = np.maximum(refined.cost, floor[of, sharp]) / freedom
+    for begin in range(0, sharp.size, FITS_IN_CACHE):
+        chosen = slice(begin, begin + FITS_IN_CACHE)
+        at = of[chosen], sharp[chosen]
+        node, own_stretch = best[at] - 1, stretch.of(at[0])
+        refined = _refine(grid.poles[node], rest[:, at[0], at[1]].T, own_stretch, grid.sharpest)
+        power = np.maximum(refined.cost, floor[at]) / dof[at[0], 0]
         cells = np.sqrt(power) * refined.error / np.abs(refined.a) ** 2 / grid.spacing[node]
         trust = 1.0 / (1.0 + (2.0 * cells) ** 4)
-        whole = (own_stretch.weights @ known[of, :, sharp][:, :, None])[:, :, 0] + refined.part
+        whole = (own_stretch.weights @ known[at[0], :, at[1]][:, :, None])[:, :, 0] + refined.part
         own = (own_stretch.covariance + refined.covariance) * power[:, None, None]
-        response[of, sharp] += trust[:, None] * (whole - response[of, sharp])
-        covariance[of, sharp] += trust[:, None, None] * (own - covariance[of, sharp])
-        noise[of, sharp] += trust * (power - noise[of, sharp])
+        response[at] += trust[:, None] * (whole - response[at])
+        covariance[at] += trust[:, None, None] * (own - covariance[at])
+        noise[at] += trust * (power - noise[at])
     return StretchFit(response=response, covariance=covariance, noise=noise)
+
+
+def _posterior(
+    equations: _NormalEquations, right: list[Complex], total: Real, floor: Real, dof: NDArray[np.int_], some: slice
+) -> tuple[NDArray[np.intp], Real, Real, Complex, Complex]:
+    """Average the estimates of all poles of the grid, weighted by their probability.
+
+    Args:
+        equations: of all windows.
+        right: right-hand sides of `some` windows, p + 1 arrays of shape (G, s, k); overwritten.
+        total: residual power of the model without x^2 and pole, shape (s, k).
+        floor: minimum residual power, shape (s, k).
+        dof: degrees of freedom, shape (s, 1).
+        some: windows of this call.
+
+    Returns:
+        Index of the most probable pole, its probability and the noise power, shape (s, k); mean of the part in H,
+        shape (p, s, k); covariance of H, shape (s, k, p, p).
+    """
+    gain, direct = equations.gain[..., some], equations.direct[..., some]
+    left: Real = np.broadcast_to(total, right[0].shape)
+    for i, row in enumerate(right):
+        for j in range(i):
+            row -= equations.lower[i][j][:, some, None] * right[j]
+        left = left - (row.real**2 + row.imag**2) * equations.weights[i][:, some, None]
+    left = np.maximum(left, floor)
+    best = np.argmin(left, axis=0)
+    likely = np.log(left)
+    likely -= likely.min(axis=0)
+    likely *= -dof
+    np.exp(likely, out=likely)
+    share = 1.0 / likely.sum(axis=0)  # of the most probable pole
+    likely *= share
+    left *= likely
+    noise = left.sum(axis=0) / dof
+    part = []
+    for row_gain in gain:
+        values = row_gain[0][:, :, None] * right[0]
+        for j in range(1, len(right)):
+            values += row_gain[j][:, :, None] * right[j]
+        part.append(values)
+    mean = np.array([np.sum(likely * values, axis=0) for values in part])  # (p, s, k)
+    for values, middle in zip(part, mean, strict=True):
+        values -= middle
+    covariance = np.empty((*total.shape, len(part), len(part)), dtype=np.complex128)
+    for i, j in np.ndindex(len(part), len(part)):
+        own = equations.covariance[some, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
+        real = part[i].real * part[j].real + part[i].imag * part[j].imag
+        covariance[..., i, j] = np.einsum("gsk,gs->sk", left, own.real) / dof + np.einsum("gsk,gsk->sk", likely, real)
+        if i != j:
+            imaginary = part[i].imag * part[j].real - part[i].real * part[j].imag
+            spread = np.einsum("gsk,gs->sk", left, own.imag) / dof
+            covariance[..., i, j] += 1j * (spread + np.einsum("gsk,gsk->sk", likely, imaginary))
+    return best, share, noise, mean, covariance
 
 
 class _Stretches:
@@ -198,107 +239,128 @@ class _Stretches:
         return power - _adjoint(share) @ share, np.eye(inputs, size) - self.weights @ share
 
 
-def _projected_sums(
-    grid: _PoleGrid, stretch: _Stretches, rest: Complex, halves: NDArray[np.int_]
-) -> tuple[Complex, Complex, list[Complex]]:
-    """Return the normal equations of the terms with a pole, for no pole and all poles of the grid.
+class _NormalEquations(NamedTuple):
+    """Normal equations L D L' of the terms with a pole, for no pole and all poles of the grid."""
+
+    lower: list[list[Complex]]  # L below its diagonal, elements of shape (G, s)
+    weights: list[Real]  # 1 / D, elements of shape (G, s)
+    direct: Complex  # part in H of the unknowns after the elimination (p, p + 1, G, s)
+    gain: Complex  # the same over D
+    covariance: Complex  # covariance of H without a pole per unit of noise power (s, p, p)
+    smooth: Complex  # terms of the model without a pole (s, N, p + 1)
+
+
+def _normal_equations(grid: _PoleGrid, stretch: _Stretches, halves: NDArray[np.int_]) -> _NormalEquations:
+    """Return the normal equations of the terms with a pole, less their projection on the basis.
 
     With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient, because
 
         x s = (1 - s) / a   and   |s|^2 = (a s - a* s*) / (a - a*).
-
-    Mirrored poles, z and -z*, have s(x) and s*(-x): the even and odd parts of the spectra are summed once for both.
-
-    Returns:
-        Gram matrices less their projection on the basis, shape (p + 1, p + 1, G, s); parts in H, shape (p, p + 1, G, s);
-        right-hand sides, p + 1 arrays of shape (G, s, k).
     """
-    lines, count, outputs = rest.shape
     size = stretch.tail.shape[2]
-    inputs, pairs = size - 1, size * size
+    inputs, a = size - 1, grid.poles[:, None]
     tail = np.ascontiguousarray(stretch.tail.transpose(1, 0, 2))  # (N, s, p + 1)
-    columns = np.empty((lines, count, pairs + 2 * size * outputs))
-    places = {}
-    for i, j in np.ndindex(size, size):
-        if i <= j:
-            product = tail[:, :, i].conj() * tail[:, :, j]
-            places[i, j] = len(places)
-            columns[:, :, places[i, j]] = product.real
-            if i < j:
-                places[j, i] = len(places)
-                columns[:, :, places[j, i]] = product.imag
-    heard = columns[:, :, pairs:].view(np.complex128).reshape(lines, count, size, outputs)
-    np.multiply(tail.conj()[..., None], rest[:, :, None], out=heard)
-
-    middle = lines // 2
-    even, odd = columns[middle:].copy(), columns[middle:].copy()
-    even[1:] += columns[middle - 1 :: -1] if middle else 0.0
-    odd[1:] -= columns[middle - 1 :: -1]
-    width = columns.shape[2]
-    even, odd = even.reshape(middle + 1, -1), odd.reshape(middle + 1, -1)
-    nodes = len(grid.poles) - (grid.mirrored)
-    up, down = np.empty((2, 2 * nodes, count * width))
-    edges = np.flatnonzero(np.diff(halves, prepend=-1, append=-1))
-    for begin, end in zip(edges[:-1], edges[1:], strict=True):
-        half, some = int(halves[begin]), slice(begin * width, end * width)
-        shapes_even, shapes_odd = _grid_shapes(grid, half)
-        np.matmul(shapes_even, even[: half + 1, some], out=up[:, some])
-        np.matmul(shapes_odd, odd[1 : half + 1, some], out=down[:, some])
-    up, down = up + down, up - down
-    up, down = up.reshape(2, nodes, count, width), down.reshape(2, nodes, count, width)[:, nodes - grid.mirrored :]
-
-    # Sums of s conj(t_i) t_j, t = (U, 1), from their real and imaginary columns.
-    real = np.concatenate([up[0, :, :, :pairs], down[0, :, :, :pairs]])
-    imaginary = np.concatenate([up[1, :, :, :pairs], -down[1, :, :, :pairs]])
-    sums = np.moveaxis(real + 1j * imaginary, -1, 0)  # (pairs, G, s)
-    a = grid.poles[:, None]
-    plain = (_adjoint(stretch.tail) @ stretch.tail).transpose(1, 2, 0)  # (p + 1, p + 1, s)
-    weighted = np.empty((size, size, len(grid.poles), count), dtype=np.complex128)
-    for i, j in np.ndindex(size, size):
-        first, second = sums[places[min(i, j), max(i, j)]], sums[places[max(i, j), min(i, j)]]
-        weighted[i, j] = first if i == j else first + (1j if i < j else -1j) * second
+    upper = [(i, j) for i in range(size) for j in range(i, size)]
+    products = np.stack([tail[:, :, i].conj() * tail[:, :, j] for i, j in upper], axis=2)
+    first, mirrored = _sums_of_poles(grid, products.view(np.float64), halves)
+    shape = (size, size, len(a), len(halves))
+    sums = np.empty(shape, dtype=np.complex128)  # sum of s conj(t_i) t_j, t = (U, 1)
+    for number, (i, j) in enumerate(upper):
+        # real and imaginary columns of a product, each times s
+        columns = slice(2 * number, 2 * number + 2)
+        real, imaginary = np.moveaxis(
+            np.concatenate([first[0, ..., columns] + 1j * first[1, ..., columns],
+                            mirrored[0, ..., columns] - 1j * mirrored[1, ..., columns]]), -1, 0)  # fmt: skip
+        sums[i, j], sums[j, i] = real + 1j * imaginary, real - 1j * imaginary
     smooth, gram_none, direct_none = stretch.without_pole()
-    gram = np.empty((size, size, len(grid.poles) + 1, count), dtype=np.complex128)
-    direct = np.empty((inputs, size, len(grid.poles) + 1, count), dtype=np.complex128)
+    gram = np.empty((size, size, len(a) + 1, len(halves)), dtype=np.complex128)
+    direct = np.empty((inputs, *gram.shape[1:]), dtype=np.complex128)
     gram[:, :, 0], direct[:, :, 0] = gram_none.transpose(1, 2, 0), direct_none.transpose(1, 2, 0)
-    gram[:, :, 1:] = a * weighted
-    gram[:, :, 1:] -= a.conj() * weighted.swapaxes(0, 1).conj()
-    gram[:, :, 1:] /= a - a.conj()
-    held = np.concatenate([weighted[:-1], (plain[:-1, :, None] - weighted[:-1]) / a, weighted[-1:]])
+    gram[:, :, 1:] = (a * sums - (a * sums.swapaxes(0, 1)).conj()) / (a - a.conj())
     direct[:, :, 1:] = np.eye(inputs, size)[:, :, None, None]
+    plain = (_adjoint(stretch.tail) @ stretch.tail).transpose(1, 2, 0)[:, :, None]  # (p + 1, p + 1, 1, s)
+    held = np.concatenate([sums[:-1], (plain[:-1] - sums[:-1]) / a, sums[-1:]])
     inverse = stretch.inverse.transpose(1, 2, 0)  # (2p + 1, 2p + 1, s)
     for column in range(len(held)):
-        share = sum(inverse[row, column].conj() * held[row] for row in range(column + 1))  # (p + 1, G, s)
+        share = inverse[0, column].conj() * held[0]  # (p + 1, G, s)
+        for row in range(1, column + 1):
+            share += inverse[row, column].conj() * held[row]
         gram[:, :, 1:] -= share.conj()[:, None] * share
-        direct[:, :, 1:] -= inverse[:inputs, column][:, None, None] * share
-
-    right = []
-    none = _adjoint(smooth) @ rest.swapaxes(0, 1)  # (s, p + 1, k)
-    for i in range(size):
-        row = np.empty((len(grid.poles) + 1, count, outputs), dtype=np.complex128)
-        row[0] = none[:, i]
-        begin = pairs + 2 * i * outputs
-        for target, parts, sign in ((row[1 : nodes + 1], up, -1.0), (row[nodes + 1 :], down, 1.0)):
-            values = parts[..., begin : begin + 2 * outputs].view(np.complex128)
-            turned = np.subtract if sign > 0.0 else np.add
-            turned(values[0].real, values[1].imag, out=target.real)
-            turned = np.add if sign > 0.0 else np.subtract
-            turned(values[0].imag, values[1].real, out=target.imag)
-        right.append(row)
-    return gram, direct, right
-
-
-def _triangular_factors(gram: Complex) -> tuple[list[list[Complex]], list[Real]]:
-    """Return L below its diagonal and D of gram = L D L', for matrices (m, m, G, s), element by element."""
+        direct[:, :, 1:] -= inverse[:inputs, column, None, None] * share
     lower: list[list[Complex]] = []
     pivots: list[Real] = []
-    for i in range(len(gram)):
-        row: list[Complex] = []
+    for i in range(size):
+        row_of: list[Complex] = []
         for j in range(i):
-            row.append((gram[i, j] - sum(row[m] * lower[j][m].conj() * pivots[m] for m in range(j))) / pivots[j])
-        lower.append(row)
-        pivots.append(gram[i, i].real - sum((np.abs(row[m]) ** 2 * pivots[m] for m in range(i)), np.float64(0.0)))
-    return lower, pivots
+            element = gram[i, j].copy()
+            for m in range(j):
+                element -= row_of[m] * lower[j][m].conj() * pivots[m]
+            row_of.append(element / pivots[j])
+            direct[:, i] -= direct[:, j] * row_of[j].conj()
+        pivot = gram[i, i].real.copy()
+        for m in range(i):
+            pivot -= np.abs(row_of[m]) ** 2 * pivots[m]
+        lower.append(row_of)
+        pivots.append(pivot)
+    weights = [np.reciprocal(pivot) for pivot in pivots]
+    return _NormalEquations(lower, weights, direct, direct * np.array(weights), stretch.covariance, smooth)
+
+
+def _right_sides(
+    grid: _PoleGrid, stretch: _Stretches, smooth: Complex, rest: Complex, halves: NDArray[np.int_], some: slice
+) -> list[Complex]:
+    """Return the right-hand sides of the normal equations of some windows: p + 1 arrays of shape (G, s, k)."""
+    none = _adjoint(smooth[some]) @ rest[:, some].swapaxes(0, 1)  # (s, p + 1, k)
+    middle, most = len(rest) // 2, int(halves[some][-1])
+    lines = slice(middle - most, middle + most + 1)
+    right = []
+    for i in range(none.shape[1]):
+        columns = rest[lines, some].copy()
+        if i < none.shape[1] - 1:
+            columns *= stretch.tail[some, lines, i].T.conj()[:, :, None]
+        first, mirrored = _sums_of_poles(grid, columns.view(np.float64), halves[some])
+        first, mirrored = first.view(np.complex128), mirrored.view(np.complex128)
+        row = np.empty((len(grid.poles) + 1, *none.shape[::2]), dtype=np.complex128)
+        row[0] = none[:, i]
+        own, mirror = row[1 : first.shape[1] + 1], row[first.shape[1] + 1 :]
+        np.add(first[0].real, first[1].imag, out=own.real)
+        np.subtract(first[0].imag, first[1].real, out=own.imag)
+        np.subtract(mirrored[0].real, mirrored[1].imag, out=mirror.real)
+        np.add(mirrored[0].imag, mirrored[1].real, out=mirror.imag)
+        right.append(row)
+    return right
+
+
+def _sums_of_poles(grid: _PoleGrid, columns: Real, halves: NDArray[np.int_]) -> tuple[Real, Real]:
+    """Return the sums of s(x) y and s(-x) y over the lines, s = 1 / (1 + a x), for the poles of Re z >= 0.
+
+    The even and odd parts of y are summed once for both.
+
+    Args:
+        grid: poles; s(-x) is returned for those with Re z > 0 only, s*(-x) is that of the mirrored pole.
+        columns: y, shape (N, s, c).
+        halves: lines n on each side of the centre of each window, in ascending order, shape (s,).
+
+    Returns:
+        Real and imaginary parts, shape (2, poles, s, c), of s(x) and of s(-x).
+    """
+    middle, (count, width) = len(columns) // 2, columns.shape[1:]
+    after, before = columns[middle + 1 :], columns[middle - 1 :: -1]
+    even, odd = np.empty((middle + 1, count * width)), (after - before).reshape(middle, -1)
+    even[0] = columns[middle].ravel()
+    np.add(after, before, out=even[1:].reshape(middle, count, width))
+    nodes = len(grid.poles) - grid.mirrored
+    sums, odd_sums = np.empty((2, 2 * nodes, count * width))
+    edges = np.flatnonzero(np.diff(halves, prepend=-1, append=-1))
+    for begin, end in itertools.pairwise(edges):
+        half, some = int(halves[begin]), slice(begin * width, end * width)
+        shapes_even, shapes_odd = _shapes_of(grid.wide, grid.half, half)
+        np.matmul(shapes_even, even[: half + 1, some], out=sums[:, some])
+        np.matmul(shapes_odd, odd[:half, some], out=odd_sums[:, some])
+    sums, odd_sums = (values.reshape(2, nodes, count, width) for values in (sums, odd_sums))
+    mirrored = sums[:, nodes - grid.mirrored :] - odd_sums[:, nodes - grid.mirrored :]
+    sums += odd_sums
+    return sums, mirrored
 
 
 class _PoleGrid(NamedTuple):
@@ -308,6 +370,8 @@ class _PoleGrid(NamedTuple):
     spacing: Real  # distance of neighbours in z (G,)
     sharpest: float  # least imaginary part of z
     mirrored: int  # number of mirrored poles
+    wide: bool  # arguments of `_pole_grid`
+    half: int
 
 
 @lru_cache(maxsize=4)
@@ -319,15 +383,23 @@ def _pole_grid(wide: bool, half: int) -> _PoleGrid:
     mirrored = nodes.size - BANDWIDTHS
     nodes = np.concatenate([nodes, -nodes[BANDWIDTHS:].conj()])
     spacing = np.minimum(real[1], (imaginary[1] / imaginary[0] - 1.0) * nodes.imag)
-    return _PoleGrid(-np.reciprocal(nodes), spacing, sharpest, mirrored)
+    return _PoleGrid(-np.reciprocal(nodes), spacing, sharpest, mirrored, wide, half)
 
 
-def _grid_shapes(grid: _PoleGrid, half: int) -> tuple[Real, Real]:
+@lru_cache(maxsize=2)
+def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Real, Real]:
     """Return even and odd parts of 1 / (1 + a x) for x >= 0 and x > 0, real parts above imaginary parts."""
-    ax = grid.poles[: len(grid.poles) - grid.mirrored, None] * (np.arange(half + 1) / half)
-    even = np.reciprocal(1.0 - ax * ax)
-    odd = (-ax * even)[:, 1:]
-    return np.concatenate([even.real, even.imag]), np.concatenate([odd.real, odd.imag])
+    grid = _pole_grid(wide, half_of_grid)
+    a = grid.poles[: len(grid.poles) - grid.mirrored, None]
+    x = np.arange(half + 1) / half
+    # 1 / (1 - (a x)^2) and -a x times it, in real numbers: SIMD
+    real, imaginary = 1.0 - (a * a).real * x**2, (a * a).imag * x**2
+    power = np.reciprocal(real**2 + imaginary**2)
+    real *= power
+    imaginary *= power
+    odd_real = -x * (a.real * real - a.imag * imaginary)
+    odd_imaginary = -x * (a.real * imaginary + a.imag * real)
+    return np.concatenate([real, imaginary]), np.concatenate([odd_real, odd_imaginary])[:, 1:].copy()
 
 
 class _Refined(NamedTuple):
