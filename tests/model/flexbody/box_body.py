@@ -8,8 +8,8 @@ import numpy as np
 import scipy
 
 from vehicle.model.flexbody.beam import BeamSection, frame_stiffness
-from vehicle.model.flexbody.modes import condense_rotations, free_free_modes
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
+from vehicle.model.flexbody.frame_modes import condense_rotations, free_free_modes
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 
 SECTION = BeamSection(axial=2.0e7, torsion=2.0e4, bending_y=2.5e4, bending_z=2.5e4)
 POSITIONS = np.array(list(itertools.product([0.0, 2.0], [-0.5, 0.5], [0.4, 1.3])))

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from vehicle.model.flexbody.library import body_model
+from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.records.geometry import Geometry, ModeShape
 from vehicle.signals.records.uff_writer import write

@@ -10,8 +10,8 @@ import scipy
 
 from tests.validation import validated
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.free_body_modes import free_modes
 from vehicle.model.flexbody.sources.matrix_files import read_matrices
-from vehicle.model.flexbody.sources.reduction import free_modes
 
 DATA = Path(__file__).parents[2] / "data" / "ansys" / "beam.npz"
 INCH, SLINCH = 0.0254, 175.126835

@@ -10,7 +10,7 @@ from tests.model.flexbody.box_body import MASSES, POSITIONS, box_fields, box_sti
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.attached_mass import with_attached_masses
-from vehicle.model.flexbody.modes import free_free_modes
+from vehicle.model.flexbody.frame_modes import free_free_modes
 from vehicle.model.flexbody.superelement import Superelement
 
 ADDED = {"corner_5": 1.2, "corner_7": 20.0}

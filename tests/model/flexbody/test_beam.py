@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import BeamSection, beam_stiffness, frame_stiffness, local_axes
-from vehicle.model.flexbody.modes import condense_rotations, free_free_modes, rigid_shapes
+from vehicle.model.flexbody.frame_modes import condense_rotations, free_free_modes, rigid_shapes
 
 SECTION = BeamSection(axial=3.0e7, torsion=4.0e4, bending_y=5.0e4, bending_z=9.0e4)
 LENGTH = 1.7

@@ -11,7 +11,7 @@ from vehicle.commands.body import main
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.superelement_file import read_superelement
 from vehicle.model.parameters.shipped import FOCUS_FILE
@@ -149,7 +149,7 @@ def test_a_fit_prints_its_factors_and_builds_with_them(monkeypatch, capsys, tmp_
     """The fit itself takes minutes and has its own tests; here another one takes its place."""
     design = read_design(BODY_DESIGN)
     told = {group: 1.1 * factor for group, factor in design.factors.items()}
-    monkeypatch.setattr("vehicle.model.flexbody.fit.fit_factors", lambda frame, start, weights: told)
+    monkeypatch.setattr("vehicle.model.flexbody.section_fit.fit_factors", lambda frame, start, weights: told)
     assert main(["build", "--fit", "--output", str(tmp_path / "fitted.toml")]) == 0
     printed = capsys.readouterr().out
     group = design.fitted_groups[0]

@@ -12,12 +12,12 @@ import scipy
 from tests.model.flexbody.box_body import MASSES, POSITIONS, box_matrices, box_stiffness, matrices
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.beam import BeamSection
+from vehicle.model.flexbody.frame_modes import free_free_modes
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.modes import free_free_modes
+from vehicle.model.flexbody.sources.free_body_modes import free_modes
 from vehicle.model.flexbody.sources.interfaces import interfaces
 from vehicle.model.flexbody.sources.matrix_files import read_matrices
 from vehicle.model.flexbody.sources.mode_shapes import GivenModes, normalised
-from vehicle.model.flexbody.sources.reduction import free_modes
 from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
 from vehicle.model.flexbody.sources.text_matrices import rows_of_numbers
 

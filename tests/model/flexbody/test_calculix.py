@@ -15,13 +15,13 @@ from tests.model.flexbody import solid_frame
 from tests.validation import validated
 from vehicle.commands import body as command
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.body_units import units_of
 from vehicle.model.flexbody.sources.calculix import read_calculix
 from vehicle.model.flexbody.sources.frd import read_frd
+from vehicle.model.flexbody.sources.free_body_modes import free_modes
 from vehicle.model.flexbody.sources.interfaces import interfaces
 from vehicle.model.flexbody.sources.mode_shapes import normalised
-from vehicle.model.flexbody.sources.reduction import free_modes
 from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
-from vehicle.model.flexbody.sources.units import units_of
 from vehicle.model.flexbody.superelement_file import read_superelement
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.modal_assurance import mac

@@ -10,7 +10,7 @@ import pytest
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.symmetry import parity
 from vehicle.model.parameters.shipped import FOCUS_FILE

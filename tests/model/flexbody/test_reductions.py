@@ -8,11 +8,11 @@ import scipy
 
 from tests.model.flexbody.box_body import MASSES, POSITIONS, box_matrices, box_stiffness
 from tests.validation import validated
-from vehicle.model.flexbody.modes import free_free_modes
+from vehicle.model.flexbody.frame_modes import free_free_modes
 from vehicle.model.flexbody.sources import superelement_of
 from vehicle.model.flexbody.sources.craig_bampton import craig_bampton
+from vehicle.model.flexbody.sources.free_body_modes import free_modes
 from vehicle.model.flexbody.sources.interfaces import interfaces
-from vehicle.model.flexbody.sources.reduction import free_modes
 from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices
 
 PLACES = {"a": tuple(POSITIONS[1]), "b": tuple(POSITIONS[6])}

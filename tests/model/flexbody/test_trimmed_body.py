@@ -10,12 +10,12 @@ from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.fit import TORSION_HZ, fit_factors, residuals
-from vehicle.model.flexbody.inertia import about_cog, inertia_tensor, second_moments
-from vehicle.model.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.frame_modes import rigid_shapes
+from vehicle.model.flexbody.inertia_tensor import about_cog, inertia_tensor, second_moments
 from vehicle.model.flexbody.mode_names import global_patterns, modal_assurance
-from vehicle.model.flexbody.modes import rigid_shapes
 from vehicle.model.flexbody.node_masses import NodeProperties, matched_masses
+from vehicle.model.flexbody.section_fit import TORSION_HZ, fit_factors, residuals
 from vehicle.model.flexbody.superelement_file import read_superelement
 from vehicle.model.flexbody.symmetry import mirror_nodes, parity
 from vehicle.model.parameters.vehicle import load_vehicle

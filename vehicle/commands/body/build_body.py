@@ -34,8 +34,8 @@ def add(tasks: Any) -> None:
 def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
     """The design with section factors that were fitted on this car."""
     from vehicle.model.flexbody.body_frame import body_frame
-    from vehicle.model.flexbody.fit import STAGES, fit_factors
     from vehicle.model.flexbody.node_masses import NodeProperties
+    from vehicle.model.flexbody.section_fit import STAGES, fit_factors
 
     frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
     factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
@@ -52,7 +52,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Compute the model, write it and print what it is."""
     from vehicle.model.flexbody.body_design import read_design
     from vehicle.model.flexbody.body_frame import design_superelement
-    from vehicle.model.flexbody.library import body_file
+    from vehicle.model.flexbody.body_model import body_file
 
     require_output(options)
     file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)

@@ -17,8 +17,8 @@ from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
 
 if TYPE_CHECKING:
     from vehicle.model.flexbody.mass_properties import MassProperties
+    from vehicle.model.flexbody.sources.body_units import Units
     from vehicle.model.flexbody.sources.mode_shapes import GivenModes
-    from vehicle.model.flexbody.sources.units import Units
     from vehicle.model.parameters.hardpoints import Point
     from vehicle.model.parameters.vehicle import Vehicle
 
@@ -128,10 +128,10 @@ def add(tasks: Any) -> None:
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Read the source, write the model and print what it is."""
+    from vehicle.model.flexbody.sources.body_units import require_first_mode, require_mass, require_size, units_of
     from vehicle.model.flexbody.sources.interfaces import interfaces, read_map
     from vehicle.model.flexbody.sources.residual_table import read_residuals
     from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
-    from vehicle.model.flexbody.sources.units import require_first_mode, require_mass, require_size, units_of
 
     require_output(options)
     _check_numbers(options)
@@ -198,9 +198,9 @@ def _matrices(options: argparse.Namespace) -> Any:
 
 def _given_modes(options: argparse.Namespace, units: Units, mass: float, places: Mapping[str, Point]) -> GivenModes:
     """The modes of a file: of CalculiX in the stated units, of a universal file in its own."""
+    from vehicle.model.flexbody.sources.body_units import require_level, require_size
     from vehicle.model.flexbody.sources.frd import read_frd
     from vehicle.model.flexbody.sources.mode_shapes import modes_of_measurement
-    from vehicle.model.flexbody.sources.units import require_level, require_size
     from vehicle.signals.records.reader import read_record
 
     if options.file.suffix == ".frd":

@@ -10,8 +10,8 @@ import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray
+from vehicle.model.flexbody.frame_modes import fix_signs
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.modes import fix_signs
 from vehicle.model.flexbody.superelement import Superelement
 
 

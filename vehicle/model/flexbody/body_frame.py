@@ -11,10 +11,10 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray, frame_stiffness
 from vehicle.model.flexbody.body_design import BodyDesign
+from vehicle.model.flexbody.body_loads import BodyLoad, load_mass, loaded_properties
 from vehicle.model.flexbody.carried_nodes import with_carried_nodes
-from vehicle.model.flexbody.loads import BodyLoad, load_mass, loaded_properties
+from vehicle.model.flexbody.frame_modes import condense_rotations, free_free_modes
 from vehicle.model.flexbody.mode_names import mode_names
-from vehicle.model.flexbody.modes import condense_rotations, free_free_modes
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.body import TrimmedBody

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.model.flexbody.loads import BodyLoad, loaded_properties
+from vehicle.model.flexbody.body_loads import BodyLoad, loaded_properties
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.body import TrimmedBody

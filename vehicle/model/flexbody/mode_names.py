@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.flexbody.modes import rigid_shapes
+from vehicle.model.flexbody.frame_modes import rigid_shapes
 from vehicle.model.flexbody.symmetry import parity
 
 _LIKE = 0.30

@@ -23,7 +23,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.flexbody.inertia import inertia_tensor, second_moments
+from vehicle.model.flexbody.inertia_tensor import inertia_tensor, second_moments
 from vehicle.model.flexbody.rigid_body import cog_inertia
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.hardpoints import Point

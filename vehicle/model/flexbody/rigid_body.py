@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.inertia import about_cog, inertia_tensor, nearest_physical
+from vehicle.model.flexbody.inertia_tensor import about_cog, inertia_tensor, nearest_physical
 from vehicle.model.parameters.body import MOMENTS, TrimmedBody
 
 Vector = npt.NDArray[np.float64]

@@ -19,8 +19,8 @@ import numpy as np
 import scipy
 
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
-from vehicle.model.flexbody.sources.reduction import FreeModes, residual_vectors
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
+from vehicle.model.flexbody.sources.free_body_modes import FreeModes, residual_vectors
 
 DEPENDENT = 1e-10
 """Flexibility over the largest, below which a combination of attachments is another one's: two at one node."""

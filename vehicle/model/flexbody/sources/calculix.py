@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, IntArray
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
-from vehicle.model.flexbody.sources.matrices import BodyMatrices, IntArray
 from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole_numbers
 
 INSIDE = 3

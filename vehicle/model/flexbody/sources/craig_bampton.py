@@ -18,8 +18,15 @@ import scipy
 
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.sources.attachment_modes import DEPENDENT, ReducedModes, kept_modes
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
-from vehicle.model.flexbody.sources.reduction import DENSE, REFINEMENTS, SHIFT, FreeModes, lowest_modes, modes_below
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
+from vehicle.model.flexbody.sources.free_body_modes import (
+    DENSE,
+    REFINEMENTS,
+    SHIFT,
+    FreeModes,
+    lowest_modes,
+    modes_below,
+)
 
 
 def craig_bampton(

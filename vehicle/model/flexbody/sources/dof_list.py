@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.model.flexbody.sources.matrices import IntArray
+from vehicle.model.flexbody.sources.body_matrices import IntArray
 from vehicle.model.flexbody.sources.text_matrices import rows_of_numbers, whole_numbers
 
 LABELS = ("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ")

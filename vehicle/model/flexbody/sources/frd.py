@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.flexbody.sources.deck import LINES
-from vehicle.model.flexbody.sources.matrices import BodyNodes
 from vehicle.model.flexbody.sources.mode_shapes import GivenModes
 
 _CORNERS = {1: 8, 4: 8, 2: 6, 5: 6, 3: 4, 6: 4}

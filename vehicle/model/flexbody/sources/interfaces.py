@@ -13,7 +13,7 @@ import scipy
 from vehicle.errors import DataError
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import rigid_fit
-from vehicle.model.flexbody.sources.matrices import BodyNodes
+from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.parameters.hardpoints import Point
 
 _FLAT = 1e-3

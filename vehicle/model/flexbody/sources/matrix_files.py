@@ -10,11 +10,11 @@ import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.calculix import assembled
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
 from vehicle.model.flexbody.sources.dof_list import read_dofs
 from vehicle.model.flexbody.sources.harwell_boeing import is_harwell_boeing, read_harwell_boeing
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
 from vehicle.model.flexbody.sources.nastran import dmig_pair, is_bulk_data, read_bulk_data
 from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole, whole_numbers
 

@@ -12,7 +12,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.sources.matrices import BodyNodes
+from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.flexbody.sources.superelement_of import BodyModes
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.signals.records.channel import Measurement

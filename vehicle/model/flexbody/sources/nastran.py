@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
-from vehicle.model.flexbody.sources.matrices import IntArray
+from vehicle.model.flexbody.sources.body_matrices import IntArray
 from vehicle.model.flexbody.sources.text_matrices import whole
 from vehicle.model.parameters.hardpoints import Point
 

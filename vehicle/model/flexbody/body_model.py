@@ -12,7 +12,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import BodyDesign, read_design
 from vehicle.model.flexbody.body_frame import design_superelement, skeleton
-from vehicle.model.flexbody.loads import body_loads, with_loads
+from vehicle.model.flexbody.body_loads import body_loads, with_loads
 from vehicle.model.flexbody.mass_difference import require_unit_of_mass
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes

@@ -8,7 +8,7 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.inertia import (
+from vehicle.model.flexbody.inertia_tensor import (
     about_cog,
     inertia_tensor,
     nearest_physical,

@@ -17,7 +17,7 @@ import numpy as np
 from vehicle.model.flexbody.attached_mass import with_added_mass
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import carried_by
-from vehicle.model.flexbody.inertia import inertia_tensor
+from vehicle.model.flexbody.inertia_tensor import inertia_tensor
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.hardpoints import Point

@@ -12,7 +12,7 @@ import scipy
 from vehicle.errors import DataError
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 
 SHIFT = 1.0 / 40.0
 """By which K is shifted, so that a free body can be factorised, over the highest frequency wanted [1]: below the

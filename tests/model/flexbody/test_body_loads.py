@@ -11,9 +11,9 @@ import scipy
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.library import BODY_DESIGN
-from vehicle.model.flexbody.loads import BodyLoad, followed, load_mass, with_loads
-from vehicle.model.flexbody.modes import condense_rotations, rigid_shapes
+from vehicle.model.flexbody.body_loads import BodyLoad, followed, load_mass, with_loads
+from vehicle.model.flexbody.body_model import BODY_DESIGN
+from vehicle.model.flexbody.frame_modes import condense_rotations, rigid_shapes
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.parameters.vehicle import load_vehicle, vehicle_of
 from vehicle.runs.car import Car
