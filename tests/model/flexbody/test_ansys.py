@@ -82,10 +82,10 @@ def test_the_six_modes_of_ansys_to_its_digits(export, suffix):
 @pytest.mark.parametrize(
     ("file", "old", "new", "said"),
     [
-        ("stiffness.matrix", "RSA", "RZA", "of type RZA; needed is RSA or RUA"),
-        ("stiffness.matrix", "(8I10)", "(what)", "is none of Fortran's for numbers"),
-        ("stiffness.matrix", "(3D26.16)", "(3D25.16)", "no Harwell-Boeing file"),
-        ("beam.mapping", "UX\n", "TEMP\n", "found 'TEMP'; rows are equation"),
+        ("stiffness.matrix", "RSA", "RZA", "type RZA, must be RSA or RUA"),
+        ("stiffness.matrix", "(8I10)", "(what)", "is not a Fortran format of numbers"),
+        ("stiffness.matrix", "(3D26.16)", "(3D25.16)", "not a Harwell-Boeing file"),
+        ("beam.mapping", "UX\n", "TEMP\n", "found 'TEMP'; a row must be equation"),
         ("beam.mapping", "        10", "        11", "equations are not 1 to 963"),
     ],
 )

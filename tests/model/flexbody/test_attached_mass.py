@@ -71,7 +71,7 @@ def test_result_has_the_mass_and_nothing_changes_without_any():
 
 def test_wrong_masses_and_nodes_are_refused():
     body = Superelement(**box_fields())
-    with pytest.raises(ConfigurationError, match=r"mass attached to body node 'corner_1': -1.0 kg"):
+    with pytest.raises(ConfigurationError, match=r"mass attached to body node 'corner_1': found -1.0 kg"):
         with_attached_masses(body, {"corner_1": -1.0})
     with pytest.raises(DataError, match="has no node 'nose'"):
         with_attached_masses(body, {"nose": 1.0})

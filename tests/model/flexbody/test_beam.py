@@ -146,7 +146,7 @@ def test_beam_of_no_length_and_loose_node_are_refused():
     with pytest.raises(ConfigurationError, match="its ends must differ"):
         beam_stiffness([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], SECTION)
     strut = BeamSection(axial=1.0e6, torsion=0.0, bending_y=0.0, bending_z=0.0)
-    with pytest.raises(ConfigurationError, match="a node can turn freely"):
+    with pytest.raises(ConfigurationError, match="a node can rotate freely"):
         condense_rotations(frame_stiffness(np.eye(3)[:2], [(0, 1, strut)]))
     with pytest.raises(ConfigurationError, match=r"torsion is -1.0"):
         BeamSection(axial=1.0, torsion=-1.0, bending_y=1.0, bending_z=1.0)

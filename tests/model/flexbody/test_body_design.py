@@ -57,11 +57,11 @@ BAD = {
     "negative mass": ("mass = 4.0", "mass = -4.0", "nodes.arm_front.mass: found -4.0 kg, must be greater than 0.0"),
     "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', needed is a number"),
     "two coordinates": ("[0.15, 0.52, 0.82]", "[0.15, 0.52]", "nodes.rail_front.place: found (0.15, 0.52), needed is"),
-    "left side": ("[0.15, 0.52, 0.82]", "[0.15, -0.52, 0.82]", "nodes.rail_front.place: found y = -0.52 m, allowed"),
+    "left side": ("[0.15, 0.52, 0.82]", "[0.15, -0.52, 0.82]", "nodes.rail_front.place: found y = -0.52 m, must be"),
     "place and mirror": (
         'mirror = "seat_rail"',
         'place = [2.0, 0.3, 0.7]\nmirror = "seat_rail"',
-        "nodes.seat_rail_right.mirror: found beside place",
+        "nodes.seat_rail_right.mirror: found together with place",
     ),
     "no such hardpoint": (
         "[nodes.strut_top]",
@@ -77,26 +77,26 @@ BAD = {
     "node made twice": (
         "[nodes.sill_rear]",
         "[nodes.cowl_right]\nplace = [1.0, 0.0, 1.0]\nmass = 1.0\nfreedom = 1.0\n[nodes.sill_rear]",
-        "nodes: cowl_right made by two entries; rename one of them",
+        "nodes: cowl_right defined by two entries; rename one entry",
     ),
     "member to nowhere": (
         '"rail_front-arm_front"',
         '"rail_front-arm_font"',
-        "members.front_rails.between: 'rail_front-arm_font' ends at no node 'arm_font'; the nearest is arm_front",
+        "members.front_rails.between: 'rail_front-arm_font' has no node 'arm_font'; the nearest is arm_front",
     ),
     "member to itself": (
         '"rail_front-arm_front"',
         '"seat-seat"',
-        "members.front_rails.between: 'seat-seat' is no member; allowed are 'a-b', 'a=b' crossed and 'a' across the",
+        "members.front_rails.between: found 'seat-seat', must be 'a-b', 'a=b' crosswise, or 'a' across the",
     ),
-    "chain of three": ('"rail_front-arm_front"', '"cowl-seat-arm_rear"', "'cowl-seat-arm_rear' is no member"),
+    "chain of three": ('"rail_front-arm_front"', '"cowl-seat-arm_rear"', "found 'cowl-seat-arm_rear', must be"),
     "no members": ('between = ["rail_front"]', "between = []", "members.rail_bumper.between: found an empty list"),
     "half a section": (
         "wall = 0.0018  # [m] assumed: nominal section\n",
         "",
-        "members.front_rails.between: a section of width; needed are width and wall of a tube, or the area of a strut",
+        "members.front_rails.between: found a section with width; set width and wall of a tube, or the area of a",
     ),
-    "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "a section of width, wall, area; needed are"),
+    "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "a section with width, wall, area; set"),
     "factor of zero": ("factor = 1.0962", "factor = 0.0", "members.front_rails.factor: found 0.0 -, must be greater"),
     "a node without a tube": (
         '"seat-seat_rail"',
@@ -106,9 +106,9 @@ BAD = {
     "nodes in one place": (
         "[0.15, 0.52, 0.82]",
         "[0.877, 0.548, 1.23]",
-        "members.front_rails: rail_front_right at [0.877, 0.548, 1.23] m and strut_top_fr are 0 m apart; a member",
+        "members.front_rails: rail_front_right at [0.877, 0.548, 1.23] m and strut_top_fr are 0 m apart, must be",
     ),
-    "half a mode": ("mode_count = 9 ", "mode_count = 8.5 ", "mode_count: found 8.5, needed is a whole number"),
+    "half a mode": ("mode_count = 9 ", "mode_count = 8.5 ", "mode_count: found 8.5, must be a whole number"),
     "damping in percent": (
         "damping_ratio = 0.03",
         "damping_ratio = 3.0",
@@ -141,7 +141,9 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(head.replace("mode_count = 9", "mode_count = 13") + body + members + "width = 0.05\nwall = 0.001\n")
     vehicle = load_vehicle()
-    with pytest.raises(ConfigurationError, match="mode_count: found 13, but 6 nodes have 12 elastic modes"):
+    with pytest.raises(
+        ConfigurationError, match="mode_count: found 13, must be at most 12, the elastic modes of 6 nodes"
+    ):
         body_frame(read_design(file), vehicle.points, NodeProperties.of_body(vehicle.body, 0.0))
 
 

@@ -1,9 +1,9 @@
-"""Loads on a flexible body: their mass in the modes of the body, and not only in its rigid motion.
+"""Loads (cargo, equipment) on a flexible body: their mass and inertia in the modes of the body.
 
-A load at a node moves with it. A load elsewhere follows the rigid motion that fits its six nearest nodes best
-(`vehicle.model.flexbody.carried_nodes`), and so does every rotation of a load with an inertia of its own. With N,
-displacement and rotation of the load by the displacements u of the nodes, M + N' diag(m 1, I) N takes the place of M.
-In a rigid motion of the body N is exact wherever the load is.
+A load at a node has the displacement of the node. A load elsewhere follows the rigid motion with the best fit to its
+six nearest nodes (`vehicle.model.flexbody.carried_nodes`); the rotation of a load with inertia always follows a fit.
+N maps the node displacements u to displacement and rotation of the load; M + N' diag(m 1, I) N replaces M.
+For a rigid motion of the body, N is exact at every position of the load.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 
 
 class BodyLoad(NamedTuple):
-    """Mass [kg], place [m], and moments and products as integrals [kg m2] of a load on the body."""
+    """Load on the body: mass [kg], position [m], moments and products of inertia about its CoG as integrals [kg m2]."""
 
     mass: float
     at: Point
@@ -34,80 +34,80 @@ class BodyLoad(NamedTuple):
 
     @property
     def matrix(self) -> FloatArray:
-        """Mass and inertia tensor as a (6, 6) matrix."""
+        """Mass and inertia tensor, diag(m 1, I) [kg, kg m2], shape (6, 6)."""
         (xx, yy, zz), (xy, zx, yz) = self.moments, self.products
-        found = np.zeros((6, 6))
-        found[:3, :3] = self.mass * np.eye(3)
-        found[3:, 3:] = inertia_tensor(ixx=xx, iyy=yy, izz=zz, ixy=xy, izx=zx, iyz=yz)
-        return found
+        matrix = np.zeros((6, 6))
+        matrix[:3, :3] = self.mass * np.eye(3)
+        matrix[3:, 3:] = inertia_tensor(ixx=xx, iyy=yy, izz=zz, ixy=xy, izx=zx, iyz=yz)
+        return matrix
 
 
 def body_loads(vehicle: Vehicle) -> tuple[BodyLoad, ...]:
-    """Return the loads on the trimmed body of a vehicle, those without mass and inertia left out."""
+    """Return the loads on the body of a vehicle that have mass or inertia."""
     return tuple(
-        BodyLoad(one.numbers.mass, one.cog, one.numbers.inertia or (0.0, 0.0, 0.0), one.numbers.products)
-        for one in vehicle.composition.loads
-        if one.parent == "body" and (one.numbers.mass > 0.0 or one.numbers.inertia is not None)
+        BodyLoad(load.numbers.mass, load.cog, load.numbers.inertia or (0.0, 0.0, 0.0), load.numbers.products)
+        for load in vehicle.composition.loads
+        if load.parent == "body" and (load.numbers.mass > 0.0 or load.numbers.inertia is not None)
     )
 
 
 def followed(positions: FloatArray, load: BodyLoad, tolerance: float) -> FloatArray:
-    """Return displacement and rotation of a load by the displacements of the nodes, N of shape (6, n, 3).
+    """Return N, which maps node displacements to displacement and rotation of a load; shape (6, n, 3).
 
     Args:
-        positions: of the nodes [m], shape (n, 3).
+        positions: node positions [m], shape (n, 3).
         load: the load.
-        tolerance: largest distance from a node at which the load is at the node [m].
+        tolerance: maximum distance from a node at which the load has the displacement of the node [m].
     """
-    found, point = np.zeros((6, len(positions), 3)), np.array(load.at)
+    motion, point = np.zeros((6, len(positions), 3)), np.array(load.at)
     gap = np.linalg.norm(positions - point, axis=1)
     node = int(gap.argmin())
     if gap[node] > tolerance:
-        carriers, motion = carried_by(positions, point)
-        found[:, carriers] = motion
-        return found
-    found[:3, node] = np.eye(3)
+        carriers, carrier_motion = carried_by(positions, point)
+        motion[:, carriers] = carrier_motion
+        return motion
+    motion[:3, node] = np.eye(3)
     if any(load.moments):
         others = np.delete(np.arange(len(positions)), node)
-        carriers, motion = carried_by(positions[others], positions[node])
-        found[3:, others[carriers]] = motion[3:]
-    return found
+        carriers, carrier_motion = carried_by(positions[others], positions[node])
+        motion[3:, others[carriers]] = carrier_motion[3:]
+    return motion
 
 
 def load_mass(positions: FloatArray, loads: Sequence[BodyLoad], tolerance: float) -> FloatArray:
     """Return the mass matrix of loads on the displacements of the nodes [kg], shape (3 n, 3 n); see `followed`."""
-    found = np.zeros((positions.size, positions.size))
+    mass = np.zeros((positions.size, positions.size))
     for load in loads:
         motion = followed(positions, load, tolerance).reshape(6, -1)
-        found += motion.T @ load.matrix @ motion
-    return found
+        mass += motion.T @ load.matrix @ motion
+    return mass
 
 
 def loaded_properties(rigid: MassProperties, loads: Sequence[BodyLoad]) -> MassProperties:
     """Return the mass properties of a body with loads."""
     if not loads:
         return rigid
-    masses, places = np.array([load.mass for load in loads]), np.array([load.at for load in loads])
-    found = rigid.with_points(masses, places)
-    return replace(found, inertia=found.inertia + sum(load.matrix[3:, 3:] for load in loads))
+    masses, positions = np.array([load.mass for load in loads]), np.array([load.at for load in loads])
+    loaded = rigid.with_points(masses, positions)
+    return replace(loaded, inertia=loaded.inertia + sum(load.matrix[3:, 3:] for load in loads))
 
 
 def with_loads(body: Superelement, loads: Sequence[BodyLoad]) -> Superelement:
-    """Return a body model with loads, within the space of its rigid motions and of the modes that it has.
+    """Add loads to a body model, within the space of its rigid motions and its modes.
 
     Args:
         body: the body model.
-        loads: on it.
+        loads: loads on the body.
 
     Returns:
-        The body with the mass properties and modes that it has with the loads; exact where its modes are all modes.
+        Body with the mass properties and modes including the loads; exact if `body` contains all its elastic modes.
     """
     if not loads:
         return body
     rigid, _ = body.rigid.rigid_motions(body.positions)
-    every = np.concatenate([rigid, body.shapes])  # (6 + modes, n, 3)
-    added = np.zeros((len(every), len(every)))
+    motions = np.concatenate([rigid, body.shapes])  # (6 + modes, n, 3)
+    added = np.zeros((len(motions), len(motions)))
     for load in loads:
-        motion = np.einsum("cnj,anj->ac", followed(body.positions, load, body.hardpoint_tolerance), every)
+        motion = np.einsum("cnj,anj->ac", followed(body.positions, load, body.hardpoint_tolerance), motions)
         added += motion @ load.matrix @ motion.T
     return with_added_mass(body, added, loaded_properties(body.rigid, loads)).body
