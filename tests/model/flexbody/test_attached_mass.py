@@ -1,4 +1,4 @@
-"""Masses fixed to a flexible body: the assembly of modes against the same problem solved another way."""
+"""Masses attached to a flexible body: component-mode assembly against second derivations."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ def test_frequencies_are_those_of_the_constrained_two_body_problem():
         joints[3 * i : 3 * i + 3, 6 + count + 3 * i : 9 + count + 3 * i] = -np.eye(3)
     free = scipy.linalg.null_space(joints)
     values = scipy.linalg.eigh(free.T @ stiffness @ free, free.T @ mass @ free, eigvals_only=True)
-    found = with_attached_masses(body, ADDED)
+    loaded = with_attached_masses(body, ADDED)
     # round-off
     validated(
-        "Body models", "frequencies of a body with attached masses", found.frequencies,
+        "Body models", "frequencies of a body with attached masses", loaded.frequencies,
         np.sqrt(values[6:]) / (2.0 * np.pi), rel=1e-8, unit="Hz",
         source="second derivation: masses joined by constraints, null space",
     )  # fmt: skip
@@ -50,13 +50,13 @@ def test_with_all_modes_it_is_the_frame_solved_again():
     heavier = MASSES.copy()
     heavier[[5, 7]] += list(ADDED.values())
     frequencies, shapes = free_free_modes(box_stiffness(), heavier, POSITIONS, 18)
-    found = with_attached_masses(body, ADDED)
+    loaded = with_attached_masses(body, ADDED)
     # round-off of modes a decade apart
     validated(
-        "Body models", "frequencies of a body of all modes with attached masses", found.frequencies, frequencies,
+        "Body models", "frequencies of a body of all modes with attached masses", loaded.frequencies, frequencies,
         rel=1e-7, unit="Hz", source="second derivation: heavier frame solved again",
     )  # fmt: skip
-    np.testing.assert_allclose(found.shapes[:3], shapes[:3], atol=1e-7 * np.abs(shapes).max())
+    np.testing.assert_allclose(loaded.shapes[:3], shapes[:3], atol=1e-7 * np.abs(shapes).max())
 
 
 def test_result_has_the_mass_and_nothing_changes_without_any():

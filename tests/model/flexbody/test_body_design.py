@@ -1,4 +1,4 @@
-"""The body design: no geometry of the vehicle in it, a source behind every number, bad ones refused by name."""
+"""Body design: no geometry of the vehicle in the file, a source for every value, errors that name the entry."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ def test_every_number_has_a_unit_and_a_source():
 def test_interface_and_output_points_are_those_of_the_vehicle_alone():
     design, points = read_design(BODY_DESIGN), load_vehicle().points
     placed = design.placed(points)
-    nodes = {node: place for made in placed.values() for node, place in made.items()}
+    nodes = {node: position for pair in placed.values() for node, position in pair.items()}
     attached = load_vehicle().composition.attachments()
     assert len(attached) == 20 and attached == {name: nodes[name] for name in attached}
     typed = {tuple(abs(x) for x in node.place) for node in design.nodes.values() if node.place is not None}
     assert len(typed) == 11
-    assert not typed & {tuple(abs(x) for x in place) for place in points.values()}
+    assert not typed & {tuple(abs(x) for x in position) for position in points.values()}
 
 
 BAD = {
@@ -148,14 +148,14 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
 
 
 def test_a_fit_prints_its_factors_and_builds_with_them(monkeypatch, capsys, tmp_path):
-    """The fit itself takes minutes and has its own tests; here another one takes its place."""
+    """The fit takes minutes and is tested elsewhere; here a stub replaces it."""
     design = read_design(BODY_DESIGN)
-    told = {group: 1.1 * factor for group, factor in design.factors.items()}
-    monkeypatch.setattr("vehicle.model.flexbody.section_fit.fit_factors", lambda frame, start, weights: told)
+    fitted = {group: 1.1 * factor for group, factor in design.factors.items()}
+    monkeypatch.setattr("vehicle.model.flexbody.section_fit.fit_factors", lambda frame, start, weights: fitted)
     assert main(["build", "--fit", "--output", str(tmp_path / "fitted.toml")]) == 0
     printed = capsys.readouterr().out
     group = design.fitted_groups[0]
-    assert f"members.{group}.factor = {told[group]:.5g}\n" in printed
+    assert f"members.{group}.factor = {fitted[group]:.5g}\n" in printed
     built, shipped = read_superelement(tmp_path / "fitted.toml"), read_superelement(TRIMMED_BODY)
     assert np.all(built.frequencies > shipped.frequencies)  # every fitted member is a tenth stiffer
     assert np.all(built.frequencies < np.sqrt(1.1) * shipped.frequencies * 1.001)

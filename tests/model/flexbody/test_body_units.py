@@ -1,4 +1,4 @@
-"""Units of bodies: what follows, what is refused and which option it names."""
+"""Units of bodies: consistent units, rejected units, and the option named in the message."""
 
 from __future__ import annotations
 

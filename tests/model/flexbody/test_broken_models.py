@@ -1,4 +1,4 @@
-"""Body models with one fault each: refused by name, in one sentence, with the exit code of its kind."""
+"""Body models with a single fault each: rejected with a one-line message and the exit code of the fault."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def npz(change, says):
     return Case("box.npz", change, SHOW, says)
 
 
-def option(*words, says, code=2):
-    return Case("modes.uff", nothing, (*UFF, *words), says, code)
+def option(*arguments, says, code=2):
+    return Case("modes.uff", nothing, (*UFF, *arguments), says, code)
 
 
 CASES = {
@@ -181,7 +181,7 @@ CASES = {
         "point 'seat' occurs twice",
     ),
     "no map": Case("map.csv", gone, (*UFF, "--point-nodes", "map.csv"), "map.csv: cannot be read"),
-    "uff without nodes": Case("modes.uff", modes(places=False), UFF, "20 of them without a position"),
+    "uff without nodes": Case("modes.uff", modes(with_positions=False), UFF, "20 of them without a position"),
     "uff without modal mass": Case("modes.uff", modes(modal_mass=0.0), UFF, "no modal mass, so the shape has no scale"),
     "uff without modes": Case("modes.uff", modes(count=0), UFF, "modes.uff"),
     "uff in radians": Case("modes.uff", modes(speed=2.0 * np.pi), (*UFF, "--up-to", "300"), "probably rad/s"),
@@ -225,7 +225,7 @@ CASES |= {name: Case("modes.uff", nothing, ("import", name), says) for name, say
 
 @pytest.fixture(scope="module")
 def good(tmp_path_factory):
-    """A folder with one good file of every kind."""
+    """Return a folder with a valid file in every format."""
     folder = tmp_path_factory.mktemp("good")
     write_all(folder)
     return folder
@@ -238,21 +238,21 @@ def test_a_broken_model_is_refused_in_one_sentence(good, tmp_path, monkeypatch, 
         shutil.copy(file, tmp_path)
     monkeypatch.chdir(tmp_path)
     case.change(tmp_path / case.file)
-    words = [case.file if word == "FILE" else word for word in case.arguments]
-    if words[0] == "import" and "--output" not in words:
-        words += ["--output", "made.toml"]
+    arguments = [case.file if argument == "FILE" else argument for argument in case.arguments]
+    if arguments[0] == "import" and "--output" not in arguments:
+        arguments += ["--output", "made.toml"]
     before = {file.name for file in tmp_path.iterdir()}
-    assert command.main(words) == case.code
-    said = capsys.readouterr()
-    assert case.says in said.err and FAULT not in said.err, said.err
-    assert said.err.strip().count("\n") == 0 and not said.out
-    assert {file.name for file in tmp_path.iterdir()} == before  # nothing half-written
+    assert command.main(arguments) == case.code
+    printed = capsys.readouterr()
+    assert case.says in printed.err and FAULT not in printed.err, printed.err
+    assert printed.err.strip().count("\n") == 0 and not printed.out
+    assert {file.name for file in tmp_path.iterdir()} == before  # no incomplete file
 
 
-@pytest.mark.parametrize("words", [SHOW, UFF])
-def test_the_files_are_good_before(good, tmp_path, monkeypatch, capsys, words):
+@pytest.mark.parametrize("arguments", [SHOW, UFF])
+def test_the_files_are_good_before(good, tmp_path, monkeypatch, capsys, arguments):
     monkeypatch.chdir(good)
-    if words is SHOW:
+    if arguments is SHOW:
         for file in ("box.toml", "box.npz", "masses.toml"):
             assert command.main(["show", file]) == 0
     else:
@@ -260,9 +260,9 @@ def test_the_files_are_good_before(good, tmp_path, monkeypatch, capsys, words):
     assert not capsys.readouterr().err
 
 
-@pytest.mark.parametrize("words", [JOB, MARKET, ABAQUS, ("import", "both.mat:K", *MATLAB), ("import", "modes.frd")])
-def test_good_matrices_get_as_far_as_the_points_of_the_car(good, tmp_path, monkeypatch, capsys, words):
-    """The box has nodes of its own, and so no more is asked of it."""
+@pytest.mark.parametrize("arguments", [JOB, MARKET, ABAQUS, ("import", "both.mat:K", *MATLAB), ("import", "modes.frd")])
+def test_good_matrices_get_as_far_as_the_points_of_the_car(good, tmp_path, monkeypatch, capsys, arguments):
+    """The nodes of the box do not match the points of the car, so the import ends there."""
     monkeypatch.chdir(good)
-    assert command.main([*words, "--output", str(tmp_path / "made.toml")]) == 3
+    assert command.main([*arguments, "--output", str(tmp_path / "made.toml")]) == 3
     assert "points of the car have no node within 1 mm" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""A modal superelement checks itself: every kind of bad data is refused with a message that says how to mend it."""
+"""Checks of a modal superelement: all invalid data are rejected with a message that contains the remedy."""
 
 from __future__ import annotations
 
@@ -121,7 +121,9 @@ BAD = {
 def test_bad_data_is_refused(case):
     change, message = BAD[case]
     fields = box_fields()
-    if case == "radians":  # the box is softer than a car: lift it into the range of one, where rad/s stand out
+    if (
+        case == "radians"
+    ):  # the box is softer than a car: scale its frequencies to those of a car, for which rad/s are detected
         fields["frequencies"] = fields["frequencies"] * (19.0 / fields["frequencies"][0])
     change(fields)
     with pytest.raises(DataError, match="superelement 'box', .*" + re.escape(message)):

@@ -1,4 +1,4 @@
-"""The data file: round trip to the last digit, and nothing damaged, incomplete or misspelt is read."""
+"""Data file: round trip to the last digit; damaged, incomplete or misspelt files are rejected."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from vehicle.model.flexbody.superelement import Superelement
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Attached:
-    """Flexible body with attached masses, and its new modes as combinations Phi X - R Y of the old ones.
+    """Flexible body with attached masses, and its new modes as combinations Phi X - R Y of the old modes.
 
     Attributes:
         body: body with its new modes.

@@ -110,7 +110,7 @@ class NodeProperties(NamedTuple):
 
     @classmethod
     def of_body(cls, body: TrimmedBody, least_ixx: float) -> NodeProperties:
-        """Return the mass properties of a body made symmetric about y = 0, without a variation of its mass alone.
+        """Return the mass properties of a body made symmetric about y = 0; ignores a variation of its mass alone.
 
         Args:
             body: mass properties of the vehicle file.

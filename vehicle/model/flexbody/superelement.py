@@ -171,7 +171,7 @@ class Superelement:
     def up_to(self, frequency: float, kept: Collection[str]) -> Superelement:
         """Truncate the modes above a frequency and add their static share to the residual flexibility of loaded nodes.
 
-        The static share of a mode at f_i differs from its share at f by (f/f_i)^2 / (1 - (f/f_i)^2), relative.
+        At f, the static share of a mode at f_i is too small by (f/f_i)^2 / (1 - (f/f_i)^2) of the static share.
 
         Args:
             frequency: highest frequency of the remaining modes [Hz].
